@@ -1,0 +1,58 @@
+// The interfaces of light sources. Directions `wi` are unit, in world space, from the lit point towards the light.
+#pragma once
+
+#include <memory>
+
+#include "render/math/surface_point.h"
+
+namespace odis::render {
+
+struct EmitterSample {
+  Vec3 wi{0, 0, 1};
+  float distance = 0;    // to the sampled point; kInfinity for the environment
+  Rgb radiance{0, 0, 0};  // arriving from there, unoccluded; for delta lights the irradiance that the light gives
+                          // a surface facing it (W/m^2)
+  float pdf = 0;         // solid angle; 1 for delta lights; 0 if nothing could be sampled
+  bool delta = false;    // point, spot, directional: cannot be hit, so the MIS weight is one
+};
+
+// The axis-aligned box and the sphere around everything that a ray can hit.
+struct SceneBounds {
+  Vec3 min, max;
+  Vec3 center;
+  float radius = 0;
+};
+
+class Emitter {
+ public:
+  virtual ~Emitter() = default;
+
+  // Samples light arriving at `ref`.
+  virtual EmitterSample sample(const Vec3& ref, const Vec2& u) const = 0;
+  // Emitted power in watts (average over channels), for choosing among lights. Approximate is fine.
+  virtual float power() const = 0;
+  // Called once before rendering, when the extent of the scene is known.
+  virtual void setSceneBounds(const SceneBounds&) {}
+};
+
+// Light leaving the surface of a shape. One emitter a shape.
+class SurfaceEmitter : public Emitter {
+ public:
+  // Radiance leaving `at` in direction `wo` (world space, away from the surface); zero on the back.
+  virtual Rgb radiance(const SurfacePoint& at, const Vec3& wo) const = 0;
+  // Solid-angle density with which sample(ref) gives the direction from `ref` to `at`.
+  virtual float pdf(const Vec3& ref, const SurfacePoint& at) const = 0;
+};
+
+// Light from infinitely far away: environment maps, constant, sky, sun disc.
+class EnvironmentEmitter : public Emitter {
+ public:
+  // Radiance arriving from direction `wi`.
+  virtual Rgb radiance(const Vec3& wi) const = 0;
+  // Solid-angle density with which sample(ref) gives wi.
+  virtual float pdf(const Vec3& ref, const Vec3& wi) const = 0;
+};
+
+using EmitterPtr = std::shared_ptr<Emitter>;
+
+}  // namespace odis::render

@@ -1,0 +1,34 @@
+// Reconstruction filters, sampled by importance: a sample belongs to one pixel, its position is drawn from |filter|
+// and its weight is the sign and scale that keep the estimate unbiased (Ernst et al. 2006, "Filter Importance
+// Sampling"). Pixels are thus independent of each other, and threads never write to a neighbour's pixel.
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "render/math/vec.h"
+
+namespace odis::render {
+
+struct FilterSample {
+  Vec2 offset;       // from the pixel's centre, in pixels
+  float weight = 1;  // filter / density; its expectation is 1, negative for negative lobes
+};
+
+class Filter {
+ public:
+  virtual ~Filter() = default;
+  virtual FilterSample sample(const Vec2& u) const = 0;
+  // The normalised filter (its integral is 1) at an offset from the pixel's centre.
+  virtual float value(const Vec2& offset) const = 0;
+  virtual float radius() const = 0;  // in pixels
+  virtual std::string name() const = 0;
+};
+
+// Parameters and defaults as in Mitsuba. Separable.
+std::unique_ptr<Filter> makeBoxFilter(float radius = 0.5f);
+std::unique_ptr<Filter> makeTentFilter(float radius = 1.0f);
+std::unique_ptr<Filter> makeGaussianFilter(float stddev = 0.5f);  // radius 4 stddev
+std::unique_ptr<Filter> makeMitchellFilter(float b = 1.0f / 3.0f, float c = 1.0f / 3.0f);
+
+}  // namespace odis::render

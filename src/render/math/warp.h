@@ -1,0 +1,48 @@
+// Warps of the unit square to the domains that rendering needs. Every density is with respect to the measure named.
+#pragma once
+
+#include "render/math/vec.h"
+
+namespace odis::render {
+
+// Uniform on the unit disk, concentric (Shirley and Chiu 1997); area density 1/pi.
+inline Vec2 squareToDisk(const Vec2& u) {
+  const float x = 2.0f * u.x - 1.0f, y = 2.0f * u.y - 1.0f;
+  if (x == 0.0f && y == 0.0f) return {0.0f, 0.0f};
+  float r, phi;
+  if (std::abs(x) > std::abs(y)) {
+    r = x;
+    phi = (kPi / 4) * (y / x);
+  } else {
+    r = y;
+    phi = (kPi / 2) - (kPi / 4) * (x / y);
+  }
+  return {r * std::cos(phi), r * std::sin(phi)};
+}
+
+// Cosine-weighted on the hemisphere z > 0; solid-angle density cos(theta)/pi.
+inline Vec3 squareToCosineHemisphere(const Vec2& u) {
+  const Vec2 d = squareToDisk(u);
+  return {d.x, d.y, safeSqrt(1.0f - d.x * d.x - d.y * d.y)};
+}
+inline float cosineHemispherePdf(float cosTheta) { return std::max(cosTheta, 0.0f) * kInvPi; }
+
+// Uniform on the unit sphere; solid-angle density 1/(4 pi).
+inline Vec3 squareToSphere(const Vec2& u) {
+  const float z = 1.0f - 2.0f * u.x, r = safeSqrt(1.0f - z * z), phi = 2.0f * kPi * u.y;
+  return {r * std::cos(phi), r * std::sin(phi), z};
+}
+
+// Uniform in the cone of directions about +z with cosine > cosMax; solid-angle density 1/(2 pi (1 - cosMax)).
+inline Vec3 squareToCone(const Vec2& u, float cosMax) {
+  const float z = 1.0f - u.x * (1.0f - cosMax), r = safeSqrt(1.0f - z * z), phi = 2.0f * kPi * u.y;
+  return {r * std::cos(phi), r * std::sin(phi), z};
+}
+
+// Uniform barycentric coordinates (b1, b2) of a triangle; b0 = 1 - b1 - b2.
+inline Vec2 squareToTriangle(const Vec2& u) {
+  const float root = std::sqrt(u.x);
+  return {1.0f - root, u.y * root};
+}
+
+}  // namespace odis::render

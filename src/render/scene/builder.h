@@ -1,0 +1,58 @@
+// Turns parsed elements into textures, BSDFs, emitters and shapes. Each object is made once, however often it is
+// referred to.
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <string>
+#include <unordered_map>
+
+#include "render/bsdf/bsdf.h"
+#include "render/emitter/emitter.h"
+#include "render/scene/properties.h"
+#include "render/shape/shape.h"
+#include "render/texture/texture.h"
+
+namespace odis::render {
+
+class Image;
+
+class Builder {
+ public:
+  explicit Builder(Warnings& warnings) : m_warnings(warnings) {}
+
+  // A texture parameter: a nested <texture>, an rgb, a number, or the fallback as a constant.
+  TexturePtr texture(const Properties& parent, const std::string& name, const Rgb& fallback);
+  // The same, null if the parameter is absent.
+  TexturePtr optionalTexture(const Properties& parent, const std::string& name);
+  TexturePtr texture(const Properties& node);
+  BsdfPtr bsdf(const Properties& node);
+  // The nested BSDF number `index` (0 first) of `parent`; throws SceneError if it is not there.
+  BsdfPtr nestedBsdf(const Properties& parent, int index);
+  // An emitter of its own (point, envmap, sun, ...); some elements (sunsky) make more than one.
+  std::vector<EmitterPtr> emitters(const Properties& node);
+
+  // A file named in the scene, relative to the file that `at` names; throws SceneError if there is no such file.
+  std::string resolvePath(const std::string& fileName, const SourceLocation& at) const;
+  void warn(const SourceLocation& at, const std::string& message) { m_warnings.add(at, message); }
+  Warnings& warnings() { return m_warnings; }
+
+  // Image files, read once for all who use them. `srgb`: decode the sRGB curve of 8-bit files.
+  std::shared_ptr<const Image> image(const std::string& path, bool srgb, const SourceLocation& at);
+
+ private:
+  Warnings& m_warnings;
+  std::unordered_map<const Properties*, TexturePtr> m_textures;
+  std::unordered_map<const Properties*, BsdfPtr> m_bsdfs;
+  std::unordered_map<std::string, std::shared_ptr<const Image>> m_images;
+};
+
+// The factories: one function a model, defined in the model's own file, listed in the room's registry.cpp.
+using TextureFactory = TexturePtr (*)(const Properties&, Builder&);
+using BsdfFactory = BsdfPtr (*)(const Properties&, Builder&);
+using EmitterFactory = std::vector<EmitterPtr> (*)(const Properties&, Builder&);
+TextureFactory findTextureFactory(const std::string& type);  // src/render/texture/registry.cpp; null if unknown
+BsdfFactory findBsdfFactory(const std::string& type);        // src/render/bsdf/registry.cpp
+EmitterFactory findEmitterFactory(const std::string& type);  // src/render/emitter/registry.cpp
+
+}  // namespace odis::render

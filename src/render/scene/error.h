@@ -1,0 +1,47 @@
+// Errors and warnings that speak to the user: file:line:column, what was expected, what to do.
+#pragma once
+
+#include <cstdint>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+namespace odis::render {
+
+// Where in an input file; line and column count from 1, 0 means unknown.
+struct SourceLocation {
+  std::string file;
+  int line = 0;
+  int column = 0;
+
+  std::string text() const {
+    std::string result = file;
+    if (line > 0) result += ":" + std::to_string(line);
+    if (line > 0 && column > 0) result += ":" + std::to_string(column);
+    return result;
+  }
+};
+
+// Input that cannot be drawn. what() is "file:line:column: message".
+class SceneError : public std::runtime_error {
+ public:
+  SceneError(const SourceLocation& at, const std::string& message)
+      : std::runtime_error(at.file.empty() ? message : at.text() + ": " + message) {}
+};
+
+// Input that can still be drawn. Kept in the order of the file, each text once.
+class Warnings {
+ public:
+  void add(const SourceLocation& at, const std::string& message) {
+    const std::string text = at.file.empty() ? message : at.text() + ": " + message;
+    for (const std::string& known : m_texts)
+      if (known == text) return;
+    m_texts.push_back(text);
+  }
+  const std::vector<std::string>& texts() const { return m_texts; }
+
+ private:
+  std::vector<std::string> m_texts;
+};
+
+}  // namespace odis::render

@@ -1,0 +1,98 @@
+// A scene ready to be rendered.
+#pragma once
+
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "render/emitter/emitter.h"
+#include "render/film/filter.h"
+#include "render/scene/error.h"
+#include "render/sensor/sensor.h"
+#include "render/shape/shape.h"
+
+namespace odis::render {
+
+class Intersector;
+
+struct Crop {
+  int x = 0, y = 0, width = 0, height = 0;  // pixels of the full image
+};
+
+struct FilmSettings {
+  int width = 768, height = 576;
+  Crop crop;  // the whole image unless told otherwise
+  std::shared_ptr<const Filter> filter;
+};
+
+// What the file asks for and the command line may override.
+struct IntegratorSettings {
+  std::string type = "odis";  // as named by the file, "" if it names none
+  int maxDepth = -1;          // -1: unlimited; 1 is directly visible emission, 2 direct light, as Mitsuba counts
+  int rrDepth = 5;
+  int samplesPerPixel = 0;    // 0: the file names none
+};
+
+struct LoadOptions {
+  std::map<std::string, std::string> defines;  // -D key=value
+  std::optional<Vec2i> resolution;             // replaces the film's size; keeps the file's crop only if absent
+  std::optional<Crop> crop;
+};
+
+// A shapegroup placed in the world.
+struct Instance {
+  std::shared_ptr<const std::vector<ShapePtr>> group;
+  Matrix4 toWorld;
+};
+
+class Scene {
+ public:
+  // Loads a Mitsuba XML file; throws SceneError.
+  static std::unique_ptr<Scene> load(const std::string& path, const LoadOptions& options, Warnings& warnings);
+  Scene();
+  ~Scene();
+
+  // The nearest surface along the ray, if any. Thread-safe.
+  bool intersect(const Ray& ray, SurfacePoint& at) const;
+  // Whether anything lies within (0, ray.tMax). Thread-safe.
+  bool occluded(const Ray& ray) const;
+
+  // A ray that leaves `at` and does not meet the surface again at its start.
+  static Ray spawn(const SurfacePoint& at, const Vec3& direction, float distance = kInfinity);
+
+  const SceneBounds& bounds() const { return m_bounds; }
+  const Sensor& sensor() const { return *m_sensor; }
+  const FilmSettings& film() const { return m_film; }
+  const IntegratorSettings& integrator() const { return m_integrator; }
+  const std::vector<ShapePtr>& shapes() const { return m_shapes; }
+  const std::vector<Instance>& instances() const { return m_instances; }
+  // All light sources: surface emitters of shapes, delta lights, environments.
+  const std::vector<const Emitter*>& emitters() const { return m_emitters; }
+  const std::vector<const EnvironmentEmitter*>& environments() const { return m_environments; }
+  uint64_t bytes() const;  // memory of geometry, acceleration structure and textures
+
+  // For building scenes in code (tests, the loader): add, then finish() once.
+  void addShape(ShapePtr shape);  // with its BSDF and emitter set
+  void addInstance(Instance instance);
+  void addEmitter(EmitterPtr emitter);
+  void setSensor(std::shared_ptr<const Sensor> sensor) { m_sensor = std::move(sensor); }
+  void setFilm(const FilmSettings& film) { m_film = film; }
+  void setIntegrator(const IntegratorSettings& settings) { m_integrator = settings; }
+  void finish();
+
+ private:
+  std::vector<ShapePtr> m_shapes;
+  std::vector<Instance> m_instances;
+  std::vector<EmitterPtr> m_ownedEmitters;
+  std::vector<const Emitter*> m_emitters;
+  std::vector<const EnvironmentEmitter*> m_environments;
+  std::shared_ptr<const Sensor> m_sensor;
+  FilmSettings m_film;
+  IntegratorSettings m_integrator;
+  SceneBounds m_bounds;
+  std::unique_ptr<Intersector> m_intersector;
+};
+
+}  // namespace odis::render

@@ -1,0 +1,59 @@
+// The interface of shapes: what the intersector finds and what area lights are sampled on.
+#pragma once
+
+#include <memory>
+
+#include "render/bsdf/bsdf.h"
+#include "render/emitter/emitter.h"
+
+struct RTCGeometryTy;
+struct RTCDeviceTy;
+
+namespace odis::render {
+
+struct ShapeSample {
+  SurfacePoint at;  // p, ng, shading, uv, shape and primitive are set
+  Vec3 wi;          // unit, from the reference point to at.p
+  float distance = 0;
+  float pdf = 0;    // solid angle at the reference point; 0 if nothing could be sampled
+};
+
+// A hit as Embree reports it, with the object-to-world matrix of the instance it is in (null: no instance).
+struct RawHit {
+  float t = 0;
+  float u = 0, v = 0;
+  uint32_t primitive = 0;
+  const Matrix4* instanceToWorld = nullptr;
+  const Matrix4* worldToInstance = nullptr;
+};
+
+class Shape {
+ public:
+  virtual ~Shape() = default;
+
+  // Creates and commits the Embree geometry. Shapes in world space unless they belong to a shape group.
+  virtual RTCGeometryTy* makeGeometry(RTCDeviceTy* device) const = 0;
+  // The point in world space that `ray` met at `hit`.
+  virtual SurfacePoint surfacePoint(const Ray& ray, const RawHit& hit) const = 0;
+
+  virtual float area() const = 0;
+  // Samples a point as seen from `ref`, by solid angle where the shape knows how (spheres by their cone), else by area.
+  virtual ShapeSample sample(const Vec3& ref, const Vec2& u) const = 0;
+  // Density with respect to solid angle with which sample(ref, .) gives the direction to `at`.
+  virtual float pdf(const Vec3& ref, const SurfacePoint& at) const = 0;
+  virtual uint64_t primitiveCount() const { return 1; }
+  virtual uint64_t bytes() const { return 0; }
+
+  const Bsdf& bsdf() const { return *m_bsdf; }
+  const SurfaceEmitter* emitter() const { return m_emitter.get(); }
+  void setBsdf(BsdfPtr bsdf) { m_bsdf = std::move(bsdf); }
+  void setEmitter(std::shared_ptr<SurfaceEmitter> emitter) { m_emitter = std::move(emitter); }
+
+ private:
+  BsdfPtr m_bsdf;
+  std::shared_ptr<SurfaceEmitter> m_emitter;
+};
+
+using ShapePtr = std::shared_ptr<Shape>;
+
+}  // namespace odis::render
