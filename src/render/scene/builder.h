@@ -55,4 +55,10 @@ TextureFactory findTextureFactory(const std::string& type);  // src/render/textu
 BsdfFactory findBsdfFactory(const std::string& type);        // src/render/bsdf/registry.cpp
 EmitterFactory findEmitterFactory(const std::string& type);  // src/render/emitter/registry.cpp
 
+// Makes the geometry of a <shape> element: its BSDF and emitter are set by who calls. Throws SceneError; null, with a
+// warning, if there is nothing to draw (an empty mesh). src/render/shape/registry.cpp
+ShapePtr makeShape(const Properties& node, Builder& builder);
+// Makes the <emitter type="area"> of a shape. src/render/emitter/area.cpp
+std::shared_ptr<SurfaceEmitter> makeSurfaceEmitter(const Properties& node, const Shape& shape, Builder& builder);
+
 }  // namespace odis::render

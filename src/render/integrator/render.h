@@ -1,0 +1,80 @@
+// Rendering a scene: options in, images and statistics out.
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "render/scene/scene.h"
+
+namespace odis::render {
+
+enum class IntegratorKind { path, odis };
+enum class SamplerKind { sobol, independent };
+enum class GuideKind { histogram, oracle };
+
+struct RenderOptions {
+  IntegratorKind integrator = IntegratorKind::odis;
+  SamplerKind sampler = SamplerKind::sobol;
+  int spp = 4;
+  uint64_t seed = 0;
+  int threads = 0;       // 0: one a core
+  int maxDepth = -1;     // -1: unlimited; 1 is directly visible emission, as Mitsuba counts
+  int rrDepth = 5;       // Russian roulette from this depth on
+  double timeLimit = 0;  // seconds; 0: none. The image then has as many whole passes as fitted in.
+  bool variance = false;  // also estimate the variance of each pixel
+  bool features = false;  // also write albedo, normals, position, depth, roughness
+
+  // odis only
+  GuideKind guide = GuideKind::histogram;
+  double pilotSpp = 1;    // samples per pixel of the pilot; 0.25 is one sample per 2x2 pixels
+  int guideBounces = -1;  // how many vertices of a path are guided; -1: all, 1: the first
+  int oracleSpp = 64;     // samples per pixel that the oracle's maps are made from
+  bool records = false;   // keep the pilot's vertices in the result, for those who want to learn from them
+};
+
+// Told of progress from the rendering threads; asked whether to stop. Stopping ends after the current pass of tiles,
+// with what there is.
+class Progress {
+ public:
+  virtual ~Progress() = default;
+  virtual void begin(const std::string& /*stage*/, uint64_t /*totalSamples*/) {}
+  virtual void advance(uint64_t /*samples*/) {}
+  virtual void end() {}
+  virtual bool cancelled() const { return false; }
+};
+
+// Per-pixel images of the crop window, row 0 at the top.
+struct Frame2D {
+  int x = 0, y = 0, width = 0, height = 0;  // the crop, in pixels of the full image
+  std::vector<Rgb> color;
+  std::vector<Rgb> variance;  // of the pixel's mean; empty unless asked for
+  std::vector<Rgb> albedo;    // features at the first non-delta vertex; empty unless asked for
+  std::vector<Vec3> normal, geometricNormal, position;
+  std::vector<float> depth, roughness;
+};
+
+struct RenderStats {
+  double secondsPilot = 0, secondsBuild = 0, secondsGuided = 0;  // path: all of it in secondsGuided
+  uint64_t samples = 0, rays = 0, shadowRays = 0;
+  uint64_t pilotVertices = 0, cells = 0;
+  uint64_t bytesRecords = 0, bytesMaps = 0;
+  double pilotWeight = 0;   // of the pilot's mean in the image
+  double spp = 0;           // samples per pixel really taken
+  bool interrupted = false;
+};
+
+struct RenderResult {
+  Frame2D frame;
+  RenderStats stats;
+};
+
+RenderResult render(const Scene& scene, const RenderOptions& options, Progress& progress);
+
+// Traces the one path of `render` with these options that belongs to a pixel of the full image and a sample, and
+// describes each of its vertices, a line each.
+std::string replay(const Scene& scene, const RenderOptions& options, Vec2i pixel, int sample);
+
+}  // namespace odis::render
