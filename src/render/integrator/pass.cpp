@@ -51,7 +51,7 @@ void renderPixel(const Pass& pass, uint32_t index, TileResult& tile) {
     const Rgb value = isFinite(path.radiance) ? path.radiance * filterWeight : Rgb(0, 0, 0);
     if (pass.image) {
       PixelSums& sums = (*pass.image)[index];
-      const Imath::C3d v(value.x, value.y, value.z);
+      const Rgbd v(value.x, value.y, value.z);
       sums.sum += v;
       sums.sumSquares += v * v;
       ++sums.count;

@@ -11,8 +11,8 @@ namespace odis::render {
 
 // Sums over the samples of each pixel. 56 bytes a pixel.
 struct PixelSums {
-  Imath::C3d sum{0, 0, 0};
-  Imath::C3d sumSquares{0, 0, 0};
+  Rgbd sum{0, 0, 0};
+  Rgbd sumSquares{0, 0, 0};
   uint32_t count = 0;
 };
 

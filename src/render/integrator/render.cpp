@@ -140,7 +140,7 @@ class Renderer {
       return (pixel / width / kBlock) * size_t(blocksX) + pixel % width / kBlock;
     };
     for (size_t pixel = 0; pixel < m_pixels; ++pixel) {
-      const Imath::C3d& s = m_pilot[pixel].sum;
+      const Rgbd& s = m_pilot[pixel].sum;
       const double value = luminance(Rgb(float(s.x), float(s.y), float(s.z)));
       sum[blockOf(pixel)] += value;
       count[blockOf(pixel)] += m_pilot[pixel].count;
@@ -242,7 +242,7 @@ class Renderer {
         frame.color[pixel] = Rgb(0, 0, 0);
         continue;
       }
-      const Imath::C3d mean = (pilot.sum * ratio + guided.sum) / weight;
+      const Rgbd mean = (pilot.sum * ratio + guided.sum) / weight;
       frame.color[pixel] = Rgb(float(mean.x), float(mean.y), float(mean.z));
       if (m_options.variance) frame.variance[pixel] = varianceOfMean(pilot, guided, ratio);
     }
@@ -268,9 +268,9 @@ class Renderer {
     const double weight = ratio * pilot.count + guided.count;
     const uint32_t samples = pilot.count + guided.count;
     if (samples < 2 || !(ratio > 0)) return Rgb(0, 0, 0);
-    const Imath::C3d mean = (pilot.sum * ratio + guided.sum) / weight;
-    const Imath::C3d squares = pilot.sumSquares * ratio + guided.sumSquares - mean * mean * weight;
-    const Imath::C3d variance = squares / double(samples - 1) / weight;
+    const Rgbd mean = (pilot.sum * ratio + guided.sum) / weight;
+    const Rgbd squares = pilot.sumSquares * ratio + guided.sumSquares - mean * mean * weight;
+    const Rgbd variance = squares / double(samples - 1) / weight;
     return Rgb(float(std::max(variance.x, 0.0)), float(std::max(variance.y, 0.0)), float(std::max(variance.z, 0.0)));
   }
 
