@@ -19,7 +19,11 @@
 
 namespace odis {
 
+class DirectionModel;
+
 struct GuideOptions {
+  // What turns statistics into maps (src/odis/decisions/direction_model.h); null: the histogram formula.
+  std::shared_ptr<const DirectionModel> model;
   int cellsPerDiagonal = 32;  // the finest cells have an edge of (diagonal of what the pilot saw) / this
   // How many samples' worth of trust the coarser level has when it is blended with a finer one, per level, finest
   // first; the last one is for the uniform map.

@@ -37,10 +37,11 @@ uint64_t Guide::bytes() const {
 float Guide::predictedVarianceRatio() const { return m_data ? m_data->predictedVarianceRatio : 1; }
 
 struct GuideBuilder::Data {
-  explicit Data(const GuideOptions& o) : options(o), store(o.clamp), model(o) {}
+  explicit Data(const GuideOptions& o) : options(o), store(o.clamp) {
+    if (!options.model) options.model = std::make_shared<HistogramModel>(o);
+  }
   GuideOptions options;
   CellStore store;
-  HistogramModel model;
 };
 
 GuideBuilder::GuideBuilder(const GuideOptions& options) : m_data(std::make_unique<Data>(options)) {}
@@ -116,7 +117,7 @@ Guide GuideBuilder::build(std::span<const PilotVertex> vertices) const {
     forEachCell(cells.size(), [&](size_t c) {
       if (cells[c].level != level) return;
       distributions[c] =
-          m_data->model.predict(cells[c], cells[c].parent == kNoCell ? nullptr : &distributions[cells[c].parent]);
+          options.model->predict(cells[c], cells[c].parent == kNoCell ? nullptr : &distributions[cells[c].parent]);
       result[c].map = pack(distributions[c], options.floor);
     });
   if (options.fixedAlpha > 0) {

@@ -50,7 +50,8 @@ void VertexMap::prepare(const SamplingMap& map, const Float3& normal, Sides side
   m_total = 0;
   for (const float row : m_rows) m_total += row;
   constexpr float kTexelsPerSteradian = kMapTexels / (4 * 3.14159265358979f);
-  m_toPdf = m_total > 0 ? kTexelsPerSteradian / m_total : 0;
+  if (empty()) m_weights.fill(0);
+  m_toPdf = empty() ? 0 : kTexelsPerSteradian / m_total;
 }
 
 }  // namespace odis
