@@ -139,7 +139,8 @@ SurfacePoint Mesh::pointOn(uint32_t triangle, const Vec2& barycentric) const {
     const Vec2 &uv0 = m_uvs[t[0]], &uv1 = m_uvs[t[1]], &uv2 = m_uvs[t[2]];
     at.uv = uv0 * b0 + uv1 * b1 + uv2 * b2;
     const Vec2 d1 = uv1 - uv0, d2 = uv2 - uv0;
-    const float inverse = 1 / (d1.x * d2.y - d1.y * d2.x);
+    // In double precision the products are exact, so coordinates without area are found out.
+    const auto inverse = float(1 / (double(d1.x) * d2.y - double(d1.y) * d2.x));
     if (std::isfinite(inverse)) {
       at.dpdu = (e1 * d2.y - e2 * d1.y) * inverse;
       at.dpdv = (e2 * d1.x - e1 * d2.x) * inverse;
