@@ -24,12 +24,10 @@ Matrix4 rigidToWorld(const Properties& node, Warnings& warnings) {
   return toWorld;
 }
 
-float positive(const Properties& node, const std::string& name, std::optional<float> fallback = {}) {
-  const float value = node.number(name, fallback);
-  if (!(value > 0))
-    throw SceneError(node.parameters.at(name).location,
-                     "found " + std::to_string(value) + " for '" + name + "', expected more than 0");
-  return value;
+// Where a parameter stands; the sensor itself if the value is a default.
+const SourceLocation& placeOf(const Properties& node, const std::string& name) {
+  const auto found = node.parameters.find(name);
+  return found == node.parameters.end() ? node.location : found->second.location;
 }
 
 }  // namespace
@@ -46,11 +44,14 @@ std::shared_ptr<const Sensor> makeSensor(const Properties& node, const Vec2i& re
   const Projection projection(horizontalFieldOfView(node, resolution), resolution, offset);
   const Matrix4 toWorld = rigidToWorld(node, warnings);
   if (!lens) return std::make_shared<Perspective>(toWorld, projection);
-  const float focusDistance = positive(node, "focus_distance", node.number("far_clip", 1e4f));
+  const float focusDistance = node.number("focus_distance", node.number("far_clip", 1e4f));
+  if (!(focusDistance > 0))
+    throw SceneError(placeOf(node, "focus_distance"),
+                     "found the focus distance " + std::to_string(focusDistance) + ", expected more than 0");
   const float radius = node.number("aperture_radius");
   if (!(radius >= 0))
-    throw SceneError(node.parameters.at("aperture_radius").location,
-                     "found a negative 'aperture_radius', expected 0 or more");
+    throw SceneError(placeOf(node, "aperture_radius"),
+                     "found the aperture radius " + std::to_string(radius) + ", expected 0 or more");
   return std::make_shared<ThinLens>(toWorld, projection, radius, focusDistance);
 }
 
