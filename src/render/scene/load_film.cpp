@@ -44,11 +44,12 @@ std::shared_ptr<const Filter> loadFilter(const Properties* node, Warnings& warni
   if (node->type == "box") return makeBoxFilter(positive(*node, "radius", 0.5f));
   if (node->type == "tent") return makeTentFilter(positive(*node, "radius", 1.0f));
   if (node->type == "gaussian") return makeGaussianFilter(positive(*node, "stddev", 0.5f));
-  // "A" and "B" in Mitsuba 3, "B" and "C" before it.
-  if (node->type == "mitchell" && node->has("c"))
-    return makeMitchellFilter(node->number("b", 1.0f / 3.0f), node->number("c"));
-  if (node->type == "mitchell")
-    return makeMitchellFilter(node->number("a", 1.0f / 3.0f), node->number("b", 1.0f / 3.0f));
+  if (node->type == "mitchell") {
+    // The two are called b and c, or a and b.
+    const bool older = node->has("a");
+    return makeMitchellFilter(node->number(older ? "a" : "b", 1.0f / 3.0f),
+                              node->number(older ? "b" : "c", 1.0f / 3.0f));
+  }
   if (node->type == "catmullrom") return makeMitchellFilter(0.0f, 0.5f);
   warnings.add(node->location,
                "the filter '" + node->type + "' is unknown" +

@@ -1,7 +1,7 @@
 #include "render/scene/xml_file.h"
 
 #include <algorithm>
-#include <cstring>
+#include <cctype>
 #include <filesystem>
 #include <fstream>
 
@@ -40,19 +40,21 @@ SourceLocation XmlFile::locate(size_t offset) const {
 }
 
 SourceLocation XmlFile::locate(const pugi::xml_node& node) const {
-  const ptrdiff_t offset = node.offset_debug();
-  if (offset < 0) return {m_path};
   // pugixml points at the name of an element, which follows the '<'.
-  return locate(size_t(node.type() == pugi::node_element ? std::max<ptrdiff_t>(offset - 1, 0) : offset));
+  const ptrdiff_t offset = node.offset_debug() - 1;
+  return offset < 0 ? SourceLocation{m_path} : locate(size_t(offset));
 }
 
 void XmlFile::rejectText(const pugi::xml_node& node) const {
   for (const pugi::xml_node& child : node.children()) {
     if (child.type() != pugi::node_pcdata && child.type() != pugi::node_cdata) continue;
-    std::string found = child.value();
-    found.erase(0, found.find_first_not_of(" \t\r\n"));
-    found = found.substr(0, std::min<size_t>(found.find_first_of(" \t\r\n"), 40));
-    throw SceneError(locate(child), "found the text '" + found + "', expected elements only");
+    const std::string text = child.value();
+    const size_t start = text.find_first_not_of(" \t\r\n");
+    if (start == std::string::npos) continue;
+    const size_t length = text.find_first_of(" \t\r\n", start) - start;
+    throw SceneError(
+        locate(size_t(std::max<ptrdiff_t>(child.offset_debug(), 0)) + start),
+        "found the text '" + text.substr(start, std::min<size_t>(length, 40)) + "', expected elements only");
   }
 }
 

@@ -19,7 +19,7 @@ class XmlFile {
 
   const std::string& path() const { return m_path; }
   pugi::xml_node root() const { return m_document.document_element(); }
-  SourceLocation locate(const pugi::xml_node& node) const;
+  SourceLocation locate(const pugi::xml_node& node) const;  // of an element
   // Throws SceneError if there is text (not white space) beside the children of `node`.
   void rejectText(const pugi::xml_node& node) const;
 
