@@ -53,7 +53,7 @@ TEST(Errors, SayWhereWhatAndWhatWasExpected) {
       {"<bsdf type='x' id='a'><ref id='b'/></bsdf>\n<bsdf type='x' id='b'>\n<ref id='a'/></bsdf>",
        "test.xml:4:1: the element 'a' holds a reference to itself, expected references without a cycle"},
       {"<alias id='a' as='b'/><alias id='b' as='a'/>",
-       "test.xml:2:1: the alias 'a' stands for itself, expected an alias of an element"},
+       "test.xml:2:23: the alias 'a' stands for itself, expected an alias of an element"},
       {"<shape type='$kind'/>",
        "test.xml:2:1: found '$kind', which has no value, expected <default name=\"kind\" value=\"...\"/> "
        "before it or -D "

@@ -34,7 +34,8 @@ void XmlReferences::refer(Properties& owner, const std::string& id, const Source
   m_references.push_back({&owner, owner.children.size() - 1, id, at});
 }
 
-std::shared_ptr<Properties> XmlReferences::find(std::string id, const SourceLocation& at) const {
+std::shared_ptr<Properties> XmlReferences::find(const std::string& name, const SourceLocation& at) const {
+  std::string id = name;
   for (size_t step = 0; step <= m_aliases.size(); ++step) {
     const auto node = m_nodes.find(id);
     if (node != m_nodes.end()) return node->second;
@@ -48,7 +49,7 @@ std::shared_ptr<Properties> XmlReferences::find(std::string id, const SourceLoca
     }
     id = other->second.id;
   }
-  throw SceneError(at, "the alias '" + id + "' stands for itself, expected an alias of an element");
+  throw SceneError(at, "the alias '" + name + "' stands for itself, expected an alias of an element");
 }
 
 SourceLocation XmlReferences::placeOf(const Properties& owner, size_t child) const {

@@ -35,7 +35,7 @@ class XmlReferences {
   };
 
   void rejectTaken(const std::string& id, const SourceLocation& at) const;
-  std::shared_ptr<Properties> find(std::string id, const SourceLocation& at) const;
+  std::shared_ptr<Properties> find(const std::string& name, const SourceLocation& at) const;
   void rejectCycles(const Properties& node, std::map<const Properties*, bool>& finished, int depth) const;
   SourceLocation placeOf(const Properties& owner, size_t child) const;
 
