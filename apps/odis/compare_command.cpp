@@ -3,7 +3,7 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
+#include <filesystem>
 #include <memory>
 #include <set>
 
@@ -75,6 +75,11 @@ static int run(Arguments& a) {
   for (const std::string& scene : settings.scenes)
     if (!names.insert(eval::sceneName(scene)).second)
       throw UsageError(fmt::format("{}: two scenes are named \"{}\"", scene, eval::sceneName(scene)));
+  if (!settings.reference.empty() && !std::filesystem::is_regular_file(settings.reference))
+    throw InputError(settings.reference + ": there is no such file");
+  std::error_code failed;
+  std::filesystem::create_directories(settings.folder, failed);
+  if (failed) throw WriteError(fmt::format("{}: {}", settings.folder, failed.message()));
 
   const InterruptScope interruptible;
   ConsoleObserver observer(a.quiet);

@@ -59,6 +59,7 @@ class SceneRun {
                       ? cachedReference(*m_scene, m_name, m_hash, options, settings.referenceSpp,
                                         settings.folder + "/references", observer.progress())
                       : readColor(settings.reference);
+    if (m_reference.pixels.empty()) return;
     const Crop& crop = m_scene->film().crop;
     if (m_reference.width != crop.width || m_reference.height != crop.height)
       throw std::runtime_error(fmt::format("{}: is {} x {}, the image of {} is {} x {}", settings.reference,
@@ -138,6 +139,7 @@ std::vector<Measurement> compare(const CompareSettings& settings, CompareObserve
   std::vector<Measurement> results;
   for (const std::string& path : settings.scenes) {
     SceneRun run(settings, path, log, observer);
+    if (observer.progress().cancelled()) return results;
     for (int seed = 0; seed < settings.seeds; ++seed) {
       for (const Method& method : settings.methods) {
         Measurement measurement = run.measure(method, uint64_t(seed));
