@@ -7,6 +7,8 @@
 #include <string>
 #include <vector>
 
+#include <odis/guide.h>
+
 #include "render/scene/scene.h"
 
 namespace odis::render {
@@ -32,6 +34,8 @@ struct RenderOptions {
   double pilotSpp = 1;    // samples per pixel of the pilot; 0.25 is one sample per 2x2 pixels
   int guideBounces = -1;  // how many vertices of a path are guided; -1: all, 1: the first
   int oracleSpp = 64;     // samples per pixel that the oracle's maps are made from
+  GuideOptions guideOptions;
+  double pilotWeight = -1;  // of a pilot sample relative to a guided one; -1: by predicted variance
   bool records = false;   // keep the pilot's vertices in the result, for those who want to learn from them
 };
 
@@ -69,6 +73,10 @@ struct RenderStats {
 struct RenderResult {
   Frame2D frame;
   RenderStats stats;
+  // If asked for: the pilot's vertices, in the order of the tiles, and the emission that its camera rays met (summed
+  // over a pixel's samples).
+  std::vector<PilotVertex> records;
+  std::vector<Rgb> pilotEmitted;
 };
 
 RenderResult render(const Scene& scene, const RenderOptions& options, Progress& progress);

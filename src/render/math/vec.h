@@ -16,6 +16,7 @@ using Vec2 = Imath::V2f;
 using Vec2i = Imath::V2i;
 using Vec3 = Imath::V3f;
 using Rgb = Imath::C3f;
+using Rgbd = Imath::Color3<double>;
 // Imath multiplies row vectors: p' = p * M, so "A, then B" is A * B and the translation is in the last row.
 using Matrix4 = Imath::M44f;
 

@@ -1,0 +1,83 @@
+// From pilot vertices to decisions: nested cells in world space, a sampling map and selection probabilities a cell.
+//
+//   odis::GuideBuilder builder(options);
+//   builder.add(pilotVertices);              // once, or as samples arrive
+//   odis::Guide guide = builder.build(pilotVertices);
+//   ...
+//   if (const odis::Cell* cell = guide.find(position, normal)) {
+//     odis::VertexMap map;
+//     map.prepare(cell->map, normal, odis::Sides::reflection);
+//     ... one-sample mixture with alpha = cell->alpha[int(materialClass(roughness))]
+//   }
+#pragma once
+
+#include <memory>
+#include <span>
+
+#include "odis/pilot.h"
+#include "odis/sampling.h"
+
+namespace odis {
+
+class DirectionModel;
+
+struct GuideOptions {
+  // What turns statistics into maps (src/odis/decisions/direction_model.h); null: the histogram formula.
+  std::shared_ptr<const DirectionModel> model;
+  int cellsPerDiagonal = 32;  // the finest cells have an edge of (diagonal of what the pilot saw) / this
+  // How many samples' worth of trust the coarser level has when it is blended with a finer one, per level, finest
+  // first; the last one is for the uniform map.
+  float trust[4] = {300, 300, 150, 30};
+  float floor = 0.1f;         // share of the uniform distribution in every map
+  float clamp = 20;           // a sample counts at most this many times the mean of its neighbourhood (maps only)
+  float fixedAlpha = 0;       // > 0: this selection probability everywhere instead of the one by variance and cost
+};
+
+// What a cell tells a path.
+struct Cell {
+  SamplingMap map;
+  float alpha[kMaterialClasses] = {1, 1, 1};  // share of smooth draws that stay with the BSDF; 1: don't guide
+};
+
+// A set of cells, fixed once built. Thread-safe.
+class Guide {
+ public:
+  Guide();
+  ~Guide();
+  Guide(Guide&&) noexcept;
+  Guide& operator=(Guide&&) noexcept;
+
+  // The finest cell there is for a vertex; null where the pilot saw nothing at all.
+  const Cell* find(const Float3& position, const Float3& normal) const;
+
+  uint64_t cellCount() const;
+  uint64_t bytes() const;
+  // The variance that the pilot predicts of a guided sample, as a ratio to an unguided one; 1 before build().
+  float predictedVarianceRatio() const;
+
+ private:
+  friend class GuideBuilder;
+  struct Data;
+  std::unique_ptr<Data> m_data;
+};
+
+// Gathers pilot vertices and builds guides from them. Results do not depend on the number of threads.
+class GuideBuilder {
+ public:
+  explicit GuideBuilder(const GuideOptions& options = {});
+  ~GuideBuilder();
+
+  // Adds to the statistics of the cells. The first call fixes the extent of the cells, so it should hold at least one
+  // pass over the image. Vertices with values that are not finite are left out.
+  void add(std::span<const PilotVertex> vertices);
+  // Builds maps from all that was added, and selection probabilities from `vertices`, which should be (a part of) the
+  // same.
+  Guide build(std::span<const PilotVertex> vertices) const;
+  uint64_t bytes() const;
+
+ private:
+  struct Data;
+  std::unique_ptr<Data> m_data;
+};
+
+}  // namespace odis

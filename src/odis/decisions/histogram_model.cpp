@@ -1,0 +1,42 @@
+#include "odis/decisions/direction_model.h"
+
+namespace odis {
+
+namespace {
+
+Float3 texelDirection(int texel) {
+  return squareToDirection({(texel % kMapSize + 0.5f) / kMapSize, (texel / kMapSize + 0.5f) / kMapSize});
+}
+
+}  // namespace
+
+DirectionDistribution HistogramModel::predict(const CellStatistics& cell, const DirectionDistribution* parent) const {
+  DirectionDistribution result;
+  const float length = std::sqrt(dot(cell.normal, cell.normal));
+  const Float3 normal = length > 0 ? cell.normal * (1 / length) : Float3{0, 0, 1};
+
+  // What is believed before the cell has seen anything: its parent's map, or a cosine lobe on top of a little of
+  // everything (surfaces that transmit light receive it from both sides).
+  Histogram prior;
+  float priorSum = 0;
+  for (int t = 0; t < kMapTexels; ++t) {
+    prior[t] = parent ? parent->probability[t] : std::max(dot(texelDirection(t), normal), 0.05f);
+    priorSum += prior[t];
+  }
+
+  // Trust is counted in effective samples: many samples of which one holds all the light are but one.
+  const double effective = cell.sumSquares > 0 ? cell.sum * cell.sum / cell.sumSquares : 0;
+  const float trust = m_options.trust[cell.level];
+  const float own = float(effective / (effective + trust));
+  const float perSample = cell.sum > 0 ? own / float(cell.sum) : 0;
+  for (int t = 0; t < kMapTexels; ++t) {
+    const float cosine = std::max(std::abs(dot(texelDirection(t), normal)), 0.1f);
+    result.probability[t] = (cell.sum > 0 ? 1 - own : 1) * prior[t] / priorSum + perSample * cell.histogram[t];
+    result.perCosine[t] = 1 / cosine;
+  }
+  // A sample stands in its cell's histogram and in its ancestors'.
+  result.sensitivity = perSample + (cell.sum > 0 ? 1 - own : 1) * (parent ? parent->sensitivity : 0);
+  return result;
+}
+
+}  // namespace odis

@@ -1,0 +1,57 @@
+#include "odis/decisions/selection.h"
+
+namespace odis {
+
+namespace {
+
+// How many samples' worth of the coarser level's sums stand behind a cell's own.
+constexpr double kPriorSamples = 200;
+// A contribution counts at most this many times the pixel's value.
+constexpr float kContributionLimit = 50;
+// The default, kept unless another candidate is better by the margin (in units of the cell's own share).
+constexpr size_t kDefault = 4;
+constexpr double kMargin = 0.05;
+
+}  // namespace
+
+void SelectionSums::add(const SelectionSums& other, double scale) {
+  count += scale * other.count;
+  for (size_t a = 0; a < kAlphas.size(); ++a) {
+    secondMoment[a] += scale * other.secondMoment[a];
+    rays[a] += scale * other.rays[a];
+  }
+}
+
+// With D the direction's contribution at the pilot's density b and q the mixture's density, the second moment of the
+// contribution under q is E_b[D^2 b / q]; next-event estimate N and direction are independent given the vertex, so
+// their cross term is E[N] E[D] whatever q is. MIS weights depend on q and are made anew.
+void addVertex(CellSelection& sums, const PilotVertex& v, float mapPdf, float lightMapPdf) {
+  SelectionSums& s = sums[int(materialClass(v.roughness))];
+  s.count += 1;
+  for (size_t a = 0; a < kAlphas.size(); ++a) {
+    const float density =
+        v.discrete ? v.pdf : mixturePdf(v.pdf, v.guidablePdf, v.guidableProbability, kAlphas[a], mapPdf);
+    const float ratio = v.discrete ? 1.0f : v.pdf / density;
+    const float emission = v.emission * (v.discrete ? 1.0f : powerHeuristic(density, v.emissionLightPdf));
+    const float direction = std::min(v.indirect + emission, kContributionLimit);
+    const float lightDensity =
+        mixturePdf(v.lightBsdfPdf, v.lightGuidablePdf, v.guidableProbability, kAlphas[a], lightMapPdf);
+    const float light =
+        std::min(v.lightPdf > 0 ? v.light * powerHeuristic(v.lightPdf, lightDensity) : v.light, kContributionLimit);
+    s.secondMoment[a] += light * light + 2 * light * direction + direction * direction * ratio;
+    s.rays[a] += v.raysAfter / std::max(ratio, 0.05f);
+  }
+}
+
+float chooseAlpha(const SelectionSums& own, const SelectionSums& prior, const SelectionTotals& totals) {
+  SelectionSums sums = own;
+  if (prior.count > 0) sums.add(prior, std::min(1.0, kPriorSamples / prior.count));
+  if (!(sums.count > 0) || !(totals.variance > 0) || !(totals.rays > 0)) return kAlphas[kDefault];
+  std::array<double, kAlphas.size()> score;
+  for (size_t a = 0; a < kAlphas.size(); ++a)
+    score[a] = sums.secondMoment[a] / totals.variance + sums.rays[a] / totals.rays;
+  const size_t best = size_t(std::min_element(score.begin(), score.end()) - score.begin());
+  return kAlphas[score[best] < (1 - kMargin) * score[kDefault] ? best : kDefault];
+}
+
+}  // namespace odis

@@ -1,0 +1,47 @@
+// A pass over the image: so many samples for every pixel, in parallel over tiles.
+#pragma once
+
+#include <atomic>
+#include <functional>
+
+#include "render/integrator/path.h"
+#include "render/integrator/render.h"
+
+namespace odis::render {
+
+// Sums over the samples of each pixel. 56 bytes a pixel.
+struct PixelSums {
+  Rgbd sum{0, 0, 0};
+  Rgbd sumSquares{0, 0, 0};
+  uint32_t count = 0;
+};
+
+// Sums of features over the samples that met a surface. 60 bytes a pixel.
+struct FeatureSums {
+  Rgb albedo{0, 0, 0};
+  Vec3 normal{0, 0, 0}, geometricNormal{0, 0, 0}, position{0, 0, 0};
+  float depth = 0, roughness = 0;
+  uint32_t hits = 0;
+};
+
+struct Pass {
+  PathSettings path;
+  SamplerKind sampler = SamplerKind::sobol;
+  uint64_t seed = 0;
+  // The samples [first, first + count) of a pixel, given its index; must not depend on anything that was rendered.
+  std::function<std::pair<uint32_t, uint32_t>(uint32_t pixel)> samples;
+
+  // Where results go; images have one entry a pixel of the crop. Null: not wanted.
+  std::vector<PixelSums>* image = nullptr;
+  std::vector<FeatureSums>* features = nullptr;
+  std::vector<PilotVertex>* records = nullptr;  // appended in the order of the tiles
+  std::vector<Rgb>* emitted = nullptr;
+};
+
+// Runs the pass; tiles that had not begun when `stop` first answered true are left out. Returns the rays traced.
+RayCounts runPass(const Pass& pass, Progress& progress, const std::function<bool()>& stop);
+
+// The camera ray of a sample: its position in the pixel drawn from the reconstruction filter, whose weight is returned.
+Ray cameraRay(const Scene& scene, Vec2i pixel, Sampler& sampler, float& filterWeight);
+
+}  // namespace odis::render

@@ -1,0 +1,89 @@
+// Random numbers for paths: the same ones for every integrator, a function of (seed, pixel, sample, dimension) alone.
+#pragma once
+
+#include <cstdint>
+
+#include "render/integrator/render.h"
+#include "render/math/vec.h"
+
+namespace odis::render {
+
+// The first two dimensions of Sobol's sequence as 32-bit fractions. The second is the Pascal triangle modulo two,
+// applied as a product of five butterflies.
+inline uint32_t reverseBits(uint32_t x) {
+  x = (x >> 16) | (x << 16);
+  x = ((x & 0xff00ff00u) >> 8) | ((x & 0x00ff00ffu) << 8);
+  x = ((x & 0xf0f0f0f0u) >> 4) | ((x & 0x0f0f0f0fu) << 4);
+  x = ((x & 0xccccccccu) >> 2) | ((x & 0x33333333u) << 2);
+  return ((x & 0xaaaaaaaau) >> 1) | ((x & 0x55555555u) << 1);
+}
+inline uint32_t sobolSecondDimension(uint32_t index) {
+  uint32_t x = index;
+  x ^= (x >> 1) & 0x55555555u;
+  x ^= (x >> 2) & 0x33333333u;
+  x ^= (x >> 4) & 0x0f0f0f0fu;
+  x ^= (x >> 8) & 0x00ff00ffu;
+  x ^= (x >> 16) & 0x0000ffffu;
+  return reverseBits(x);
+}
+
+// Owen scrambling in base two by hashing (Laine and Karras 2011, Burley 2020), on bits from the lowest up.
+inline uint32_t owenScrambleReversed(uint32_t x, uint32_t seed) {
+  x ^= x * 0x3d20adeau;
+  x += seed;
+  x *= (seed >> 16) | 1u;
+  x ^= x * 0x05526c56u;
+  return x ^ (x * 0x53a22864u);
+}
+
+inline uint64_t mixBits(uint64_t x) {
+  x = (x ^ (x >> 31)) * 0x7fb5d329728ea185ull;
+  x = (x ^ (x >> 27)) * 0x81dadef4bc2dd44dull;
+  return x ^ (x >> 33);
+}
+
+// Owen-scrambled Sobol' points padded by dimension: each pair of dimensions is the two-dimensional sequence, shuffled
+// and scrambled anew (Burley 2020, "Practical Hash-based Owen Scrambling"); or independent numbers.
+class Sampler {
+ public:
+  Sampler(SamplerKind kind, uint64_t seed, uint32_t pixel, uint32_t sample)
+      : m_kind(kind), m_sample(sample), m_base(mixBits(mixBits(seed + 0x9e3779b97f4a7c15ull) ^ pixel)) {}
+
+  // Every vertex of a path starts at a dimension of its own, whatever the vertices before it used.
+  void startVertex(int depth) { m_dimension = 8 * uint32_t(depth); }
+
+  float get1D() {
+    const uint64_t hash = nextHash();
+    if (m_kind == SamplerKind::independent) return toUnit(uint32_t(hash >> 32));
+    const uint32_t index = shuffledIndex(uint32_t(hash));
+    // reversed: the first dimension is the bit-reversed index, so scrambling its reversal scrambles the index.
+    return toUnit(reverseBits(owenScrambleReversed(index, uint32_t(hash >> 32))));
+  }
+  Vec2 get2D() {
+    const uint64_t hash = nextHash();
+    if (m_kind == SamplerKind::independent) return {toUnit(uint32_t(hash >> 32)), toUnit(uint32_t(hash))};
+    const uint32_t index = shuffledIndex(uint32_t(hash));
+    const uint32_t seedX = uint32_t(hash >> 32), seedY = uint32_t(mixBits(hash));
+    const uint32_t second = reverseBits(sobolSecondDimension(index));
+    return {toUnit(reverseBits(owenScrambleReversed(index, seedX))),
+            toUnit(reverseBits(owenScrambleReversed(second, seedY)))};
+  }
+
+ private:
+  uint64_t nextHash() {
+    // Independent numbers differ by sample; Sobol' points share their scrambling among the samples of a pixel.
+    const uint64_t stream = m_kind == SamplerKind::independent ? (uint64_t(m_sample) + 1) << 32 : 0;
+    return mixBits(m_base ^ mixBits(stream + ++m_dimension));
+  }
+  uint32_t shuffledIndex(uint32_t seed) const {
+    return reverseBits(owenScrambleReversed(reverseBits(m_sample), seed));
+  }
+  static float toUnit(uint32_t x) { return std::min(float(x) * 0x1p-32f, kOneMinusEpsilon); }
+
+  SamplerKind m_kind;
+  uint32_t m_sample;
+  uint32_t m_dimension = 0;
+  uint64_t m_base;
+};
+
+}  // namespace odis::render

@@ -1,0 +1,198 @@
+// Cells and guides built from made-up pilot vertices: no renderer is needed.
+#include <gtest/gtest.h>
+#include <odis/guide.h>
+#include <tbb/global_control.h>
+
+#include <cstring>
+#include <random>
+
+#include "odis/cells/grid.h"
+#include "odis/cells/statistics.h"
+#include "odis/decisions/selection.h"
+
+namespace odis {
+namespace {
+
+constexpr float kPi = 3.14159265f;
+
+// A floor of [0, 1]^2 under a small bright patch in direction `bright`, sampled by the cosine.
+std::vector<PilotVertex> floorUnderPatch(const Float3& bright, int count, uint32_t seed) {
+  std::mt19937 engine(seed);
+  std::uniform_real_distribution<float> uniform(0, 1);
+  std::vector<PilotVertex> vertices(count);
+  for (int i = 0; i < count; ++i) {
+    PilotVertex& v = vertices[i];
+    v.position = {uniform(engine), uniform(engine), 0};
+    v.normal = {0, 0, 1};
+    v.wo = {0, 0, 1};
+    const float radius = std::sqrt(uniform(engine)), phi = 2 * kPi * uniform(engine);
+    v.wi = {radius * std::cos(phi), radius * std::sin(phi), std::sqrt(std::max(0.0f, 1 - radius * radius))};
+    v.cosine = v.wi.z;
+    v.pdf = v.guidablePdf = v.cosine / kPi;
+    v.guidableProbability = 1;
+    v.distance = INFINITY;
+    const float radiance = dot(v.wi, bright) > 0.97f ? 100.0f : 0.1f;
+    v.radiance = {radiance, radiance, radiance};
+    v.weight = {0.5f, 0.5f, 0.5f};
+    v.indirect = 0.5f * radiance / 2;
+    v.raysAfter = 3;
+    v.depth = 1;
+  }
+  return vertices;
+}
+
+const Float3 kBright = {0.6f, 0.0f, 0.8f};
+
+TEST(CellGrid, NeighboursInOneCellShareItsKeyAndFacesDoNot) {
+  const CellGrid grid({0, 0, 0}, 0.25f);
+  const Float3 up = {0.1f, 0.2f, 0.95f};
+  EXPECT_EQ(grid.key({0.01f, 0.01f, 0}, up, 0), grid.key({0.2f, 0.24f, 0}, {0, 0, 1}, 0));
+  EXPECT_NE(grid.key({0.01f, 0.01f, 0}, up, 0), grid.key({0.26f, 0.01f, 0}, up, 0));
+  EXPECT_EQ(grid.key({0.01f, 0.01f, 0}, up, 1), grid.key({0.26f, 0.01f, 0}, up, 1));
+  EXPECT_NE(grid.key({0.01f, 0.01f, 0}, up, 0), grid.key({0.01f, 0.01f, 0}, {0, 0, -1}, 0));
+  EXPECT_NE(grid.key({0.01f, 0.01f, 0}, up, 0), grid.key({-0.01f, 0.01f, 0}, up, 0));
+  EXPECT_NE(grid.key({0.01f, 0.01f, 0}, up, 0), grid.key({0.01f, 0.01f, 0}, up, 1));
+  // Far away and not a number: some key, no crash.
+  grid.key({1e30f, -1e30f, NAN}, up, 0);
+}
+
+TEST(CellIndex, FindsWhatWasInserted) {
+  CellIndex index;
+  EXPECT_EQ(index.find(5), kNoCell);
+  for (uint64_t k = 0; k < 10000; ++k) EXPECT_EQ(index.insert(k * k + 1), k);
+  for (uint64_t k = 0; k < 10000; ++k) EXPECT_EQ(index.find(k * k + 1), k);
+  EXPECT_EQ(index.insert(1), 0u);
+  EXPECT_EQ(index.size(), 10000u);
+  EXPECT_EQ(index.find(3), kNoCell);
+}
+
+TEST(Splat, WeightsAddUpAndSeamsWrap) {
+  std::mt19937 engine(1);
+  std::uniform_real_distribution<float> uniform(0, 1);
+  for (int i = 0; i < 20000; ++i) {
+    const Float3 w = squareToDirection({uniform(engine), uniform(engine)});
+    const Splat s = splat(w);
+    float sum = 0;
+    for (int k = 0; k < 4; ++k) {
+      sum += s.weight[k];
+      if (s.weight[k] == 0) continue;
+      const int t = s.texel[k];
+      const Float3 center = squareToDirection({(t % kMapSize + 0.5f) / kMapSize, (t / kMapSize + 0.5f) / kMapSize});
+      EXPECT_GT(dot(center, w), 0.85f) << "a texel far from the direction";  // no texel is wider than about 25 degrees
+    }
+    EXPECT_NEAR(sum, 1, 1e-4);
+  }
+}
+
+TEST(Guide, PointsAtTheLight) {
+  const std::vector<PilotVertex> vertices = floorUnderPatch(kBright, 20000, 1);
+  GuideBuilder builder;
+  builder.add(vertices);
+  const Guide guide = builder.build(vertices);
+  const Cell* cell = guide.find({0.5f, 0.5f, 0}, {0, 0, 1});
+  ASSERT_NE(cell, nullptr);
+  VertexMap map;
+  map.prepare(cell->map, {0, 0, 1}, Sides::reflection);
+  EXPECT_GT(map.pdf(kBright), 5 * kBright.z / kPi);  // far above the cosine's density
+  EXPECT_LT(cell->alpha[int(MaterialClass::diffuse)], 0.5f);
+  EXPECT_LT(guide.predictedVarianceRatio(), 0.5f);
+}
+
+TEST(Guide, UniformLightKeepsTheVarianceAsItIs) {
+  std::vector<PilotVertex> vertices = floorUnderPatch(kBright, 20000, 2);
+  for (PilotVertex& v : vertices) {
+    v.radiance = {1, 1, 1};
+    v.indirect = 1;
+  }
+  GuideBuilder builder;
+  builder.add(vertices);
+  EXPECT_GT(builder.build(vertices).predictedVarianceRatio(), 0.9f);
+}
+
+TEST(Guide, FallsBackToCoarserCellsAndThenToNothing) {
+  const std::vector<PilotVertex> vertices = floorUnderPatch(kBright, 5000, 3);
+  GuideBuilder builder;
+  builder.add(vertices);
+  const Guide guide = builder.build(vertices);
+  EXPECT_NE(guide.find({0.5f, 0.5f, 0.06f}, {0, 0, 1}), nullptr);  // above the finest cells, inside coarser ones
+  EXPECT_EQ(guide.find({50, 50, 50}, {0, 0, 1}), nullptr);
+  EXPECT_EQ(Guide().find({0, 0, 0}, {0, 0, 1}), nullptr);
+}
+
+TEST(Guide, NothingToLearnFromIsNoCrash) {
+  GuideBuilder builder;
+  builder.add({});
+  EXPECT_EQ(builder.build({}).find({0, 0, 0}, {0, 0, 1}), nullptr);
+  std::vector<PilotVertex> vertices = floorUnderPatch(kBright, 200, 4);
+  for (size_t i = 0; i < vertices.size(); ++i) {
+    PilotVertex& v = vertices[i];
+    switch (i % 5) {
+      case 0: v.position.x = NAN; break;
+      case 1: v.radiance.y = INFINITY; break;
+      case 2: v.pdf = 0; break;
+      case 3: v.radiance = {0, 0, 0}; v.indirect = 0; break;
+      case 4: v.wi = {NAN, NAN, NAN}; break;
+    }
+  }
+  GuideBuilder broken;
+  broken.add(vertices);
+  const Guide guide = broken.build(vertices);
+  EXPECT_TRUE(std::isfinite(guide.predictedVarianceRatio()));
+}
+
+TEST(Guide, IsTheSameForAnyNumberOfThreads) {
+  const std::vector<PilotVertex> vertices = floorUnderPatch(kBright, 30000, 5);
+  std::vector<Guide> guides;
+  for (const size_t threads : {1, 4}) {
+    const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
+    GuideBuilder builder;
+    builder.add(vertices);
+    guides.push_back(builder.build(vertices));
+  }
+  ASSERT_EQ(guides[0].cellCount(), guides[1].cellCount());
+  for (const PilotVertex& v : vertices) {
+    const Cell *a = guides[0].find(v.position, v.normal), *b = guides[1].find(v.position, v.normal);
+    ASSERT_EQ(a->map.texels, b->map.texels);
+    ASSERT_EQ(std::memcmp(a->alpha, b->alpha, sizeof(a->alpha)), 0);
+  }
+}
+
+TEST(Selection, PrefersTheMapWhereItMatchesTheLight) {
+  // All light comes from where the map samples ten times as often as the BSDF.
+  SelectionSums matched, opposed;
+  CellSelection sums;
+  PilotVertex v;
+  v.pdf = v.guidablePdf = 0.1f;
+  v.guidableProbability = 1;
+  v.raysAfter = 2;
+  v.indirect = 5;
+  for (int i = 0; i < 100; ++i) addVertex(sums, v, 1.0f, 0);
+  matched = sums[0];
+  sums = {};
+  for (int i = 0; i < 100; ++i) addVertex(sums, v, 0.001f, 0);
+  opposed = sums[0];
+  const SelectionTotals totals{100 * 25, 1e9};  // rays don't matter here
+  EXPECT_LT(chooseAlpha(matched, {}, totals), 0.3f);
+  EXPECT_EQ(chooseAlpha(opposed, {}, totals), 1.0f);
+}
+
+TEST(Selection, SecondMomentOfTheMixtureIsPredicted) {
+  // One direction variable with two outcomes, BSDF probabilities (0.9, 0.1), map (0.5, 0.5), contribution only from the
+  // second: f = 1 there. Under a mixture q the second moment is 1 / q.
+  CellSelection sums;
+  PilotVertex v;
+  v.guidableProbability = 1;
+  for (int i = 0; i < 1000; ++i) {
+    const bool second = i % 10 == 0;  // as often as the BSDF draws it
+    v.pdf = v.guidablePdf = second ? 0.1f : 0.9f;
+    v.indirect = second ? 10.0f : 0.0f;
+    addVertex(sums, v, 0.5f, 0);
+  }
+  for (size_t a = 0; a < kAlphas.size(); ++a) {
+    const double q = kAlphas[a] * 0.1 + (1 - kAlphas[a]) * 0.5;
+    EXPECT_NEAR(sums[0].secondMoment[a] / 1000, 1 / q, 1e-3 / q);
+  }
+}
+
+}  // namespace
+}  // namespace odis

@@ -1,0 +1,160 @@
+// The octahedral map, sampling maps and the mixture: sample and density must be the same distribution.
+#include <odis/sampling.h>
+
+#include <random>
+
+#include "support/chi2.h"
+
+namespace odis {
+namespace {
+
+using render::Vec3;
+
+Vec3 toVec3(const Float3& w) { return {w.x, w.y, w.z}; }
+
+TEST(Octahedral, InvertsItself) {
+  std::mt19937 engine(1);
+  std::uniform_real_distribution<float> uniform(0, 1);
+  for (int i = 0; i < 100000; ++i) {
+    const Float2 square{uniform(engine), uniform(engine)};
+    const Float3 w = squareToDirection(square);
+    ASSERT_NEAR(dot(w, w), 1, 1e-5);
+    const Float2 back = directionToSquare(w);
+    ASSERT_NEAR(back.x, square.x, 2e-4);
+    ASSERT_NEAR(back.y, square.y, 2e-4);
+  }
+}
+
+TEST(Octahedral, KeepsAreas) {
+  const auto sample = [](float, float u, float v) { return std::optional(toVec3(squareToDirection({u, v}))); };
+  EXPECT_TRUE(test::chi2Test(sample, [](const Vec3&) { return 1 / (4 * render::kPi); }));
+}
+
+TEST(Octahedral, PolesAndSeamsAreFinite) {
+  for (const Float3 w : {Float3{0, 0, 1}, Float3{0, 0, -1}, Float3{1, 0, 0}, Float3{0, -1, 0}, Float3{-1, 0, 0}}) {
+    const Float3 back = squareToDirection(directionToSquare(w));
+    EXPECT_NEAR(dot(back, w), 1, 1e-5);
+    EXPECT_LT(texelOf(w), kMapTexels);
+  }
+}
+
+enum class Content { random, uniform, oneHot, gradient };
+
+SamplingMap makeMap(Content content) {
+  SamplingMap map;
+  std::mt19937 engine(7);
+  for (int t = 0; t < kMapTexels; ++t) {
+    switch (content) {
+      case Content::random: map.texels[t] = uint16_t(1 + engine() % 65535); break;
+      case Content::uniform: map.texels[t] = 1000; break;
+      case Content::oneHot: map.texels[t] = t == 137 ? 65535 : 1; break;
+      case Content::gradient: map.texels[t] = uint16_t(1 + 200 * t); break;
+    }
+  }
+  return map;
+}
+
+struct Case {
+  Content content;
+  Float3 normal;
+  Sides sides;
+};
+
+class VertexMapTest : public ::testing::TestWithParam<Case> {};
+
+TEST_P(VertexMapTest, SampleHasTheDensityOfPdf) {
+  const Case& c = GetParam();
+  VertexMap map;
+  map.prepare(makeMap(c.content), c.normal, c.sides);
+  ASSERT_FALSE(map.empty());
+  // The density is constant within texels of the octahedral square, so the test's cells are those of the square.
+  std::vector<double> observed(kMapTexels, 0.0);
+  std::mt19937 engine(3);
+  std::uniform_real_distribution<float> uniform(0, 1);
+  const int samples = 400000;
+  for (int i = 0; i < samples; ++i) {
+    const VertexMap::Sample s = map.sample(std::min(uniform(engine), render::kOneMinusEpsilon),
+                                           std::min(uniform(engine), render::kOneMinusEpsilon));
+    ASSERT_NEAR(dot(s.wi, s.wi), 1, 1e-4);
+    ASSERT_GT(s.pdf, 0);
+    observed[texelOf(s.wi)] += 1;
+  }
+  double statistic = 0, total = 0;
+  int degrees = -1;
+  double pooledExpected = 0, pooledObserved = 0;
+  for (int t = 0; t < kMapTexels; ++t) {
+    const double probability = map.texelPdf(t) * 4 * M_PI / kMapTexels;
+    total += probability;
+    if (probability == 0) {
+      // Rounding of the direction may carry a sample across a texel's border.
+      EXPECT_LT(observed[t], samples * 1e-4);
+      continue;
+    }
+    pooledExpected += probability * samples;
+    pooledObserved += observed[t];
+    if (pooledExpected < 5) continue;
+    statistic += (pooledObserved - pooledExpected) * (pooledObserved - pooledExpected) / pooledExpected;
+    ++degrees;
+    pooledExpected = pooledObserved = 0;
+  }
+  EXPECT_NEAR(total, 1, 1e-4);
+  EXPECT_GT(test::chi2PValue(statistic, degrees), 0.01 / 7);
+}
+
+TEST_P(VertexMapTest, PdfIsTheSampledOne) {
+  const Case& c = GetParam();
+  VertexMap map;
+  map.prepare(makeMap(c.content), c.normal, c.sides);
+  int different = 0;
+  for (int i = 0; i < 1000; ++i) {
+    const VertexMap::Sample s = map.sample((i + 0.5f) / 1000, std::fmod(i * 0.618034f, 1.0f));
+    different += std::abs(map.pdf(s.wi) - s.pdf) > 1e-4f * s.pdf;
+  }
+  EXPECT_LE(different, 2);  // a sample on the very border of a texel may be looked up next door
+}
+
+const Float3 kTilted = {0.48f, -0.6f, 0.64f};
+INSTANTIATE_TEST_SUITE_P(Maps, VertexMapTest,
+                         ::testing::Values(Case{Content::random, {0, 0, 1}, Sides::reflection},
+                                           Case{Content::random, kTilted, Sides::reflection},
+                                           Case{Content::random, kTilted, Sides::both},
+                                           Case{Content::uniform, kTilted, Sides::reflection},
+                                           Case{Content::oneHot, kTilted, Sides::both},
+                                           Case{Content::oneHot, {0, -1, 0}, Sides::reflection},
+                                           Case{Content::gradient, kTilted, Sides::reflection}));
+
+TEST(VertexMap, NothingToSampleIsEmpty) {
+  VertexMap map;
+  map.prepare(makeMap(Content::random), {NAN, 0, 1}, Sides::reflection);
+  EXPECT_TRUE(map.empty());
+  EXPECT_EQ(map.pdf({0, 0, 1}), 0);
+}
+
+TEST(Mixture, IntegratesToOneAndKeepsSharpLobes) {
+  // A BSDF that draws 0.7 of the time from a cosine lobe that may be guided and 0.3 from another that may not.
+  const float guidable = 0.7f, alpha = 0.4f;
+  VertexMap map;
+  map.prepare(makeMap(Content::random), {0, 0, 1}, Sides::reflection);
+  double integral = 0;
+  const int n = 1000;
+  for (int i = 0; i < n; ++i)
+    for (int j = 0; j < n; ++j) {
+      const Float3 w = squareToDirection({(i + 0.5f) / n, (j + 0.5f) / n});
+      const float cosine = std::max(w.z, 0.0f) * render::kInvPi;
+      const float sharp = w.z > 0.9f ? 1 / (2 * render::kPi * 0.1f) : 0;
+      const float mixed = mixturePdf(0.7f * cosine + 0.3f * sharp, 0.7f * cosine, guidable, alpha, map.pdf(w));
+      EXPECT_GE(mixed, 0.3f * sharp * 0.999f);
+      integral += mixed;
+    }
+  EXPECT_NEAR(integral * 4 * M_PI / (double(n) * n), 1, 2e-3);
+}
+
+TEST(PowerHeuristic, WeightsAddUpToOne) {
+  for (const float a : {1e-3f, 0.5f, 1.0f, 1e6f})
+    for (const float b : {1e-3f, 0.7f, 30.0f}) EXPECT_NEAR(powerHeuristic(a, b) + powerHeuristic(b, a), 1, 1e-5);
+  EXPECT_EQ(powerHeuristic(0, 1), 0);
+  EXPECT_EQ(powerHeuristic(1, 0), 1);
+}
+
+}  // namespace
+}  // namespace odis

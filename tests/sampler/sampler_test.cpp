@@ -1,0 +1,75 @@
+#include "render/sampler/sampler.h"
+
+#include <gtest/gtest.h>
+
+#include <set>
+
+namespace odis::render {
+namespace {
+
+// Sobol's second dimension from its recurrence: direction numbers of the polynomial x + 1.
+uint32_t sobolByDirectionNumbers(uint32_t index) {
+  uint32_t direction = 1u << 31, result = 0;
+  for (; index; index >>= 1) {
+    if (index & 1) result ^= direction;
+    direction ^= direction >> 1;
+  }
+  return result;
+}
+
+TEST(Sobol, ButterfliesAreTheRecurrence) {
+  for (uint32_t i = 0; i < 100000; ++i) ASSERT_EQ(sobolSecondDimension(i), sobolByDirectionNumbers(i)) << i;
+  ASSERT_EQ(sobolSecondDimension(0xfedcba98u), sobolByDirectionNumbers(0xfedcba98u));
+}
+
+TEST(Sampler, EveryPowerOfTwoIsStratified) {
+  // Any 16 points of an aligned run, in each elementary interval of area 1/16 one: the net property, for any seed,
+  // pixel and dimension.
+  for (uint32_t pixel = 0; pixel < 50; ++pixel)
+    for (int shape = 0; shape <= 4; ++shape) {
+      std::set<std::pair<int, int>> seen;
+      std::set<int> seen1D;
+      for (uint32_t sample = 0; sample < 16; ++sample) {
+        Sampler sampler(SamplerKind::sobol, 42, pixel, sample);
+        sampler.startVertex(3);
+        const Vec2 u = sampler.get2D();
+        seen.insert({int(u.x * float(1 << shape)), int(u.y * float(16 >> shape))});
+        seen1D.insert(int(sampler.get1D() * 16));
+      }
+      EXPECT_EQ(seen.size(), 16u);
+      EXPECT_EQ(seen1D.size(), 16u);
+    }
+}
+
+class SamplerMoments : public ::testing::TestWithParam<SamplerKind> {};
+
+TEST_P(SamplerMoments, UniformAndUncorrelatedAcrossPixelsAndDimensions) {
+  // First samples of many pixels must look like independent uniform numbers; z-tests at 5 standard errors.
+  const int n = 200000;
+  double sum[4] = {}, product[3] = {};
+  for (int pixel = 0; pixel < n; ++pixel) {
+    Sampler sampler(GetParam(), 7, uint32_t(pixel), 0);
+    const Vec2 a = sampler.get2D();
+    const float b = sampler.get1D();
+    const Vec2 c = sampler.get2D();
+    const double x[4] = {a.x, a.y, b, c.x};
+    for (int d = 0; d < 4; ++d) {
+      ASSERT_GE(x[d], 0);
+      ASSERT_LT(x[d], 1);
+      sum[d] += x[d];
+    }
+    for (int d = 0; d < 3; ++d) product[d] += (x[d] - 0.5) * (x[d + 1] - 0.5);
+  }
+  for (const double s : sum) EXPECT_NEAR(s / n, 0.5, 5 * std::sqrt(1 / 12.0 / n));
+  for (const double p : product) EXPECT_NEAR(p / n, 0, 5 * (1 / 12.0) / std::sqrt(double(n)));
+}
+
+INSTANTIATE_TEST_SUITE_P(Kinds, SamplerMoments, ::testing::Values(SamplerKind::sobol, SamplerKind::independent));
+
+TEST(Sampler, IndependentSamplesOfAPixelDiffer) {
+  Sampler a(SamplerKind::independent, 1, 2, 0), b(SamplerKind::independent, 1, 2, 1);
+  EXPECT_NE(a.get1D(), b.get1D());
+}
+
+}  // namespace
+}  // namespace odis::render
