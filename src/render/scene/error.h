@@ -16,8 +16,8 @@ struct SourceLocation {
 
   std::string text() const {
     std::string result = file;
-    if (line > 0) result += ":" + std::to_string(line);
-    if (line > 0 && column > 0) result += ":" + std::to_string(column);
+    if (line > 0) (result += ':') += std::to_string(line);
+    if (line > 0 && column > 0) (result += ':') += std::to_string(column);
     return result;
   }
 };
