@@ -18,6 +18,7 @@ struct SurfacePoint {
   const Shape* shape = nullptr;
   uint32_t primitive = 0;  // triangle of a mesh; 0 for analytic shapes
   Vec2 barycentric;        // (b1, b2) on a triangle
+  float pError = 0;        // how far p may be off the surface, set by shapes for Scene::spawn()
 };
 
 }  // namespace odis::render

@@ -1,11 +1,12 @@
-// Turns parsed elements into textures, BSDFs, emitters and shapes. Each object is made once, however often it is
-// referred to.
+// Turns parsed elements into textures, BSDFs, emitters and shapes. Each object is made once, however often it
+// is referred to.
 #pragma once
 
 #include <functional>
 #include <memory>
 #include <string>
 #include <unordered_map>
+#include <vector>
 
 #include "render/bsdf/bsdf.h"
 #include "render/emitter/emitter.h"
@@ -19,7 +20,9 @@ class Image;
 
 class Builder {
  public:
-  explicit Builder(Warnings& warnings) : m_warnings(warnings) {}
+  // `folders`: where files are looked for that are not beside the scene file that names them.
+  explicit Builder(Warnings& warnings, std::vector<std::string> folders = {})
+      : m_warnings(warnings), m_folders(std::move(folders)) {}
 
   // A texture parameter: a nested <texture>, an rgb, a number, or the fallback as a constant.
   TexturePtr texture(const Properties& parent, const std::string& name, const Rgb& fallback);
@@ -32,16 +35,20 @@ class Builder {
   // An emitter of its own (point, envmap, sun, ...); some elements (sunsky) make more than one.
   std::vector<EmitterPtr> emitters(const Properties& node);
 
-  // A file named in the scene, relative to the file that `at` names; throws SceneError if there is no such file.
+  // A file named in the scene, relative to the file that `at` names; throws SceneError if there is no such
+  // file.
   std::string resolvePath(const std::string& fileName, const SourceLocation& at) const;
   void warn(const SourceLocation& at, const std::string& message) { m_warnings.add(at, message); }
   Warnings& warnings() { return m_warnings; }
+  // Lists the parameters that no getter has asked for.
+  void warnUnqueried(const Properties& node);
 
   // Image files, read once for all who use them. `srgb`: decode the sRGB curve of 8-bit files.
   std::shared_ptr<const Image> image(const std::string& path, bool srgb, const SourceLocation& at);
 
  private:
   Warnings& m_warnings;
+  std::vector<std::string> m_folders;
   std::unordered_map<const Properties*, TexturePtr> m_textures;
   std::unordered_map<const Properties*, BsdfPtr> m_bsdfs;
   std::unordered_map<std::string, std::shared_ptr<const Image>> m_images;
@@ -51,14 +58,16 @@ class Builder {
 using TextureFactory = TexturePtr (*)(const Properties&, Builder&);
 using BsdfFactory = BsdfPtr (*)(const Properties&, Builder&);
 using EmitterFactory = std::vector<EmitterPtr> (*)(const Properties&, Builder&);
-TextureFactory findTextureFactory(const std::string& type);  // src/render/texture/registry.cpp; null if unknown
-BsdfFactory findBsdfFactory(const std::string& type);        // src/render/bsdf/registry.cpp
+TextureFactory findTextureFactory(
+    const std::string& type);                          // src/render/texture/registry.cpp; null if unknown
+BsdfFactory findBsdfFactory(const std::string& type);  // src/render/bsdf/registry.cpp
 EmitterFactory findEmitterFactory(const std::string& type);  // src/render/emitter/registry.cpp
 
-// Makes the geometry of a <shape> element: its BSDF and emitter are set by who calls. Throws SceneError; null, with a
-// warning, if there is nothing to draw (an empty mesh). src/render/shape/registry.cpp
+// Makes the geometry of a <shape> element: its BSDF and emitter are set by who calls. Throws SceneError;
+// null, with a warning, if there is nothing to draw (an empty mesh). src/render/shape/registry.cpp
 ShapePtr makeShape(const Properties& node, Builder& builder);
 // Makes the <emitter type="area"> of a shape. src/render/emitter/area.cpp
-std::shared_ptr<SurfaceEmitter> makeSurfaceEmitter(const Properties& node, const Shape& shape, Builder& builder);
+std::shared_ptr<SurfaceEmitter> makeSurfaceEmitter(const Properties& node, const Shape& shape,
+                                                   Builder& builder);
 
 }  // namespace odis::render

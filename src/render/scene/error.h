@@ -16,8 +16,11 @@ struct SourceLocation {
 
   std::string text() const {
     std::string result = file;
-    if (line > 0) result += ":" + std::to_string(line);
-    if (line > 0 && column > 0) result += ":" + std::to_string(column);
+    for (const int number : {line, column}) {
+      if (number <= 0) break;
+      result += ':';
+      result += std::to_string(number);
+    }
     return result;
   }
 };

@@ -1,0 +1,36 @@
+# The front door. `make demo` and `make test` work on a fresh Debian 12 or 13 or Ubuntu 24.04.
+PRESET ?= release
+BUILD := build/$(PRESET)
+JOBS ?= $(shell nproc)
+
+.PHONY: help setup build demo test format format-check lint clean
+
+help:                ## Show this list
+	@sed -n 's/^\([a-z-]*\):.*## /  make \1\t/p' Makefile | expand -t 24
+
+setup:               ## Install what is missing to build (apt-get)
+	@scripts/setup
+
+build: setup         ## Build everything; PRESET=release (default), dev, asan or tsan
+	@cmake --preset $(PRESET) $(CMAKE_FLAGS) > /dev/null
+	@cmake --build $(BUILD) --parallel $(JOBS)
+
+demo: setup          ## Render the demo scene with plain path tracing and with ODIS, side by side
+	@cmake --preset $(PRESET) $(CMAKE_FLAGS) > /dev/null
+	@cmake --build $(BUILD) --parallel $(JOBS) --target odis_app
+	@scripts/demo $(BUILD)/apps/odis/odis
+
+test: build          ## Build and run all tests
+	@ctest --test-dir $(BUILD) --parallel $(JOBS) --output-on-failure --output-log $(BUILD)/ctest.log
+
+format:              ## Format the C++ sources in place
+	@scripts/format
+
+format-check:        ## Fail if `make format` would change anything
+	@scripts/format --check
+
+lint: build          ## Run clang-tidy on all sources
+	@scripts/lint $(BUILD)
+
+clean:               ## Remove what was built and what the demo wrote
+	@rm -rf build out

@@ -1,0 +1,57 @@
+// What the sub-commands share: how they are made, and how they end.
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <functional>
+#include <stdexcept>
+#include <string>
+
+namespace odis::app {
+
+enum ExitCode {
+  kOk = 0,
+  kInternalError = 1,
+  kUsageError = 2,
+  kSceneError = 3,  // a scene or an image that cannot be read
+  kWriteError = 4,
+  kInterrupted = 130  // by Ctrl-C; what was there is written
+};
+
+// A command line that makes no sense.
+class UsageError : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+// An input file, other than a scene, that cannot be read.
+class InputError : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+// An output that cannot be written.
+class WriteError : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+struct Command {
+  CLI::App* app;
+  std::function<int()> run;  // called if `app` was on the command line; returns an ExitCode
+};
+
+// Each adds its options to `parent`.
+Command addRenderCommand(CLI::App& parent, const std::string& commandLine);
+Command addSceneCommand(CLI::App& parent);
+Command addMetricsCommand(CLI::App& parent);
+Command addMontageCommand(CLI::App& parent);
+Command addCompareCommand(CLI::App& parent);
+
+// Runs the whole command line; errors go to stderr. Returns an ExitCode.
+int runCommandLine(int argc, char** argv);
+
+// "3 min 20 s", "4.2 s", "1.5 GiB".
+std::string durationText(double seconds);
+std::string bytesText(double bytes);
+
+}  // namespace odis::app

@@ -1,0 +1,73 @@
+// From the command line to a sub-command, from exceptions to exit codes.
+#include <fmt/format.h>
+
+#include <cstdio>
+#include <new>
+#include <vector>
+
+#include "command.h"
+#include "odis_version.h"
+#include "render/scene/error.h"
+#include "suggest.h"
+
+namespace odis::app {
+
+static constexpr const char* kExitCodes =
+    "Exit codes: 0 all went well, 1 internal error, 2 wrong usage, 3 a scene or image can't be read,\n"
+    "4 an output can't be written, 130 interrupted by Ctrl-C (what was rendered is written).";
+
+static int fail(ExitCode code, const std::string& message) {
+  fmt::print(stderr, "error: {}\n", message);
+  return code;
+}
+
+// The innermost sub-command that was named.
+static const CLI::App& deepest(const CLI::App& app) {
+  const std::vector<CLI::App*> parsed = app.get_subcommands();
+  return parsed.empty() ? app : deepest(*parsed.front());
+}
+
+static int reportUsage(const CLI::App& app, const CLI::ParseError& error) {
+  const CLI::App& command = deepest(app);
+  std::string message = error.what();
+  if (const std::string hint = suggestFor(app, command); !hint.empty()) message += "\n" + hint;
+  std::string name = command.get_name();
+  for (const CLI::App* parent = command.get_parent(); parent; parent = parent->get_parent())
+    name = parent->get_name() + " " + name;
+  return fail(kUsageError, message + "\nRun `" + name + " --help` for what there is.");
+}
+
+int runCommandLine(int argc, char** argv) {
+  CLI::App app{"ODIS: offline deep importance sampling for path tracing", "odis"};
+  app.footer(kExitCodes);
+  app.set_version_flag("--version", std::string("odis ") + ODIS_VERSION_STRING);
+  app.require_subcommand(1);
+  std::string commandLine;
+  for (int i = 0; i < argc; ++i) commandLine += (i > 0 ? " " : "") + std::string(argv[i]);
+  const std::vector<Command> commands{addRenderCommand(app, commandLine), addCompareCommand(app),
+                                      addMetricsCommand(app), addMontageCommand(app), addSceneCommand(app)};
+  try {
+    app.parse(argc, argv);
+    for (const Command& command : commands)
+      if (command.app->parsed()) return command.run();
+    return kUsageError;
+  } catch (const CLI::Success& success) {  // --help, --version
+    return app.exit(success);
+  } catch (const CLI::ParseError& error) {
+    return reportUsage(app, error);
+  } catch (const UsageError& error) {
+    return fail(kUsageError, error.what());
+  } catch (const render::SceneError& error) {
+    return fail(kSceneError, error.what());
+  } catch (const InputError& error) {
+    return fail(kSceneError, error.what());
+  } catch (const WriteError& error) {
+    return fail(kWriteError, error.what());
+  } catch (const std::bad_alloc&) {
+    return fail(kInternalError, "out of memory");
+  } catch (const std::exception& error) {
+    return fail(kInternalError, error.what());
+  }
+}
+
+}  // namespace odis::app

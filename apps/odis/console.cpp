@@ -1,0 +1,82 @@
+#include "console.h"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <csignal>
+#include <cstdio>
+
+#include "command.h"
+
+namespace odis::app {
+
+static volatile std::sig_atomic_t g_interrupts = 0;
+
+static void onInterrupt(int) {
+  g_interrupts = g_interrupts + 1;
+  if (g_interrupts > 1) _exit(kInterrupted);
+}
+
+InterruptScope::InterruptScope() {
+  g_interrupts = 0;
+  std::signal(SIGINT, onInterrupt);
+}
+InterruptScope::~InterruptScope() {
+  std::signal(SIGINT, SIG_DFL);
+}
+bool InterruptScope::interrupted() {
+  return g_interrupts > 0;
+}
+
+ConsoleProgress::ConsoleProgress(bool quiet) : m_quiet(quiet), m_terminal(isatty(STDERR_FILENO) == 1) {}
+
+void ConsoleProgress::begin(const std::string& stage, uint64_t totalSamples) {
+  m_stage = m_title.empty() ? stage : m_title + ": " + stage;
+  m_total = totalSamples;
+  m_done = 0;
+  m_nextShow = std::max<uint64_t>(1, m_total / (m_terminal ? 200 : 10));
+  m_start = m_lastShow = std::chrono::steady_clock::now();
+}
+
+// Called from all rendering threads: only who passes the next mark prints.
+void ConsoleProgress::advance(uint64_t samples) {
+  const uint64_t done = m_done.fetch_add(samples, std::memory_order_relaxed) + samples;
+  if (m_quiet || m_total == 0 || done < m_nextShow.load(std::memory_order_relaxed)) return;
+  const std::lock_guard lock(m_mutex);
+  if (done < m_nextShow || done >= m_total) return;
+  const uint64_t step = std::max<uint64_t>(1, m_total / (m_terminal ? 200 : 10));
+  m_nextShow = (done / step + 1) * step;
+  show(done, false);
+}
+
+void ConsoleProgress::end() {
+  if (m_quiet || m_total == 0) return;
+  const std::lock_guard lock(m_mutex);
+  show(m_done, true);
+  m_total = 0;
+}
+
+void ConsoleProgress::show(uint64_t done, bool last) {
+  using namespace std::chrono;
+  const auto now = steady_clock::now();
+  if (m_terminal && !last && now - m_lastShow < milliseconds(100)) return;
+  m_lastShow = now;
+  const double seconds = std::max(1e-6, duration<double>(now - m_start).count());
+  const double share = std::min(1.0, double(done) / double(m_total));
+  const double rate = double(done) / seconds;
+  const std::string time =
+      last ? durationText(seconds) : durationText(seconds * (1 - share) / share) + " left";
+  const std::string rateText = fmt::format("{:.2f} Msamples/s, {}", rate * 1e-6, time);
+  if (!m_terminal) {
+    fmt::print(stderr, "{} {:3.0f} %  {}\n", m_stage, 100 * share, rateText);
+    return;
+  }
+  constexpr int kWidth = 30;
+  const int filled = int(share * kWidth);
+  fmt::print(stderr, "\r\033[K{} [{}{}] {:3.0f} %  {}{}", m_stage, std::string(filled, '='),
+             std::string(kWidth - filled, ' '), 100 * share, rateText, last ? "\n" : "");
+  std::fflush(stderr);
+}
+
+}  // namespace odis::app

@@ -1,0 +1,45 @@
+// Progress on the terminal, and Ctrl-C.
+#pragma once
+
+#include <atomic>
+#include <chrono>
+#include <mutex>
+#include <string>
+
+#include "render/integrator/render.h"
+
+namespace odis::app {
+
+// While one lives, the first Ctrl-C only sets a flag; the second ends the program at once.
+class InterruptScope {
+ public:
+  InterruptScope();
+  ~InterruptScope();
+  InterruptScope(const InterruptScope&) = delete;
+  InterruptScope& operator=(const InterruptScope&) = delete;
+  static bool interrupted();
+};
+
+// A bar with rate and time left if stderr is a terminal, otherwise a line for every tenth that is done.
+class ConsoleProgress : public render::Progress {
+ public:
+  explicit ConsoleProgress(bool quiet);
+  void begin(const std::string& stage, uint64_t totalSamples) override;
+  void advance(uint64_t samples) override;
+  void end() override;
+  bool cancelled() const override { return InterruptScope::interrupted(); }
+  // Printed in front of the stage, on lines of its own if that is how progress is shown.
+  void setTitle(const std::string& title) { m_title = title; }
+
+ private:
+  void show(uint64_t done, bool last);
+
+  bool m_quiet, m_terminal;
+  std::string m_title, m_stage;
+  uint64_t m_total = 0;
+  std::atomic<uint64_t> m_done{0}, m_nextShow{0};
+  std::chrono::steady_clock::time_point m_start, m_lastShow;
+  std::mutex m_mutex;
+};
+
+}  // namespace odis::app

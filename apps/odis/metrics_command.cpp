@@ -1,0 +1,72 @@
+// odis metrics
+#include <fmt/format.h>
+
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "command.h"
+#include "eval/image_file.h"
+#include "eval/metrics.h"
+
+namespace odis::app {
+
+namespace {
+
+struct Arguments {
+  std::string image, reference;
+  bool json = false;
+};
+
+}  // namespace
+
+static eval::ColorImage read(const std::string& path) {
+  try {
+    return eval::readColor(path);
+  } catch (const std::runtime_error& error) {
+    throw InputError(error.what());
+  }
+}
+
+static int run(const Arguments& arguments) {
+  const eval::ColorImage image = read(arguments.image), reference = read(arguments.reference);
+  if (image.width != reference.width || image.height != reference.height)
+    throw InputError(fmt::format("{} is {} x {}, {} is {} x {}: they must be of one size", arguments.image,
+                                 image.width, image.height, arguments.reference, reference.width,
+                                 reference.height));
+  eval::ErrorMetrics m;
+  try {
+    m = eval::compareImages(image.pixels, reference.pixels);
+  } catch (const std::invalid_argument& error) {
+    throw InputError(fmt::format("{}: {}", arguments.reference, error.what()));
+  }
+  if (arguments.json) {
+    const nlohmann::ordered_json json = {{"relMse", m.relMse},
+                                         {"trimmedRelMse", m.trimmedRelMse},
+                                         {"smape", m.smape},
+                                         {"mse", m.mse},
+                                         {"nonFinitePixels", m.nonFinitePixels}};
+    fmt::print("{}\n", json.dump(2));
+    return kOk;
+  }
+  fmt::print(
+      "relMSE          {:.6g}\ntrimmed relMSE  {:.6g}\nSMAPE           {:.6g}\nMSE             {:.6g}\n",
+      m.relMse, m.trimmedRelMse, m.smape, m.mse);
+  if (m.nonFinitePixels > 0) fmt::print("not finite      {} pixels\n", m.nonFinitePixels);
+  return kOk;
+}
+
+Command addMetricsCommand(CLI::App& parent) {
+  CLI::App* app = parent.add_subcommand("metrics", "Measure the error of an image");
+  app->footer(
+      "Both images are divided by the mean luminance of REFERENCE. Averages over pixels and channels of\n"
+      "  relMSE  (I - R)^2 / (R^2 + 0.01); trimmed: without the worst 0.1 % of the pixels\n"
+      "  SMAPE   |I - R| / ((|I| + |R|) / 2 + 0.01)\n"
+      "  MSE     (I - R)^2");
+  const auto arguments = std::make_shared<Arguments>();
+  app->add_option("IMAGE", arguments->image, "EXR file")->required();
+  app->add_option("REFERENCE", arguments->reference, "EXR file")->required();
+  app->add_flag("--json", arguments->json, "Print JSON");
+  return {app, [arguments] { return run(*arguments); }};
+}
+
+}  // namespace odis::app

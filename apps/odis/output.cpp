@@ -1,0 +1,121 @@
+#include "output.h"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <filesystem>
+#include <fstream>
+#include <list>
+#include <sstream>
+
+#include "command.h"
+#include "render/image/write.h"
+
+namespace odis::app {
+
+using namespace render;
+namespace fs = std::filesystem;
+
+Layers parseLayers(const std::string& text) {
+  Layers layers;
+  std::istringstream stream(text);
+  for (std::string name; std::getline(stream, name, ',');) {
+    const bool all = name == "all";
+    if (all || name == "albedo") layers.albedo = true;
+    if (all || name == "normal") layers.normal = true;
+    if (all || name == "position") layers.position = true;
+    if (all || name == "depth") layers.depth = true;
+    if (all || name == "roughness") layers.roughness = true;
+    if (!all && name != "albedo" && name != "normal" && name != "position" && name != "depth" &&
+        name != "roughness")
+      throw UsageError(fmt::format(
+          "--aov: found \"{}\", expected albedo, normal, position, depth, roughness or all", name));
+  }
+  return layers;
+}
+
+bool endsWith(const std::string& path, const std::string& ending) {
+  return path.size() >= ending.size() &&
+         path.compare(path.size() - ending.size(), ending.size(), ending) == 0;
+}
+
+void checkWritable(const std::string& path, std::initializer_list<const char*> endings) {
+  std::string expected;
+  bool known = endings.size() == 0;
+  for (const char* ending : endings) {
+    known = known || endsWith(path, ending);
+    expected += expected.empty() ? ending : std::string(" or ") + ending;
+  }
+  if (!known) throw UsageError(fmt::format("{}: expected a name that ends in {}", path, expected));
+  const fs::path folder = fs::absolute(path).parent_path();
+  std::error_code ignored;
+  if (!fs::is_directory(folder, ignored))
+    throw WriteError(fmt::format("{}: there is no such folder", folder.string()));
+  if (fs::is_directory(path, ignored)) throw WriteError(fmt::format("{}: is a folder", path));
+  if (access(folder.c_str(), W_OK) != 0)
+    throw WriteError(fmt::format("{}: is not writable", folder.string()));
+}
+
+namespace {
+
+// The channels of a file and the planes that they point to.
+class Planes {
+ public:
+  template <typename Vector>
+  void add(const std::string& prefix, const char* components, const std::vector<Vector>& pixels, bool half) {
+    for (int i = 0; i < 3 && !pixels.empty(); ++i) {
+      std::vector<float>& plane = m_planes.emplace_back();
+      plane.reserve(pixels.size());
+      for (const Vector& pixel : pixels) plane.push_back(pixel[i]);
+      m_channels.push_back({prefix + components[i], plane.data(), half});
+    }
+  }
+  void add(const std::string& name, const std::vector<float>& plane, bool half) {
+    if (!plane.empty()) m_channels.push_back({name, plane.data(), half});
+  }
+  const std::vector<ImageChannel>& channels() const { return m_channels; }
+
+ private:
+  std::list<std::vector<float>> m_planes;  // a list: they must not move
+  std::vector<ImageChannel> m_channels;
+};
+
+}  // namespace
+
+void writeLayers(const std::string& path, const Frame2D& frame, const FilmSettings& film,
+                 const Layers& layers, const std::map<std::string, std::string>& metadata) {
+  Planes planes;
+  planes.add("", "RGB", frame.color, false);
+  planes.add("variance.", "RGB", frame.variance, false);
+  if (layers.albedo) planes.add("albedo.", "RGB", frame.albedo, true);
+  if (layers.normal) planes.add("N.", "XYZ", frame.normal, true);
+  if (layers.position) planes.add("P.", "XYZ", frame.position, false);
+  if (layers.depth) planes.add("depth.Z", frame.depth, false);
+  if (layers.roughness) planes.add("roughness.Y", frame.roughness, true);
+  try {
+    writeExr(path, {film.width, film.height, frame.x, frame.y, frame.width, frame.height}, planes.channels(),
+             metadata);
+  } catch (const std::runtime_error& error) {
+    throw WriteError(error.what());
+  }
+}
+
+void writePreview(const std::string& path, const Frame2D& frame, float exposure) {
+  try {
+    writePng(path, frame.width, frame.height, frame.color.data(), exposure);
+  } catch (const std::runtime_error& error) {
+    throw WriteError(error.what());
+  }
+}
+
+void writeText(const std::string& path, const std::string& text) {
+  const std::string temporary = path + ".part";
+  std::ofstream stream(temporary, std::ios::binary);
+  stream << text;
+  stream.close();
+  std::error_code failed;
+  if (stream) fs::rename(temporary, path, failed);
+  if (!stream || failed) throw WriteError(path + ": cannot be written");
+}
+
+}  // namespace odis::app

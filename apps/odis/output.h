@@ -1,0 +1,31 @@
+// The files that a rendering leaves.
+#pragma once
+
+#include <map>
+#include <string>
+
+#include "render/integrator/render.h"
+
+namespace odis::app {
+
+struct Layers {
+  bool albedo = false, normal = false, position = false, depth = false, roughness = false;
+  bool any() const { return albedo || normal || position || depth || roughness; }
+};
+
+// "albedo,depth" or "all"; throws UsageError.
+Layers parseLayers(const std::string& text);
+
+// Throws WriteError, before any time is spent, if a file can't be made there or if its ending is not one of
+// `endings`.
+void checkWritable(const std::string& path, std::initializer_list<const char*> endings);
+bool endsWith(const std::string& path, const std::string& ending);
+
+// One EXR: R, G, B; variance.R G B if there is a variance; the layers asked for: albedo.R G B, N.X Y Z, P.X Y
+// Z, depth.Z, roughness.Y. Throws WriteError.
+void writeLayers(const std::string& path, const render::Frame2D& frame, const render::FilmSettings& film,
+                 const Layers& layers, const std::map<std::string, std::string>& metadata);
+void writePreview(const std::string& path, const render::Frame2D& frame, float exposure);
+void writeText(const std::string& path, const std::string& text);
+
+}  // namespace odis::app

@@ -1,0 +1,145 @@
+#include "render_arguments.h"
+
+#include <fmt/format.h>
+
+#include <sstream>
+
+#include "command.h"
+#include "suggest.h"
+
+namespace odis::app {
+
+using namespace render;
+
+void MethodArguments::addTo(CLI::App& app) {
+  const std::string group = "Method";
+  app.add_option("--integrator", integrator, "path: plain path tracing; odis: guided by a pilot")
+      ->check(CLI::IsMember({"path", "odis"}))
+      ->capture_default_str()
+      ->group(group);
+  app.add_option("--guide", guide,
+                 "What the pilot is turned into: histogram, or the oracle of many more samples")
+      ->check(CLI::IsMember({"histogram", "oracle"}))
+      ->capture_default_str()
+      ->group(group);
+  app.add_option("--guide-bounces", guideBounces, "How many vertices of a path are guided; -1: all")
+      ->check(CLI::Range(-1, 1 << 20))
+      ->capture_default_str()
+      ->group(group);
+  app.add_option("--pilot-spp", pilotSpp, "Samples per pixel of the pilot; below 1: one in so many pixels")
+      ->check(CLI::Range(1e-3, 1e6))
+      ->capture_default_str()
+      ->group(group);
+  app.add_option("--oracle-spp", oracleSpp, "Samples per pixel that the oracle is made from")
+      ->check(CLI::Range(1, 1 << 20))
+      ->capture_default_str()
+      ->group(group);
+  app.add_option("--sampler", sampler, "Where random numbers come from")
+      ->check(CLI::IsMember({"sobol", "independent"}))
+      ->capture_default_str()
+      ->group(group);
+}
+
+void MethodArguments::apply(RenderOptions& options) const {
+  options.integrator = integrator == "path" ? IntegratorKind::path : IntegratorKind::odis;
+  options.sampler = sampler == "sobol" ? SamplerKind::sobol : SamplerKind::independent;
+  options.guide = guide == "oracle" ? GuideKind::oracle : GuideKind::histogram;
+  options.guideBounces = guideBounces;
+  options.pilotSpp = pilotSpp;
+  options.oracleSpp = oracleSpp;
+}
+
+void SceneArguments::addTo(CLI::App& app) {
+  const std::string group = "Scene";
+  app.add_option("-D,--define", defines, "Replaces a <default> of the scene file: -D key=value")
+      ->allow_extra_args(false)
+      ->group(group);
+  app.add_option("--resolution", resolution, "Size of the full image, in place of the scene's: 640x360")
+      ->group(group);
+  app.add_option("--crop", crop, "Part of the image to render: x,y,width,height")->group(group);
+}
+
+LoadOptions SceneArguments::loadOptions() const {
+  LoadOptions options;
+  for (const std::string& define : defines) options.defines.insert(parseDefine(define));
+  if (!resolution.empty()) options.resolution = parseResolution(resolution);
+  if (!crop.empty()) options.crop = parseCrop(crop);
+  return options;
+}
+
+void RenderArguments::addTo(CLI::App& app) {
+  app.add_option("SCENE", scene, "Mitsuba 3 scene file")->required();
+  app.add_option("-o,--output", output,
+                 "Image to write, .exr or .png; default: the scene's name, in this folder");
+  app.add_option("--png", png, "Write a PNG for a look as well");
+  app.add_option("--exposure", exposure, "Of the PNG, in stops")->capture_default_str();
+  app.add_option("--spp", spp, "Samples per pixel, pilot included; default: what the scene asks for, else 4")
+      ->check(CLI::Range(1, 1 << 24));
+  app.add_option("--seed", seed, "Another seed, another noise")->capture_default_str();
+  app.add_option("--threads", threads, "0: one a core")->check(CLI::Range(0, 4096))->capture_default_str();
+  app.add_option("--max-depth", maxDepth,
+                 "Bounces; -1: no limit, 1: lights only, 2: direct light; default: scene's")
+      ->check(CLI::Range(-1, 1 << 20));
+  app.add_option("--rr-depth", rrDepth, "Russian roulette starts here; default: scene's")
+      ->check(CLI::Range(1, 1 << 20));
+  app.add_option("--time-limit", timeLimit, "Stop after so many seconds; 0: no limit")
+      ->check(CLI::Range(0.0, 1e9))
+      ->capture_default_str();
+  app.add_option("--aov", aov, "Further layers: albedo,normal,position,depth,roughness or all");
+  app.add_flag("--variance", variance, "Write each pixel's estimated variance as a layer");
+  app.add_flag("--stats", stats, "Print what it cost");
+  app.add_option("--stats-json", statsFile, "Write what it cost");
+  app.add_option("--tev", tev, "Show the image in tev, at host:port");
+  app.add_option("--replay", replay, "x,y,sample: print that one path instead of rendering");
+  app.add_flag("-q,--quiet", quiet, "Print errors only");
+  app.add_flag("-v,--verbose", verbose, "Say what is done");
+  method.addTo(app);
+  part.addTo(app);
+}
+
+Vec2i parseResolution(const std::string& text) {
+  std::istringstream stream(text);
+  Vec2i size(0, 0);
+  char times = 0;
+  stream >> size.x >> times >> size.y;
+  if (!stream || !stream.eof() || times != 'x' || size.x < 1 || size.y < 1)
+    throw UsageError(fmt::format("--resolution: found \"{}\", expected WIDTHxHEIGHT, as in 640x360", text));
+  return size;
+}
+
+Crop parseCrop(const std::string& text) {
+  std::istringstream stream(text);
+  Crop crop;
+  char commas[3] = {};
+  stream >> crop.x >> commas[0] >> crop.y >> commas[1] >> crop.width >> commas[2] >> crop.height;
+  const bool separated = commas[0] == ',' && commas[1] == ',' && commas[2] == ',';
+  if (!stream || !stream.eof() || !separated || crop.x < 0 || crop.y < 0 || crop.width < 1 || crop.height < 1)
+    throw UsageError(
+        fmt::format("--crop: found \"{}\", expected x,y,width,height in pixels, as in 0,0,64,64", text));
+  return crop;
+}
+
+std::pair<std::string, std::string> parseDefine(const std::string& text) {
+  const size_t equals = text.find('=');
+  if (equals == 0 || equals == std::string::npos)
+    throw UsageError(fmt::format("-D: found \"{}\", expected key=value", text));
+  return {text.substr(0, equals), text.substr(equals + 1)};
+}
+
+RenderOptions parseMethod(const std::string& text) {
+  CLI::App app("method");
+  MethodArguments arguments;
+  arguments.addTo(app);
+  try {
+    app.parse(text);
+  } catch (const CLI::ParseError& error) {
+    const std::string hint = suggestFor(app, app);
+    throw UsageError(
+        fmt::format("--methods: \"{}\": {}{}", text, error.what(), hint.empty() ? "" : "\n" + hint));
+  }
+  RenderOptions options;
+  arguments.apply(options);
+  return options;
+}
+
+}  // namespace odis::app

@@ -1,0 +1,121 @@
+// odis render
+#include <fmt/format.h>
+
+#include <chrono>
+#include <cstdio>
+#include <filesystem>
+#include <memory>
+
+#include "command.h"
+#include "console.h"
+#include "output.h"
+#include "render/image/tev.h"
+#include "render_arguments.h"
+#include "stats.h"
+
+namespace odis::app {
+
+using namespace render;
+
+static RenderOptions renderOptions(const RenderArguments& a, const Scene& scene, const Layers& layers) {
+  const IntegratorSettings& settings = scene.integrator();
+  RenderOptions options;
+  a.method.apply(options);
+  options.spp = a.spp.value_or(settings.samplesPerPixel > 0 ? settings.samplesPerPixel : options.spp);
+  options.maxDepth = a.maxDepth.value_or(settings.maxDepth);
+  options.rrDepth = a.rrDepth.value_or(settings.rrDepth);
+  options.seed = a.seed;
+  options.threads = a.threads;
+  options.timeLimit = a.timeLimit;
+  options.variance = a.variance;
+  options.features = layers.any();
+  return options;
+}
+
+static int printReplay(const RenderArguments& a, const Scene& scene, const RenderOptions& options) {
+  int x = 0, y = 0, sample = 0, read = 0;
+  if (std::sscanf(a.replay.c_str(), "%d,%d,%d%n", &x, &y, &sample, &read) != 3 ||
+      size_t(read) != a.replay.size())
+    throw UsageError(fmt::format("--replay: found \"{}\", expected x,y,sample", a.replay));
+  const FilmSettings& film = scene.film();
+  if (x < 0 || y < 0 || sample < 0 || x >= film.width || y >= film.height || sample >= options.spp)
+    throw UsageError(fmt::format("--replay: {} is outside of the image of {} x {} pixels of {} samples",
+                                 a.replay, film.width, film.height, options.spp));
+  fmt::print("{}\n", render::replay(scene, options, Vec2i(x, y), sample));
+  return kOk;
+}
+
+static double secondsSince(std::chrono::steady_clock::time_point start) {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+static void sendToTev(const RenderArguments& a, const Frame2D& frame) {
+  try {
+    TevClient(a.tev).send(a.output, frame.width, frame.height, frame.color.data());
+  } catch (const std::exception& error) {  // the image is written all the same
+    fmt::print(stderr, "warning: {}\n", error.what());
+  }
+}
+
+static int run(RenderArguments& a) {
+  // Find out what is wrong with the command line before time is spent.
+  if (a.output.empty()) a.output = std::filesystem::path(a.scene).stem().string() + ".exr";
+  const Layers layers = parseLayers(a.aov);
+  const LoadOptions load = a.part.loadOptions();
+  if (a.replay.empty()) {
+    checkWritable(a.output, {".exr", ".png"});
+    if (!a.png.empty()) checkWritable(a.png, {".png"});
+    if (!a.statsFile.empty()) checkWritable(a.statsFile, {});
+  }
+
+  const auto start = std::chrono::steady_clock::now();
+  Warnings warnings;
+  const std::unique_ptr<Scene> scene = Scene::load(a.scene, load, warnings);
+  RunStats stats;
+  stats.secondsLoad = secondsSince(start);
+  if (!a.quiet)
+    for (const std::string& text : warnings.texts()) fmt::print(stderr, "warning: {}\n", text);
+  const RenderOptions options = renderOptions(a, *scene, layers);
+  if (!a.replay.empty()) return printReplay(a, *scene, options);
+  if (a.verbose)
+    fmt::print(stderr, "{}: {} shapes, {} lights, {}; loaded in {}\n", a.scene, scene->shapes().size(),
+               scene->emitters().size(), bytesText(double(scene->bytes())), durationText(stats.secondsLoad));
+
+  const InterruptScope interruptible;
+  ConsoleProgress progress(a.quiet);
+  const RenderResult result = render::render(*scene, options, progress);
+  if (result.stats.spp <= 0) {
+    fmt::print(stderr, "interrupted before there was an image; nothing is written\n");
+    return kInterrupted;
+  }
+
+  stats.render = result.stats;
+  stats.bytesScene = scene->bytes();
+  stats.bytesPeak = peakMemory();
+  stats.seed = a.seed;
+  stats.scene = a.scene;
+  stats.integrator = a.method.integrator;
+  stats.commandLine = a.commandLine;
+  const auto writeStart = std::chrono::steady_clock::now();
+  if (endsWith(a.output, ".png"))
+    writePreview(a.output, result.frame, a.exposure);
+  else
+    writeLayers(a.output, result.frame, scene->film(), layers, statsMetadata(stats));
+  if (!a.png.empty()) writePreview(a.png, result.frame, a.exposure);
+  stats.secondsWrite = secondsSince(writeStart);
+  if (!a.tev.empty()) sendToTev(a, result.frame);
+  if (!a.statsFile.empty()) writeText(a.statsFile, statsJson(stats));
+  if (a.stats) fmt::print("{}", statsTable(stats));
+  if (a.verbose) fmt::print(stderr, "{}: written\n", a.output);
+  return InterruptScope::interrupted() ? kInterrupted : kOk;
+}
+
+Command addRenderCommand(CLI::App& parent, const std::string& commandLine) {
+  CLI::App* app = parent.add_subcommand("render", "Render a scene");
+  const auto arguments = std::make_shared<RenderArguments>();
+  arguments->addTo(*app);
+  arguments->commandLine = commandLine;
+  return {app, [arguments] { return run(*arguments); }};
+}
+
+}  // namespace odis::app

@@ -1,0 +1,95 @@
+#include "stats.h"
+
+#include <fmt/format.h>
+#include <sys/resource.h>
+
+#include <nlohmann/json.hpp>
+
+#include "command.h"
+#include "odis_version.h"
+
+namespace odis::app {
+
+uint64_t peakMemory() {
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  return uint64_t(usage.ru_maxrss) * 1024;  // Linux counts in KiB
+}
+
+static double secondsRendering(const render::RenderStats& s) {
+  return s.secondsPilot + s.secondsBuild + s.secondsGuided;
+}
+
+std::string statsTable(const RunStats& stats) {
+  const render::RenderStats& r = stats.render;
+  std::string text;
+  const auto row = [&](const char* name, const std::string& value) {
+    text += fmt::format("  {:<18}{}\n", name, value);
+  };
+  const double seconds = secondsRendering(r);
+  row("load", durationText(stats.secondsLoad));
+  if (r.secondsPilot > 0) row("pilot", durationText(r.secondsPilot));
+  if (r.secondsBuild > 0) row("build", durationText(r.secondsBuild));
+  row("render", durationText(r.secondsGuided));
+  row("write", durationText(stats.secondsWrite));
+  row("samples per pixel", fmt::format("{:.4g}", r.spp));
+  row("samples", fmt::format("{:.3f} M, {:.3f} M/s", double(r.samples) * 1e-6,
+                             seconds > 0 ? double(r.samples) * 1e-6 / seconds : 0.0));
+  row("rays",
+      fmt::format("{:.3f} M, {:.3f} M shadow rays", double(r.rays) * 1e-6, double(r.shadowRays) * 1e-6));
+  if (r.cells > 0) {
+    row("pilot vertices", fmt::format("{} in {} cells", r.pilotVertices, r.cells));
+    row("pilot weight", fmt::format("{:.3f}", r.pilotWeight));
+    row("memory of guide", fmt::format("{} records, {} maps", bytesText(double(r.bytesRecords)),
+                                       bytesText(double(r.bytesMaps))));
+  }
+  row("memory of scene", bytesText(double(stats.bytesScene)));
+  row("memory at most", bytesText(double(stats.bytesPeak)));
+  return text;
+}
+
+std::string statsJson(const RunStats& stats) {
+  const render::RenderStats& r = stats.render;
+  const nlohmann::ordered_json json = {{"version", ODIS_VERSION_STRING},
+                                       {"commandLine", stats.commandLine},
+                                       {"scene", stats.scene},
+                                       {"integrator", stats.integrator},
+                                       {"seed", stats.seed},
+                                       {"spp", r.spp},
+                                       {"interrupted", r.interrupted},
+                                       {"seconds",
+                                        {{"load", stats.secondsLoad},
+                                         {"pilot", r.secondsPilot},
+                                         {"build", r.secondsBuild},
+                                         {"guided", r.secondsGuided},
+                                         {"write", stats.secondsWrite}}},
+                                       {"samples", r.samples},
+                                       {"rays", r.rays},
+                                       {"shadowRays", r.shadowRays},
+                                       {"pilotVertices", r.pilotVertices},
+                                       {"cells", r.cells},
+                                       {"pilotWeight", r.pilotWeight},
+                                       {"bytes",
+                                        {{"peak", stats.bytesPeak},
+                                         {"scene", stats.bytesScene},
+                                         {"records", r.bytesRecords},
+                                         {"maps", r.bytesMaps}}}};
+  return json.dump(2) + "\n";
+}
+
+std::map<std::string, std::string> statsMetadata(const RunStats& stats) {
+  const render::RenderStats& r = stats.render;
+  return {{"odis:version", ODIS_VERSION_STRING},
+          {"odis:commandLine", stats.commandLine},
+          {"odis:scene", stats.scene},
+          {"odis:integrator", stats.integrator},
+          {"odis:seed", std::to_string(stats.seed)},
+          {"odis:spp", fmt::format("{}", r.spp)},
+          {"odis:interrupted", r.interrupted ? "yes" : "no"},
+          {"odis:secondsLoad", fmt::format("{:.4f}", stats.secondsLoad)},
+          {"odis:secondsPilot", fmt::format("{:.4f}", r.secondsPilot)},
+          {"odis:secondsBuild", fmt::format("{:.4f}", r.secondsBuild)},
+          {"odis:secondsGuided", fmt::format("{:.4f}", r.secondsGuided)}};
+}
+
+}  // namespace odis::app

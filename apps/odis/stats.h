@@ -1,0 +1,25 @@
+// What a rendering cost, for people and for programs.
+#pragma once
+
+#include <map>
+#include <string>
+
+#include "render/integrator/render.h"
+
+namespace odis::app {
+
+struct RunStats {
+  render::RenderStats render;
+  double secondsLoad = 0, secondsWrite = 0;
+  uint64_t bytesScene = 0, bytesPeak = 0;
+  uint64_t seed = 0;
+  std::string scene, integrator, commandLine;
+};
+
+uint64_t peakMemory();  // of this process, in bytes
+std::string statsTable(const RunStats& stats);
+std::string statsJson(const RunStats& stats);
+// The same for the header of an EXR file; the time it took to write the file is not in it.
+std::map<std::string, std::string> statsMetadata(const RunStats& stats);
+
+}  // namespace odis::app

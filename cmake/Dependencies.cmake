@@ -1,0 +1,29 @@
+# What is built upon: Debian's and Ubuntu's packages, installed by scripts/setup.
+find_package(TBB REQUIRED)
+find_package(Imath REQUIRED)
+find_package(OpenEXR REQUIRED)
+find_package(pugixml REQUIRED)
+find_package(fmt REQUIRED)
+find_package(spdlog REQUIRED)
+find_package(ZLIB REQUIRED)
+find_package(nlohmann_json REQUIRED)
+
+# Debian 12 has Embree 3, later releases have Embree 4.
+find_package(embree 4 QUIET)
+if(NOT embree_FOUND)
+  find_package(embree 3 REQUIRED)
+endif()
+
+# stb and tinyobjloader are used as headers. stb lies in a folder of its own on Debian, not everywhere.
+find_path(STB_INCLUDE_DIR stb_image.h PATH_SUFFIXES stb REQUIRED)
+mark_as_advanced(STB_INCLUDE_DIR)
+add_library(stb INTERFACE)
+target_include_directories(stb SYSTEM INTERFACE ${STB_INCLUDE_DIR})
+find_path(TINYOBJLOADER_INCLUDE_DIR tiny_obj_loader.h REQUIRED)
+mark_as_advanced(TINYOBJLOADER_INCLUDE_DIR)
+add_library(tinyobjloader INTERFACE)
+target_include_directories(tinyobjloader SYSTEM INTERFACE ${TINYOBJLOADER_INCLUDE_DIR})
+
+if(ODIS_APPS)
+  find_package(CLI11 REQUIRED)
+endif()

@@ -1,0 +1,37 @@
+#include "eval/image_file.h"
+
+#include <array>
+#include <stdexcept>
+
+#include "render/image/write.h"
+
+namespace odis::eval {
+
+ColorImage readColor(const std::string& path) {
+  const render::ExrFile file = render::readExr(path);
+  std::array<const std::vector<float>*, 3> channels{};
+  const std::array<std::string, 3> names{"R", "G", "B"};
+  for (size_t i = 0; i < names.size(); ++i) {
+    auto found = file.channels.find(names[i]);
+    if (found == file.channels.end()) found = file.channels.find("Y");
+    if (found == file.channels.end())
+      throw std::runtime_error(path + ": no colour; expected channels R, G and B, or Y");
+    channels[i] = &found->second;
+  }
+  ColorImage image{file.window.width, file.window.height, {}};
+  image.pixels.resize(channels[0]->size());
+  for (size_t i = 0; i < image.pixels.size(); ++i)
+    image.pixels[i] = {(*channels[0])[i], (*channels[1])[i], (*channels[2])[i]};
+  return image;
+}
+
+void writeColor(const std::string& path, const render::Frame2D& frame, int fullWidth, int fullHeight,
+                const std::map<std::string, std::string>& metadata) {
+  std::vector<float> planes[3];
+  for (int channel = 0; channel < 3; ++channel)
+    for (const render::Rgb& pixel : frame.color) planes[channel].push_back(pixel[channel]);
+  render::writeExr(path, {fullWidth, fullHeight, frame.x, frame.y, frame.width, frame.height},
+                   {{"R", planes[0].data()}, {"G", planes[1].data()}, {"B", planes[2].data()}}, metadata);
+}
+
+}  // namespace odis::eval

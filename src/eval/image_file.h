@@ -1,0 +1,23 @@
+// Reading and writing the colour image of an EXR file.
+#pragma once
+
+#include <map>
+#include <string>
+#include <vector>
+
+#include "render/integrator/render.h"
+
+namespace odis::eval {
+
+struct ColorImage {
+  int width = 0, height = 0;
+  std::vector<render::Rgb> pixels;
+};
+
+// Channels R, G and B of the layer without a name, else Y. Throws std::runtime_error with path and reason.
+ColorImage readColor(const std::string& path);
+// Writes the colour alone. Throws std::runtime_error with path and reason.
+void writeColor(const std::string& path, const render::Frame2D& frame, int fullWidth, int fullHeight,
+                const std::map<std::string, std::string>& metadata);
+
+}  // namespace odis::eval

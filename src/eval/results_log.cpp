@@ -1,0 +1,78 @@
+#include "eval/results_log.h"
+
+#include <filesystem>
+#include <fstream>
+#include <limits>
+#include <nlohmann/json.hpp>
+#include <stdexcept>
+
+namespace odis::eval {
+
+using Json = nlohmann::json;
+
+// JSON has no infinity; nlohmann writes null.
+static double numberOrInfinity(const Json& value) {
+  return value.is_number() ? value.get<double>() : std::numeric_limits<double>::infinity();
+}
+
+static Measurement fromJson(const Json& json) {
+  Measurement m;
+  m.scene = json.at("scene");
+  m.method = json.at("method");
+  m.seed = json.at("seed");
+  m.key = json.at("key");
+  m.error.mse = numberOrInfinity(json.at("mse"));
+  m.error.relMse = numberOrInfinity(json.at("relMse"));
+  m.error.trimmedRelMse = numberOrInfinity(json.at("trimmedRelMse"));
+  m.error.smape = numberOrInfinity(json.at("smape"));
+  m.error.nonFinitePixels = json.at("nonFinitePixels");
+  m.seconds = json.at("seconds");
+  m.spp = json.at("spp");
+  m.rays = json.at("rays");
+  m.image = json.at("image");
+  return m;
+}
+
+static Json toJson(const Measurement& m) {
+  return {{"scene", m.scene},
+          {"method", m.method},
+          {"seed", m.seed},
+          {"key", m.key},
+          {"mse", m.error.mse},
+          {"relMse", m.error.relMse},
+          {"trimmedRelMse", m.error.trimmedRelMse},
+          {"smape", m.error.smape},
+          {"nonFinitePixels", m.error.nonFinitePixels},
+          {"seconds", m.seconds},
+          {"spp", m.spp},
+          {"rays", m.rays},
+          {"image", m.image}};
+}
+
+ResultsLog::ResultsLog(std::string path, bool fresh) : m_path(std::move(path)) {
+  if (fresh) std::filesystem::remove(m_path);
+  std::ifstream stream(m_path);
+  for (std::string line; std::getline(stream, line);) {
+    try {
+      Measurement measurement = fromJson(Json::parse(line));
+      m_byKey[measurement.key] = measurement;
+    } catch (const Json::exception&) {
+      continue;  // cut off by a crash: rendered again
+    }
+  }
+}
+
+const Measurement* ResultsLog::find(const std::string& key) const {
+  const auto found = m_byKey.find(key);
+  return found == m_byKey.end() ? nullptr : &found->second;
+}
+
+void ResultsLog::add(const Measurement& measurement) {
+  std::ofstream stream(m_path, std::ios::app);
+  stream << toJson(measurement).dump() << '\n';
+  stream.close();
+  if (!stream) throw std::runtime_error(m_path + ": cannot be written");
+  m_byKey[measurement.key] = measurement;
+}
+
+}  // namespace odis::eval

@@ -1,0 +1,24 @@
+// Indices of refraction by name.
+#pragma once
+
+#include <string>
+
+#include "render/scene/properties.h"
+
+namespace odis::render {
+
+// A measured complex index of refraction, as linear RGB.
+struct Metal {
+  const char* name;
+  float eta[3], k[3];
+};
+// Null if the name is unknown; upper and lower case count as in Mitsuba's file names.
+const Metal* findMetal(const std::string& name);
+
+// The index of refraction that the parameter states as a number or as the name of a material. Throws
+// SceneError if the name is unknown or the number not positive.
+float readIor(const Properties& properties, const std::string& name, const std::string& fallback);
+
+std::string lowerCase(std::string text);
+
+}  // namespace odis::render

@@ -1,0 +1,57 @@
+// mask: lets a part of the light pass straight through, the rest meets the nested BSDF.
+//
+//   opacity         number or texture; 0.5
+//   (nested bsdf)   one
+#include "render/bsdf/factories.h"
+#include "render/bsdf/parameter.h"
+
+namespace odis::render {
+namespace {
+
+class Mask final : public Bsdf {
+ public:
+  Mask(BsdfPtr nested, ScalarParameter opacity) : m_nested(std::move(nested)), m_opacity(std::move(opacity)) {
+    m_traits = {m_nested->traits().evaluable, true};
+  }
+
+  BsdfSample sample(const SurfacePoint& at, const Vec3& wo, float uLobe, const Vec2& u) const override {
+    const float opacity = opacityAt(at);
+    if (uLobe >= opacity) return discreteSample(-wo, Rgb(1.0f), 1 - opacity, Lobe::null);
+    BsdfSample result = m_nested->sample(at, wo, std::min(uLobe / opacity, kOneMinusEpsilon), u);
+    result.pdf *= opacity;
+    result.guidablePdf *= opacity;
+    return result;
+  }
+
+  BsdfValue evaluate(const SurfacePoint& at, const Vec3& wo, const Vec3& wi) const override {
+    BsdfValue result = m_nested->evaluate(at, wo, wi);
+    if (!(result.pdf > 0)) return result;
+    const float opacity = opacityAt(at);
+    return {result.value * opacity, result.pdf * opacity, result.guidablePdf * opacity};
+  }
+
+  float guidableProbability(const SurfacePoint& at, const Vec3& wo) const override {
+    return m_nested->guidableProbability(at, wo) * opacityAt(at);
+  }
+
+  BsdfFeatures features(const SurfacePoint& at, const Vec3& wo) const override {
+    const float opacity = opacityAt(at);
+    const BsdfFeatures nested = m_nested->features(at, wo);
+    return {lerp(opacity, Rgb(1.0f), nested.albedo), opacity < 0.5f ? 0 : nested.roughness};
+  }
+
+ private:
+  float opacityAt(const SurfacePoint& at) const { return std::min(std::max(0.0f, m_opacity(at)), 1.0f); }
+
+  BsdfPtr m_nested;
+  ScalarParameter m_opacity;
+};
+
+}  // namespace
+
+BsdfPtr makeMask(const Properties& properties, Builder& builder) {
+  return std::make_shared<Mask>(builder.nestedBsdf(properties, 0),
+                                readScalar(properties, builder, "opacity", 0.5f));
+}
+
+}  // namespace odis::render

@@ -1,0 +1,138 @@
+// Distributions of microfacet normals: Beckmann and GGX, isotropic or anisotropic.
+//
+// Walter et al. 2007, "Microfacet Models for Refraction through Rough Surfaces"; Heitz and d'Eon 2014,
+// "Importance Sampling Microfacet-Based BSDFs using the Distribution of Visible Normals"; Heitz 2018,
+// "Sampling the GGX Distribution of Visible Normals"; Jakob 2014, "An Improved Visible Normal Sampling
+// Routine for the Beckmann Distribution".
+#pragma once
+
+#include "render/bsdf/bsdf.h"
+#include "render/math/warp.h"
+
+namespace odis::render {
+
+// Inverse of the error function in single precision (Giles 2010, "Approximating the erfinv Function").
+inline float inverseErf(float x) {
+  float w = -std::log((1 - x) * (1 + x)), p;
+  if (w < 5) {
+    w -= 2.5f;
+    p = 2.81022636e-08f;
+    for (const float c : {3.43273939e-07f, -3.5233877e-06f, -4.39150654e-06f, 0.00021858087f, -0.00125372503f,
+                          -0.00417768164f, 0.246640727f, 1.50140941f})
+      p = c + p * w;
+  } else {
+    w = std::sqrt(w) - 3;
+    p = -0.000200214257f;
+    for (const float c : {0.000100950558f, 0.00134934322f, -0.00367342844f, 0.00573950773f, -0.0076224613f,
+                          0.00943887047f, 1.00167406f, 2.83297682f})
+      p = c + p * w;
+  }
+  return p * x;
+}
+
+class Microfacet {
+ public:
+  enum class Type : uint8_t { beckmann, ggx };
+
+  // Roughness is clamped to [1e-4, 10]; not-a-number counts as perfectly smooth.
+  Microfacet(Type type, float alphaU, float alphaV, bool sampleVisible = true)
+      : m_alphaU(std::min(std::max(1e-4f, alphaU), 10.0f)),
+        m_alphaV(std::min(std::max(1e-4f, alphaV), 10.0f)),
+        m_type(type),
+        m_sampleVisible(sampleVisible) {}
+
+  float alphaMax() const { return std::max(m_alphaU, m_alphaV); }
+
+  // How the lobe of this distribution counts for guiding.
+  Lobe lobe() const { return alphaMax() < kMinGuidedRoughness ? Lobe::nearDelta : Lobe::smooth; }
+
+  // The same distribution with its roughness scaled.
+  Microfacet scaled(float factor) const {
+    return {m_type, m_alphaU * factor, m_alphaV * factor, m_sampleVisible};
+  }
+
+  // Density of facets over projected area: integrates to one when weighted by cos(theta_m). `m` is in z >= 0.
+  float d(const Vec3& m) const {
+    const float slopes = sqr(m.x / m_alphaU) + sqr(m.y / m_alphaV), c2 = m.z * m.z;
+    const float scale = kPi * m_alphaU * m_alphaV;
+    const float result = m_type == Type::beckmann ? std::exp(-slopes / c2) / (scale * c2 * c2)
+                                                  : 1 / (scale * sqr(slopes + c2));
+    // Far tails would only produce denormals and infinite weights.
+    return result * m.z > 1e-20f ? result : 0;
+  }
+
+  // Smith's masking of direction v; zero if v sees the facet's back.
+  float g1(const Vec3& v, const Vec3& m) const {
+    if (dot(v, m) * v.z <= 0) return 0;
+    const float projected = sqr(m_alphaU * v.x) + sqr(m_alphaV * v.y);
+    if (projected == 0) return 1;
+    if (m_type == Type::ggx) return 2 / (1 + std::sqrt(1 + projected / (v.z * v.z)));
+    const float a = std::abs(v.z) / std::sqrt(projected);
+    // The exact form, not the usual rational fit: densities must integrate to one.
+    return a > 4 ? 1 : 2 / (1 + std::erf(a) + std::exp(-a * a) / (a * 1.77245385f));
+  }
+  float g(const Vec3& a, const Vec3& b, const Vec3& m) const { return g1(a, m) * g1(b, m); }
+
+  // Solid-angle density of sample(); w.z > 0.
+  float pdf(const Vec3& w, const Vec3& m) const {
+    return m_sampleVisible ? d(m) * g1(w, m) * absDot(w, m) / w.z : d(m) * m.z;
+  }
+
+  // A facet normal: one that is visible from w (w.z > 0), unless told otherwise at construction.
+  Vec3 sample(const Vec3& w, const Vec2& u) const {
+    if (!m_sampleVisible) return sampleAll(u);
+    // Stretched by the roughness, the surface has unit roughness.
+    const Vec3 v = normalize(Vec3(m_alphaU * w.x, m_alphaV * w.y, w.z));
+    const float planar = v.x * v.x + v.y * v.y;
+    const float r = std::sqrt(planar);
+    const Vec2 axis = planar > 1e-12f ? Vec2(v.x / r, v.y / r) : Vec2(1, 0);
+    if (m_type == Type::ggx) {
+      const Vec3 t1(-axis.y, axis.x, 0), t2 = cross(v, t1);
+      const Vec2 disk = squareToDisk(u);
+      const float s = 0.5f * (1 + v.z);
+      const float y = lerp(s, safeSqrt(1 - disk.x * disk.x), disk.y);
+      const Vec3 n = t1 * disk.x + t2 * y + v * safeSqrt(1 - disk.x * disk.x - y * y);
+      return normalize(Vec3(m_alphaU * n.x, m_alphaV * n.y, std::max(n.z, 1e-7f)));
+    }
+    const float along = sampleBeckmannSlope(v.z, r, u.x);
+    const float across = inverseErf(std::clamp(2 * u.y - 1, -0.999999f, 0.999999f));
+    return normalize(Vec3(-m_alphaU * (axis.x * along - axis.y * across),
+                          -m_alphaV * (axis.y * along + axis.x * across), 1));
+  }
+
+ private:
+  // Density d(m) cos(theta_m).
+  Vec3 sampleAll(const Vec2& u) const {
+    const float t2 = m_type == Type::beckmann ? -std::log1p(-u.x) : u.x / (1 - u.x);
+    const float phi = 2 * kPi * u.y, r = std::sqrt(t2);
+    return normalize(Vec3(m_alphaU * r * std::cos(phi), m_alphaV * r * std::sin(phi), 1));
+  }
+
+  // Slope along the direction of view, for unit roughness: inverts the distribution function in the domain of
+  // erf(slope) with Newton's method, which is kept inside a shrinking bracket.
+  static float sampleBeckmannSlope(float cosTheta, float sinTheta, float u) {
+    u = std::clamp(u, 1e-6f, 1 - 1e-6f);
+    const float tangent = std::min(sinTheta / cosTheta, 1e6f);
+    const float cotangent = cosTheta / std::max(sinTheta, 1e-6f);
+    constexpr float invSqrtPi = 0.564189584f;
+    const float top = std::erf(cotangent);
+    float low = -1, high = top;
+    const float target = u * (1 + top + invSqrtPi * tangent * std::exp(-cotangent * cotangent));
+    float x = top - (top + 1) * std::erf(std::sqrt(-std::log(u)));
+    for (int i = 0; i < 12; ++i) {
+      if (!(x > low && x < high)) x = 0.5f * (low + high);
+      const float slope = inverseErf(x);
+      const float excess = 1 + x + invSqrtPi * tangent * std::exp(-slope * slope) - target;
+      if (std::abs(excess) < 1e-6f) break;
+      (excess > 0 ? high : low) = x;
+      x -= excess / (1 - slope * tangent);
+    }
+    return inverseErf(std::clamp(x, -0.9999999f, 0.9999999f));
+  }
+
+  float m_alphaU, m_alphaV;
+  Type m_type;
+  bool m_sampleVisible;
+};
+
+}  // namespace odis::render

@@ -1,0 +1,93 @@
+#include "render/bsdf/parameter.h"
+
+#include <fmt/format.h>
+
+#include "render/bsdf/fresnel.h"
+#include "render/bsdf/ior.h"
+#include "render/scene/builder.h"
+
+namespace odis::render {
+
+RgbParameter readReflectance(const Properties& properties, Builder& builder, const std::string& name,
+                             float fallback) {
+  const RgbParameter result(builder.texture(properties, name, Rgb(fallback)));
+  if (!result.isConstant()) return result;
+  Rgb clamped;
+  for (int i = 0; i < 3; ++i) clamped[i] = std::min(std::max(0.0f, result.mean()[i]), 1.0f);
+  if (clamped == result.mean()) return result;
+  builder.warn(properties.location,
+               fmt::format("\"{}\" of {} is outside [0, 1] and was clamped", name, properties.type));
+  return clamped;
+}
+
+ScalarParameter readScalar(const Properties& properties, Builder& builder, const std::string& name,
+                           float fallback) {
+  return ScalarParameter(builder.texture(properties, name, Rgb(fallback)));
+}
+
+RoughnessParameters readRoughness(const Properties& properties, Builder& builder) {
+  RoughnessParameters result;
+  const std::string distribution = lowerCase(properties.string("distribution", "beckmann"));
+  if (distribution == "ggx") {
+    result.type = Microfacet::Type::ggx;
+  } else if (distribution == "phong" || distribution == "as") {
+    builder.warn(properties.location,
+                 "the \"" + distribution +
+                     "\" distribution of microfacets is drawn as the \"beckmann\" distribution "
+                     "of the same roughness");
+  } else if (distribution != "beckmann") {
+    throw SceneError(properties.location, "unknown distribution of microfacets \"" + distribution +
+                                              "\", expected \"beckmann\" or \"ggx\"");
+  }
+  result.sampleVisible = properties.boolean("sample_visible", true);
+  const TexturePtr alpha = builder.optionalTexture(properties, "alpha");
+  const TexturePtr alphaU = builder.optionalTexture(properties, "alpha_u");
+  const TexturePtr alphaV = builder.optionalTexture(properties, "alpha_v");
+  if (!alphaU != !alphaV)
+    throw SceneError(properties.location, "\"alpha_u\" and \"alpha_v\" must be given together");
+  if (alpha && alphaU)
+    throw SceneError(properties.location,
+                     "found both \"alpha\" and \"alpha_u\", \"alpha_v\", expected one or the other");
+  if (alphaU) {
+    result.alphaU = ScalarParameter(alphaU);
+    result.alphaV = ScalarParameter(alphaV);
+  } else {
+    result.alphaU = result.alphaV = alpha ? ScalarParameter(alpha) : ScalarParameter(0.1f);
+  }
+  return result;
+}
+
+float readRelativeIor(const Properties& properties, const std::string& interior,
+                      const std::string& exterior) {
+  return readIor(properties, "int_ior", interior) / readIor(properties, "ext_ior", exterior);
+}
+
+Rgb ComplexIor::reflectance(const SurfacePoint& at, float cosTheta) const {
+  return fresnelConductor(cosTheta, eta(at) * scale, k(at) * scale);
+}
+
+ComplexIor readComplexIor(const Properties& properties, Builder& builder) {
+  ComplexIor result;
+  const std::string material = properties.string("material", "none");
+  const TexturePtr eta = builder.optionalTexture(properties, "eta"),
+                   k = builder.optionalTexture(properties, "k");
+  if (eta || k || material == "none") {
+    if (material != "none")
+      builder.warn(properties.location,
+                   "found both \"material\" and \"eta\", \"k\"; the material is ignored");
+    result.eta = eta ? RgbParameter(eta) : RgbParameter(Rgb(0.0f));
+    result.k = k ? RgbParameter(k) : RgbParameter(Rgb(1.0f));
+  } else {
+    const Metal* metal = findMetal(material);
+    if (!metal)
+      throw SceneError(properties.location,
+                       "unknown material \"" + material +
+                           "\", expected a metal such as \"Au\", \"Ag\", \"Al\", \"Cu\", or \"none\"");
+    result.eta = Rgb(metal->eta[0], metal->eta[1], metal->eta[2]);
+    result.k = Rgb(metal->k[0], metal->k[1], metal->k[2]);
+  }
+  if (properties.has("ext_eta")) result.scale = 1 / readIor(properties, "ext_eta", "air");
+  return result;
+}
+
+}  // namespace odis::render

@@ -1,0 +1,107 @@
+// Parameters of the models: textures whose look-up costs nothing where they are constant, and shared ways of
+// reading.
+#pragma once
+
+#include "render/bsdf/bsdf.h"
+#include "render/bsdf/microfacet.h"
+#include "render/scene/properties.h"
+#include "render/texture/texture.h"
+
+namespace odis::render {
+
+class Builder;
+
+class RgbParameter {
+ public:
+  RgbParameter(const Rgb& constant = Rgb(0.0f)) : m_mean(constant) {}
+  explicit RgbParameter(const TexturePtr& texture)
+      : m_texture(texture->isConstant() ? nullptr : texture), m_mean(texture->mean()) {}
+
+  Rgb operator()(const SurfacePoint& at) const { return m_texture ? m_texture->rgb(at.uv) : m_mean; }
+  const Rgb& mean() const { return m_mean; }
+  bool isConstant() const { return !m_texture; }
+
+ private:
+  TexturePtr m_texture;
+  Rgb m_mean;
+};
+
+class ScalarParameter {
+ public:
+  ScalarParameter(float constant = 0) : m_mean(constant) {}
+  explicit ScalarParameter(const TexturePtr& texture) : m_texture(texture->isConstant() ? nullptr : texture) {
+    const Rgb mean = texture->mean();
+    m_mean = mean.x == mean.y && mean.y == mean.z ? mean.x : luminance(mean);
+  }
+
+  float operator()(const SurfacePoint& at) const { return m_texture ? m_texture->scalar(at.uv) : m_mean; }
+  float mean() const { return m_mean; }
+  bool isConstant() const { return !m_texture; }
+  bool isZero() const { return !m_texture && m_mean == 0; }
+
+ private:
+  TexturePtr m_texture;
+  float m_mean;
+};
+
+// A reflectance or transmittance: a constant outside [0, 1] is clamped, with a warning.
+RgbParameter readReflectance(const Properties& properties, Builder& builder, const std::string& name,
+                             float fallback);
+ScalarParameter readScalar(const Properties& properties, Builder& builder, const std::string& name,
+                           float fallback);
+
+// Index of refraction of the inside over that of the outside, each a number or the name of a material.
+float readRelativeIor(const Properties& properties, const std::string& interior,
+                      const std::string& exterior = "air");
+
+// The complex index of refraction of a metal: "eta" and "k", or "material"; "ext_eta" divides both.
+struct ComplexIor {
+  RgbParameter eta, k;
+  float scale = 1;  // reciprocal of the exterior's index
+
+  Rgb reflectance(const SurfacePoint& at, float cosTheta) const;
+};
+ComplexIor readComplexIor(const Properties& properties, Builder& builder);
+
+// "distribution" (beckmann), "alpha" (0.1) or "alpha_u" and "alpha_v", "sample_visible" (true).
+struct RoughnessParameters {
+  Microfacet::Type type = Microfacet::Type::beckmann;
+  ScalarParameter alphaU, alphaV;
+  bool sampleVisible = true;
+
+  Microfacet operator()(const SurfacePoint& at) const {
+    return {type, alphaU(at), alphaV(at), sampleVisible};
+  }
+};
+RoughnessParameters readRoughness(const Properties& properties, Builder& builder);
+
+// A finished sample from the value and density of the direction; a failed one if there is no density.
+inline BsdfSample finishSample(const Vec3& wi, const BsdfValue& value, Lobe lobe, float eta = 1) {
+  BsdfSample result;
+  if (!(value.pdf > 0) || !isFinite(value.value)) return result;
+  result.wi = wi;
+  result.weight = value.value / value.pdf;
+  result.pdf = value.pdf;
+  result.guidablePdf = value.guidablePdf;
+  result.eta = eta;
+  result.lobe = lobe;
+  return result;
+}
+
+// A sample of a discrete direction.
+inline BsdfSample discreteSample(const Vec3& wi, const Rgb& weight, float probability, Lobe lobe,
+                                 float eta = 1) {
+  BsdfSample result;
+  result.wi = wi;
+  result.weight = weight;
+  result.pdf = probability;
+  result.eta = eta;
+  result.lobe = lobe;
+  return result;
+}
+
+inline Rgb clampUnit(const Rgb& c) {
+  return {std::clamp(c.x, 0.0f, 1.0f), std::clamp(c.y, 0.0f, 1.0f), std::clamp(c.z, 0.0f, 1.0f)};
+}
+
+}  // namespace odis::render

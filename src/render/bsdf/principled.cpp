@@ -1,0 +1,146 @@
+// principled: Disney's artist-friendly model of opaque, metallic and transparent surfaces (Burley 2012 and
+// 2015).
+//
+// All parameters are in [0, 1] unless noted; all but the last five may be textures.
+//   base_color       rgb, 0.5: albedo of the diffuse part, reflectance of the metallic part at normal
+//   incidence roughness        0.5: its square is the GGX roughness of the interface (at least 0.001)
+//   anisotropic      0: lengthens highlights along the tangent
+//   metallic         0: blends from dielectric to metal
+//   spec_trans       0: blends the dielectric from opaque to transparent
+//   spec_tint        0: colours the dielectric's reflection
+//   sheen, sheen_tint          0, 0: cloth-like reflection at grazing angles, and its colour
+//   flatness         0: blends the diffuse part towards an approximation of subsurface scattering
+//   clearcoat, clearcoat_gloss 0, 0: a second interface, and how glossy it is
+//   specular         0.5: reflectance of the dielectric; eta = 2 / (1 - sqrt(0.08 specular)) - 1
+//   eta              index of refraction (any positive number), instead of specular
+//   main_specular_sampling_rate, clearcoat_sampling_rate, diffuse_reflectance_sampling_rate
+//                    1: relative rates at which the lobes are sampled
+#include "render/bsdf/principled.h"
+
+#include "render/bsdf/factories.h"
+#include "render/bsdf/parameter.h"
+
+namespace odis::render {
+namespace {
+
+struct PrincipledParameters {
+  RgbParameter baseColor;
+  ScalarParameter roughness, anisotropic, metallic, specularTransmission, specularTint, sheen, sheenTint,
+      flatness, clearcoat, clearcoatGloss;
+  float eta, specularRate, clearcoatRate, diffuseRate;
+};
+
+float unit(float x) {
+  return std::min(std::max(0.0f, x), 1.0f);
+}
+
+class Principled final : public Bsdf {
+ public:
+  explicit Principled(PrincipledParameters parameters) : m_parameters(std::move(parameters)) {
+    m_traits.transmissive = !m_parameters.specularTransmission.isZero();
+  }
+
+  BsdfSample sample(const SurfacePoint& at, const Vec3& wo, float uLobe, const Vec2& u) const override {
+    return point(at).sample(wo, uLobe, u);
+  }
+
+  BsdfValue evaluate(const SurfacePoint& at, const Vec3& wo, const Vec3& wi) const override {
+    // Nothing passes through an opaque surface or shines behind it: save the look-ups.
+    if (!m_traits.transmissive && (!(wo.z > 0) || !(wi.z > 0))) return {};
+    return point(at).evaluate(wo, wi);
+  }
+
+  float guidableProbability(const SurfacePoint& at, const Vec3& wo) const override {
+    const PrincipledPoint here = point(at);
+    if (wo.z == 0 || (wo.z < 0 && !(here.transparent() > 0))) return 0;
+    const auto p = here.probabilities(wo.z > 0, 0);
+    return p.diffuse + (here.coat.lobe() == Lobe::smooth ? p.clearcoat : 0) +
+           (here.facets.lobe() == Lobe::smooth ? p.transmission + p.reflection : 0);
+  }
+
+  BsdfFeatures features(const SurfacePoint& at, const Vec3& wo) const override {
+    const PrincipledPoint here = point(at);
+    const Rgb color = clampUnit(here.baseColor);
+    const float r0 = sqr((here.eta - 1) / (here.eta + 1));
+    const Rgb through(safeSqrt(color.x), safeSqrt(color.y), safeSqrt(color.z));
+    const Rgb base = color * here.opaque();
+    const Rgb interface =
+        color * here.metallic + through * here.transparent() + Rgb((1 - here.metallic) * r0);
+    const bool diffuse = wo.z > 0 && luminance(base) > luminance(interface);
+    return {clampUnit(base + interface), diffuse ? 1 : std::min(here.facets.alphaMax(), 1.0f)};
+  }
+
+ private:
+  PrincipledPoint point(const SurfacePoint& at) const {
+    const PrincipledParameters& p = m_parameters;
+    const float roughness = unit(p.roughness(at));
+    const float aspect = std::sqrt(1 - 0.9f * unit(p.anisotropic(at)));
+    const float alpha = sqr(roughness);
+    return {
+        p.baseColor(at),
+        roughness,
+        unit(p.metallic(at)),
+        unit(p.specularTransmission(at)),
+        unit(p.specularTint(at)),
+        unit(p.sheen(at)),
+        unit(p.sheenTint(at)),
+        unit(p.flatness(at)),
+        unit(p.clearcoat(at)),
+        p.eta,
+        Microfacet(Microfacet::Type::ggx, std::max(0.001f, alpha / aspect), std::max(0.001f, alpha * aspect)),
+        ClearcoatFacets(p.clearcoatGloss(at)),
+        p.specularRate,
+        p.clearcoatRate,
+        p.diffuseRate};
+  }
+
+  PrincipledParameters m_parameters;
+};
+
+float readEta(const Properties& properties, bool transparent) {
+  if (properties.has("eta")) {
+    if (properties.has("specular"))
+      throw SceneError(properties.location, "found both \"eta\" and \"specular\", expected one or the other");
+    const float eta = properties.number("eta");
+    if (!(eta > 0) || !std::isfinite(eta))
+      throw SceneError(properties.location, "\"eta\" is not a positive number");
+    // Without a change of index there is no direction of refraction.
+    return transparent && eta == 1 ? 1.001f : eta;
+  }
+  const float specular = unit(properties.number("specular", 0.5f));
+  return 2 / (1 - std::sqrt(0.08f * (transparent && specular == 0 ? 1e-3f : specular))) - 1;
+}
+
+float readRate(const Properties& properties, const std::string& name) {
+  const float rate = properties.number(name, 1.0f);
+  if (!(rate >= 0) || !std::isfinite(rate))
+    throw SceneError(properties.location, "\"" + name + "\" is negative");
+  return rate;
+}
+
+}  // namespace
+
+BsdfPtr makePrincipled(const Properties& properties, Builder& builder) {
+  const auto scalar = [&](const char* name, float fallback) {
+    return readScalar(properties, builder, name, fallback);
+  };
+  PrincipledParameters p;
+  p.baseColor = readReflectance(properties, builder, "base_color", 0.5f);
+  p.roughness = scalar("roughness", 0.5f);
+  p.anisotropic = scalar("anisotropic", 0);
+  p.metallic = scalar("metallic", 0);
+  p.specularTransmission = scalar("spec_trans", 0);
+  p.specularTint = scalar("spec_tint", 0);
+  p.sheen = scalar("sheen", 0);
+  p.sheenTint = scalar("sheen_tint", 0);
+  p.flatness = scalar("flatness", 0);
+  p.clearcoat = scalar("clearcoat", 0);
+  p.clearcoatGloss = scalar("clearcoat_gloss", 0);
+  p.eta = readEta(properties, !p.specularTransmission.isZero());
+  p.specularRate = readRate(properties, "main_specular_sampling_rate");
+  p.clearcoatRate = readRate(properties, "clearcoat_sampling_rate");
+  p.diffuseRate = readRate(properties, "diffuse_reflectance_sampling_rate");
+  return std::make_shared<Principled>(std::move(p));
+}
+
+}  // namespace odis::render

@@ -1,0 +1,33 @@
+// Names of the BSDF plugins.
+#include <utility>
+
+#include "render/bsdf/factories.h"
+
+namespace odis::render {
+
+BsdfFactory findBsdfFactory(const std::string& type) {
+  static constexpr std::pair<const char*, BsdfFactory> kFactories[] = {
+      {"blendbsdf", makeBlend},
+      {"bumpmap", makeBumpMap},
+      {"conductor", makeConductor},
+      {"dielectric", makeDielectric},
+      {"diffuse", makeDiffuse},
+      {"mask", makeMask},
+      {"normalmap", makeNormalMap},
+      {"null", makeNull},
+      {"phong", makePhong},
+      {"plastic", makePlastic},
+      {"principled", makePrincipled},
+      {"roughconductor", makeRoughConductor},
+      {"roughdielectric", makeRoughDielectric},
+      {"roughdiffuse", makeRoughDiffuse},
+      {"roughplastic", makeRoughPlastic},
+      {"thindielectric", makeThinDielectric},
+      {"twosided", makeTwoSided},
+  };
+  for (const auto& [name, factory] : kFactories)
+    if (type == name) return factory;
+  return nullptr;
+}
+
+}  // namespace odis::render

@@ -1,0 +1,57 @@
+// area: a shape that emits light.
+//
+//   radiance   texture, rgb or number   what leaves every point in every direction, W/(m^2 sr); default 1
+//
+// Nested in a shape. It emits on the side that the shading normal points to; the other side is black. Points
+// are drawn by the shape: by the cone that it fills where the shape knows it (spheres), else uniformly by
+// area. A textured radiance is looked up at the point's uv and does not steer where points are drawn.
+#include "render/emitter/area.h"
+
+#include "render/scene/builder.h"
+
+namespace odis::render {
+
+EmitterSample AreaLight::sample(const Vec3& ref, const Vec2& u) const {
+  const ShapeSample point = m_shape.sample(ref, u);
+  if (!(point.pdf > 0)) return {};
+  return {.wi = point.wi,
+          .distance = point.distance,
+          .radiance = radiance(point.at, -point.wi),
+          .pdf = point.pdf,
+          .delta = false};
+}
+
+// One side of the surface emits the same radiance over a hemisphere whose projected solid angle is pi.
+float AreaLight::power() const {
+  return kPi * m_shape.area() * average(m_radiance->mean());
+}
+
+Rgb AreaLight::radiance(const SurfacePoint& at, const Vec3& wo) const {
+  if (!(dot(at.shading.n, wo) > 0)) return {0, 0, 0};
+  return m_radiance->rgb(at.uv);
+}
+
+float AreaLight::pdf(const Vec3& ref, const SurfacePoint& at) const {
+  return m_shape.pdf(ref, at);
+}
+
+std::shared_ptr<SurfaceEmitter> makeSurfaceEmitter(const Properties& node, const Shape& shape,
+                                                   Builder& builder) {
+  if (node.type != "area")
+    throw SceneError(node.location,
+                     "a shape cannot carry the emitter \"" + node.type + "\"; expected \"area\"");
+  TexturePtr radiance = builder.texture(node, "radiance", {1, 1, 1});
+  const auto parameter = node.parameters.find("radiance");
+  const SourceLocation& at = parameter != node.parameters.end() ? parameter->second.location : node.location;
+  const Rgb mean = radiance->mean();
+  if (!isFinite(mean)) throw SceneError(at, "the radiance of an area light is not a finite number");
+  if (mean.x < 0 || mean.y < 0 || mean.z < 0)
+    throw SceneError(at, "the radiance of an area light is negative; expected zero or more");
+  if (!(shape.area() > 0) || !std::isfinite(shape.area())) {
+    builder.warn(node.location, "an area light on a shape without area emits nothing and is left out");
+    return nullptr;
+  }
+  return std::make_shared<AreaLight>(shape, std::move(radiance));
+}
+
+}  // namespace odis::render

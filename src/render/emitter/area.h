@@ -1,0 +1,24 @@
+// Light leaving a surface. Manual page in area.cpp.
+#pragma once
+
+#include "render/emitter/emitter.h"
+#include "render/texture/texture.h"
+
+namespace odis::render {
+
+class AreaLight final : public SurfaceEmitter {
+ public:
+  // The shape owns the light, so it outlives it.
+  AreaLight(const Shape& shape, TexturePtr radiance) : m_shape(shape), m_radiance(std::move(radiance)) {}
+
+  EmitterSample sample(const Vec3& ref, const Vec2& u) const override;
+  float power() const override;
+  Rgb radiance(const SurfacePoint& at, const Vec3& wo) const override;
+  float pdf(const Vec3& ref, const SurfacePoint& at) const override;
+
+ private:
+  const Shape& m_shape;
+  TexturePtr m_radiance;
+};
+
+}  // namespace odis::render

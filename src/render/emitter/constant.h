@@ -1,0 +1,23 @@
+// The same radiance from everywhere. Manual page in constant.cpp.
+#pragma once
+
+#include "render/emitter/emitter.h"
+
+namespace odis::render {
+
+class ConstantEnvironment final : public EnvironmentEmitter {
+ public:
+  explicit ConstantEnvironment(const Rgb& radiance) : m_radiance(radiance) {}
+
+  EmitterSample sample(const Vec3& ref, const Vec2& u) const override;
+  float power() const override;
+  void setSceneBounds(const SceneBounds& bounds) override { m_sceneRadius = bounds.radius; }
+  Rgb radiance(const Vec3&) const override { return m_radiance; }
+  float pdf(const Vec3& ref, const Vec3& wi) const override;
+
+ private:
+  Rgb m_radiance;
+  float m_sceneRadius = 1;
+};
+
+}  // namespace odis::render

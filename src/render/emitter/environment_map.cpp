@@ -1,0 +1,172 @@
+// envmap: light from infinitely far away, given by an equirectangular image.
+//
+//   filename   string      HDR, EXR or an 8-bit image
+//   scale      number      multiplies the radiance; default 1
+//   to_world   transform   turns the image; default identity: the top of the image is +Y, its middle -Z seen
+//   from inside gamma      number      of 8-bit images: 1 means linear, -1 sRGB; default sRGB
+//
+// Along with Mitsuba 3, a direction d of the image's own space has u = atan2(d.x, -d.z) / 2 pi and v =
+// acos(d.y) / pi. Columns are centred within pixels and wrap around; rows are spread from pole to pole, the
+// first lies on the upper one. Between the pixels the radiance is bilinear.
+//
+// A table drives the sampling: a cell is a patch between four pixel centres, weighed by the mean luminance of
+// the four and the patch's solid angle, so that the density is positive wherever the radiance is. Within a
+// cell it is uniform in uv.
+#include "render/emitter/environment_map.h"
+
+#include "render/emitter/factories.h"
+#include "render/image/image.h"
+
+namespace odis::render {
+
+namespace {
+
+// No lit patch weighs less than this share of the mean of its row, nor a row less than this share of the mean
+// row, so that rounding in the table cannot make them vanish beside a sun.
+constexpr float kFloor = 1e-3f;
+
+// (u, v) of a direction in the image's space, and the sine of its angle to the pole.
+struct Spherical {
+  Vec2 uv;
+  float sinTheta;
+};
+
+Spherical toSpherical(const Vec3& d) {
+  const float sinTheta = std::sqrt(d.x * d.x + d.z * d.z);
+  float u = std::atan2(d.x, -d.z) * (0.5f * kInvPi);
+  u -= std::floor(u);
+  // The arc tangent keeps its precision at the poles, where the arc cosine of d.y has lost it.
+  return {{u, std::atan2(sinTheta, d.y) * kInvPi}, sinTheta};
+}
+
+void liftToFloor(std::span<float> weights) {
+  double sum = 0;
+  for (float w : weights) sum += w;
+  const float floor = float(sum / double(weights.size())) * kFloor;
+  for (float& w : weights)
+    if (w > 0) w = std::max(w, floor);
+}
+
+}  // namespace
+
+EnvironmentMap::EnvironmentMap(std::vector<Rgb> pixels, int width, int height, const Matrix4& toWorld)
+    : m_width(width),
+      m_height(std::max(height, 2)),
+      m_pixels(std::move(pixels)),
+      m_toWorld(toWorld),
+      m_toLocal(toWorld.inverse()),
+      m_determinant(std::abs(toWorld.minorOf(3, 3))),
+      m_table(patchWeights(), uint32_t(m_width), uint32_t(m_height - 1)) {}
+
+// Also adds up the integral of the radiance.
+std::vector<float> EnvironmentMap::patchWeights() {
+  const size_t width = size_t(m_width);
+  m_pixels.reserve(2 * width);  // a single row reaches from pole to pole
+  if (m_pixels.size() == width) m_pixels.insert(m_pixels.end(), m_pixels.begin(), m_pixels.begin() + m_width);
+  const int rows = m_height - 1;
+  std::vector<float> weights(width * size_t(rows)), sums;
+  for (int y = 0; y < rows; ++y) {
+    // The integral of the sine over the row, times the width of a patch, is the patch's solid angle.
+    const double cosTop = std::cos(M_PI * y / rows), cosBottom = std::cos(M_PI * (y + 1) / rows);
+    const float solidAngle = float((cosTop - cosBottom) * 2 * M_PI / m_width);
+    const std::span<float> row(weights.data() + size_t(y) * width, width);
+    for (int x = 0; x < m_width; ++x) {
+      const int right = x + 1 < m_width ? x + 1 : 0;
+      const Rgb mean = (pixel(x, y) + pixel(right, y) + pixel(x, y + 1) + pixel(right, y + 1)) * 0.25f;
+      m_integral += mean * solidAngle;
+      row[size_t(x)] = luminance(mean) * solidAngle;
+    }
+    liftToFloor(row);
+    double sum = 0;
+    for (float w : row) sum += w;
+    sums.push_back(float(sum));
+  }
+  const std::vector<float> before = sums;
+  liftToFloor(sums);
+  for (size_t i = 0; i < weights.size(); ++i) {
+    const size_t y = i / width;
+    if (sums[y] > before[y]) weights[i] *= sums[y] / before[y];
+  }
+  return weights;
+}
+
+Rgb EnvironmentMap::lookUp(const Vec2& uv) const {
+  const float s = uv.x * float(m_width) - 0.5f, t = uv.y * float(m_height - 1);
+  const int column = int(std::floor(s));
+  const int x0 = column < 0 ? m_width - 1 : std::min(column, m_width - 1), x1 = x0 + 1 < m_width ? x0 + 1 : 0;
+  const int y0 = std::clamp(int(t), 0, m_height - 2);
+  const float fx = s - float(column), fy = t - float(y0);
+  return lerp(fy, lerp(fx, pixel(x0, y0), pixel(x1, y0)), lerp(fx, pixel(x0, y0 + 1), pixel(x1, y0 + 1)));
+}
+
+Rgb EnvironmentMap::radiance(const Vec3& wi) const {
+  return lookUp(toSpherical(normalize(transformVector(m_toLocal, wi))).uv);
+}
+
+EmitterSample EnvironmentMap::sample(const Vec3&, const Vec2& u) const {
+  const PiecewiseConstant2D::Sample s = m_table.sample(u);
+  // Cell 0 of the table begins at the centre of column 0.
+  float x = s.x.x + 0.5f / float(m_width);
+  if (x >= 1) x -= 1;
+  const float theta = kPi * s.x.y, phi = 2 * kPi * x, sinTheta = std::sin(theta);
+  if (!(sinTheta > 0)) return {};
+  const Vec3 local(std::sin(phi) * sinTheta, std::cos(theta), -std::cos(phi) * sinTheta);
+  const Vec3 world = transformVector(m_toWorld, local);
+  const float scale = length(world);
+  // The solid angle of an element of uv is 2 pi^2 sin(theta); a transform that is not a rotation stretches it
+  // further.
+  const float pdf = s.pdf / (2 * kPi * kPi * sinTheta) * (scale * scale * scale) / m_determinant;
+  return {
+      .wi = world / scale, .distance = kInfinity, .radiance = lookUp({x, s.x.y}), .pdf = pdf, .delta = false};
+}
+
+float EnvironmentMap::pdf(const Vec3&, const Vec3& wi) const {
+  const Vec3 local = transformVector(m_toLocal, wi);
+  const float inverseScale = length(local);
+  const Spherical at = toSpherical(local / inverseScale);
+  if (!(at.sinTheta > 0)) return 0;
+  float x = at.uv.x - 0.5f / float(m_width);
+  if (x < 0) x += 1;
+  const Vec2 cell(std::min(x, kOneMinusEpsilon), std::min(at.uv.y, kOneMinusEpsilon));
+  return m_table.pdf(cell) / (2 * kPi * kPi * at.sinTheta) /
+         (inverseScale * inverseScale * inverseScale * m_determinant);
+}
+
+// What passes through a disk of the scene's radius, from every direction.
+float EnvironmentMap::power() const {
+  return kPi * sqr(m_sceneRadius) * average(m_integral);
+}
+
+std::vector<EmitterPtr> makeEnvironmentMap(const Properties& node, Builder& builder) {
+  const std::string name = node.string("filename");
+  const SourceLocation& at = node.parameters.at("filename").location;
+  const float gamma = node.number("gamma", -1.0f), scale = emissionScale(node, "scale", 1.0f);
+  if (!(gamma > 0) && gamma != -1)
+    throw SceneError(node.location, "the gamma of an envmap is " + std::to_string(gamma) +
+                                        "; expected more than 0, or -1 for sRGB");
+  const Matrix4 toWorld = node.transform("to_world");
+  if (!std::isnormal(toWorld.minorOf(3, 3)))
+    throw SceneError(node.location, "the to_world of an envmap has no inverse");
+
+  const std::shared_ptr<const Image> image = builder.image(builder.resolvePath(name, at), gamma == -1, at);
+  std::vector<Rgb> pixels;
+  pixels.reserve(size_t(image->width()) * size_t(image->height()));
+  bool repaired = false;
+  for (int y = 0; y < image->height(); ++y)
+    for (int x = 0; x < image->width(); ++x) {
+      Rgb value = image->rgb(x, y);
+      for (float* channel : {&value.x, &value.y, &value.z}) {
+        if (!std::isfinite(*channel) || *channel < 0) {
+          *channel = 0;
+          repaired = true;
+        }
+        if (gamma != -1 && gamma != 1) *channel = std::pow(*channel, gamma);
+      }
+      pixels.push_back(value * scale);
+    }
+  if (repaired)
+    builder.warn(at, "\"" + name + "\" has negative or non-finite pixels; they are taken as black");
+  return {std::make_shared<EnvironmentMap>(std::move(pixels), image->width(), image->height(), toWorld)};
+}
+
+}  // namespace odis::render

@@ -1,0 +1,37 @@
+// An image wrapped around the scene. Manual page in environment_map.cpp.
+#pragma once
+
+#include <vector>
+
+#include "render/emitter/emitter.h"
+#include "render/math/distribution.h"
+
+namespace odis::render {
+
+class EnvironmentMap final : public EnvironmentEmitter {
+ public:
+  // width * height pixels, row 0 at the top; the linear part of toWorld must have an inverse.
+  EnvironmentMap(std::vector<Rgb> pixels, int width, int height, const Matrix4& toWorld);
+
+  EmitterSample sample(const Vec3& ref, const Vec2& u) const override;
+  float power() const override;
+  void setSceneBounds(const SceneBounds& bounds) override { m_sceneRadius = bounds.radius; }
+  Rgb radiance(const Vec3& wi) const override;
+  float pdf(const Vec3& ref, const Vec3& wi) const override;
+  uint64_t bytes() const { return m_pixels.size() * sizeof(Rgb) + m_table.bytes(); }
+
+ private:
+  const Rgb& pixel(int x, int y) const { return m_pixels[size_t(y) * size_t(m_width) + size_t(x)]; }
+  Rgb lookUp(const Vec2& uv) const;
+  std::vector<float> patchWeights();
+
+  int m_width, m_height;
+  std::vector<Rgb> m_pixels;
+  Matrix4 m_toWorld, m_toLocal;
+  float m_determinant;          // of m_toWorld's linear part, absolute
+  Rgb m_integral{0, 0, 0};      // of the radiance over all directions
+  PiecewiseConstant2D m_table;  // over the patches between four pixel centres
+  float m_sceneRadius = 1;
+};
+
+}  // namespace odis::render

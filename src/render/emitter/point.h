@@ -1,0 +1,20 @@
+// An isotropic point light. Manual page in point.cpp.
+#pragma once
+
+#include "render/emitter/emitter.h"
+
+namespace odis::render {
+
+class PointLight final : public Emitter {
+ public:
+  PointLight(const Vec3& position, const Rgb& intensity) : m_position(position), m_intensity(intensity) {}
+
+  EmitterSample sample(const Vec3& ref, const Vec2& u) const override;
+  float power() const override { return 4 * kPi * average(m_intensity); }
+
+ private:
+  Vec3 m_position;
+  Rgb m_intensity;
+};
+
+}  // namespace odis::render

@@ -1,0 +1,65 @@
+// spot: a point light that shines into a cone about +z, with a linear falloff in angle towards its rim.
+//
+//   to_world       transform       places the light, which shines along +z, in the world; default identity
+//   intensity      rgb or number   along the axis, W/sr; default 1
+//   cutoff_angle   number          degrees from the axis beyond which there is no light; default 20
+//   beam_width     number          degrees from the axis within which the light is full; default 3/4 of
+//   cutoff_angle
+#include "render/emitter/spot.h"
+
+#include "render/emitter/factories.h"
+
+namespace odis::render {
+
+SpotLight::SpotLight(const Vec3& position, const Vec3& axis, const Rgb& intensity, float cutoff,
+                     float beamWidth)
+    : m_position(position),
+      m_axis(axis),
+      m_intensity(intensity),
+      m_cutoff(cutoff),
+      m_cosCutoff(std::cos(cutoff)),
+      m_cosBeam(std::cos(beamWidth)),
+      m_inverseTransition(cutoff > beamWidth ? 1 / (cutoff - beamWidth) : 0) {}
+
+EmitterSample SpotLight::sample(const Vec3& ref, const Vec2&) const {
+  const Vec3 toLight = m_position - ref;
+  const float distance = length(toLight);
+  if (!(distance > 0)) return {};
+  const Vec3 wi = toLight / distance;
+  const float cosTheta = -dot(wi, m_axis);
+  if (!(cosTheta > m_cosCutoff)) return {};
+  const float falloff = cosTheta >= m_cosBeam ? 1.0f : (m_cutoff - std::acos(cosTheta)) * m_inverseTransition;
+  return {.wi = wi,
+          .distance = distance,
+          .radiance = m_intensity * (falloff / sqr(distance)),
+          .pdf = 1,
+          .delta = true};
+}
+
+// The solid angle of the beam, and half of the ring in which the light falls off.
+float SpotLight::power() const {
+  return 2 * kPi * (1 - 0.5f * (m_cosBeam + m_cosCutoff)) * average(m_intensity);
+}
+
+std::vector<EmitterPtr> makeSpot(const Properties& node, Builder& builder) {
+  const Matrix4 toWorld = node.transform("to_world");
+  const float cutoff = node.number("cutoff_angle", 20.0f);
+  float beamWidth = node.number("beam_width", cutoff * 0.75f);
+  if (!(cutoff > 0 && cutoff <= 180))
+    throw SceneError(node.location, "the cutoff_angle of a spot light is " + std::to_string(cutoff) +
+                                        " degrees; expected more than 0 and at most 180");
+  if (!(beamWidth >= 0 && beamWidth <= cutoff)) {
+    builder.warn(node.location,
+                 "the beam_width of a spot light is not within 0 and its cutoff_angle; it is clamped");
+    beamWidth = beamWidth > cutoff ? cutoff : 0.0f;
+  }
+  const Vec3 position = transformPoint(toWorld, Vec3(0, 0, 0)),
+             axis = transformVector(toWorld, Vec3(0, 0, 1));
+  if (!isFinite(position) || !isFinite(axis) || !(length(axis) > 0))
+    throw SceneError(node.location, "the to_world of a spot light is not a finite, invertible transform");
+  constexpr float kDegree = kPi / 180;
+  return {std::make_shared<SpotLight>(position, normalize(axis), emission(node, "intensity"),
+                                      cutoff * kDegree, beamWidth * kDegree)};
+}
+
+}  // namespace odis::render

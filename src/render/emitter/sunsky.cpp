@@ -1,0 +1,178 @@
+// sun, sky, sunsky: daylight under a clear sky, by place and time or by the direction of the sun.
+//
+//   turbidity          number         haze, 1 (arctic) to 10; default 3. The sky of less than 2 is that of 2.
+//   sun_direction      vector         towards the sun, in world space; not together with time or place
+//   year, month, day   integers       default 2010, 7, 10
+//   hour, minute, second   numbers    local time; default 15, 0, 0
+//   latitude, longitude, timezone   numbers   degrees north, degrees east, hours ahead of universal time;
+//                                     default 35.6894, 139.6917, 9: Tokyo
+//   to_world           transform      turns sky and sun; default identity
+//   albedo             rgb or number  of the ground. The sky model here has no such parameter; it is read and
+//   ignored. scale              number         multiplies sun and sky; default 1 sun_scale, sky_scale numbers
+//   of sunsky: each replaces scale for its part sun_radius_scale   number         widens the sun without
+//   changing its power; default 1; 0 makes it a directional
+//                                     light
+//   stretch            number         1 to 2; pulls the sky below the horizon; default 1
+//   resolution         integer        width of the image that the sky is tabulated in; default 512
+//   sun_aperture       number         of Mitsuba 3: the sun's apparent diameter in degrees, in place of
+//                                     sun_radius_scale; default 0.5358
+//
+// Up is +Y, north -Z, east +X, as in Mitsuba 0.6. Mitsuba 3 has up at +Z, north at -X, east at -Y; this holds
+// as soon as a parameter is given that only Mitsuba 3 knows: sun_aperture or complex_sun (true is drawn as
+// false).
+//
+// Sun and sky are two lights, the sun an exact disc rather than pixels of the sky's image. Colours and units:
+// daylight.h.
+#include "render/emitter/daylight.h"
+#include "render/emitter/directional.h"
+#include "render/emitter/environment_map.h"
+#include "render/emitter/factories.h"
+#include "render/emitter/sun_disc.h"
+#include "render/emitter/sun_position.h"
+
+namespace odis::render {
+
+namespace {
+
+constexpr float kDegree = kPi / 180;
+constexpr float kSunDiameter = 0.5358f;  // degrees
+
+// What sun and sky have in common.
+struct Daylight {
+  Matrix4 toWorld;      // from the image's space, where up is +Y
+  Vec3 sunDirection;    // in that space
+  float sunZenith = 0;  // radians, before the stretch
+  float turbidity = 3;
+  float stretch = 1;
+};
+
+// The axes of Mitsuba 3's sky in those of the image.
+const Matrix4 kZUp(1, 0, 0, 0, 0, 0, 1, 0, 0, -1, 0, 0, 0, 0, 0, 1);
+
+Vec3 directionFromTime(const Properties& node, bool zUp) {
+  TimeAndPlace when;
+  when.year = int(node.integer("year", when.year));
+  when.month = int(node.integer("month", when.month));
+  when.day = int(node.integer("day", when.day));
+  when.hour = node.number("hour", float(when.hour));
+  when.minute = node.number("minute", float(when.minute));
+  when.second = node.number("second", float(when.second));
+  when.latitude = node.number("latitude", float(when.latitude));
+  when.longitude = node.number("longitude", float(when.longitude));
+  when.timezone = node.number("timezone", float(when.timezone));
+  const SunPosition sun = sunPosition(when);
+  const float north = float(std::sin(sun.zenith) * std::cos(sun.azimuth));
+  const float east = float(std::sin(sun.zenith) * std::sin(sun.azimuth));
+  const float up = float(std::cos(sun.zenith));
+  if (zUp) return transformVector(kZUp.transposed(), Vec3(-north, -east, up));
+  return {east, up, -north};
+}
+
+Daylight readDaylight(const Properties& node) {
+  const bool zUp = node.has("sun_aperture") || node.has("complex_sun");
+  Daylight result;
+  result.toWorld = node.transform("to_world");
+  if (zUp) result.toWorld = kZUp * result.toWorld;
+  if (!std::isnormal(result.toWorld.minorOf(3, 3)))
+    throw SceneError(node.location, "the to_world of \"" + node.type + "\" has no inverse");
+  if (node.has("albedo")) node.color("albedo");
+
+  result.turbidity = node.number("turbidity", 3.0f);
+  if (!(result.turbidity >= 1 && result.turbidity <= 10))
+    throw SceneError(node.location, "the turbidity of \"" + node.type + "\" is " +
+                                        std::to_string(result.turbidity) + "; expected 1 to 10");
+  result.stretch = node.number("stretch", 1.0f);
+  if (!(result.stretch >= 1 && result.stretch <= 2))
+    throw SceneError(node.location, "the stretch of \"" + node.type + "\" is " +
+                                        std::to_string(result.stretch) + "; expected 1 to 2");
+
+  for (const char* parameter : {"latitude", "longitude", "timezone", "year", "month", "day", "hour"})
+    refuseBoth(node, "sun_direction", parameter);
+  Vec3 toSun = node.has("sun_direction")
+                   ? transformVector(result.toWorld.inverse(), node.vector("sun_direction"))
+                   : directionFromTime(node, zUp);
+  if (!isFinite(toSun) || !(length(toSun) > 0))
+    throw SceneError(node.location, "the direction of the sun is not a finite vector other than zero");
+  toSun = normalize(toSun);
+  if (toSun.y < 0)
+    throw SceneError(node.location, "the sun of \"" + node.type +
+                                        "\" is below the horizon; expected daylight, with " +
+                                        (zUp ? "+Z" : "+Y") + " of to_world as up");
+  result.sunZenith = std::acos(std::min(toSun.y, 1.0f));
+  result.sunDirection = toSun;
+  return result;
+}
+
+EmitterPtr skyLight(const Properties& node, const Daylight& daylight, float scale) {
+  const int64_t width = node.integer("resolution", 512);
+  if (width < 4 || width > 16384)
+    throw SceneError(node.location, "the resolution of \"" + node.type + "\" is " + std::to_string(width) +
+                                        "; expected 4 to 16384");
+  const int rows = int(width) / 2 + 1;  // one of them is the horizon
+  const Sky sky(daylight.turbidity, daylight.sunZenith);
+  std::vector<Rgb> pixels(size_t(width) * size_t(rows));
+  for (int y = 0; y < rows; ++y)
+    for (int x = 0; x < width; ++x) {
+      const float theta = kPi * float(y) / float(rows - 1) / daylight.stretch;
+      const float phi = 2 * kPi * (float(x) + 0.5f) / float(width), sinTheta = std::sin(theta);
+      const Vec3 direction(std::sin(phi) * sinTheta, std::cos(theta), -std::cos(phi) * sinTheta);
+      const float gamma = std::acos(std::clamp(dot(direction, daylight.sunDirection), -1.0f, 1.0f));
+      // The row of the horizon belongs to the sky although its cosine may round to less than zero.
+      const float cosTheta = std::abs(direction.y) < 1e-6f ? 0.0f : direction.y;
+      pixels[size_t(y) * size_t(width) + size_t(x)] = sky.radiance(cosTheta, gamma) * scale;
+    }
+  return std::make_shared<EnvironmentMap>(std::move(pixels), int(width), rows, daylight.toWorld);
+}
+
+EmitterPtr sunLight(const Properties& node, const Daylight& daylight, float scale) {
+  refuseBoth(node, "sun_aperture", "sun_radius_scale");
+  const float diameter = node.has("sun_aperture") ? node.number("sun_aperture")
+                                                  : kSunDiameter * node.number("sun_radius_scale", 1.0f);
+  if (!(diameter >= 0 && diameter <= 360))
+    throw SceneError(node.location, "the sun of \"" + node.type + "\" is " + std::to_string(diameter) +
+                                        " degrees wide; expected 0 to 360");
+  // The stretch moves the sun along with the sky about it.
+  Vec3 local = daylight.sunDirection;
+  const float horizontal = std::hypot(local.x, local.z), zenith = daylight.sunZenith * daylight.stretch;
+  if (daylight.stretch != 1 && horizontal > 0)
+    local = {local.x / horizontal * std::sin(zenith), std::cos(zenith),
+             local.z / horizontal * std::sin(zenith)};
+  const Vec3 direction = normalize(transformVector(daylight.toWorld, local));
+
+  // A cap of the sphere has the solid angle pi times its squared chord; see SunDisc.
+  const Rgb radiance = sunRadiance(daylight.turbidity, daylight.sunZenith) * scale;
+  const float trueChord = 2 * std::sin(kSunDiameter / 4 * kDegree),
+              chord = 2 * std::sin(diameter / 4 * kDegree);
+  if (diameter == 0) return std::make_shared<DirectionalLight>(-direction, radiance * (kPi * sqr(trueChord)));
+  return std::make_shared<SunDisc>(direction, diameter / 2 * kDegree, radiance * sqr(trueChord / chord));
+}
+
+void warnOfComplexSun(const Properties& node, Builder& builder) {
+  if (node.boolean("complex_sun", false))
+    builder.warn(node.location, "complex_sun is not supported; the sun is a disc of constant radiance");
+}
+
+}  // namespace
+
+std::vector<EmitterPtr> makeSun(const Properties& node, Builder& builder) {
+  warnOfComplexSun(node, builder);
+  return {sunLight(node, readDaylight(node), emissionScale(node, "scale", 1.0f))};
+}
+
+std::vector<EmitterPtr> makeSky(const Properties& node, Builder&) {
+  return {skyLight(node, readDaylight(node), emissionScale(node, "scale", 1.0f))};
+}
+
+std::vector<EmitterPtr> makeSunSky(const Properties& node, Builder& builder) {
+  warnOfComplexSun(node, builder);
+  const Daylight daylight = readDaylight(node);
+  const float scale = emissionScale(node, "scale", 1.0f);
+  const float skyScale = emissionScale(node, "sky_scale", scale),
+              sunScale = emissionScale(node, "sun_scale", scale);
+  std::vector<EmitterPtr> lights;
+  if (skyScale > 0) lights.push_back(skyLight(node, daylight, skyScale));
+  if (sunScale > 0) lights.push_back(sunLight(node, daylight, sunScale));
+  return lights;
+}
+
+}  // namespace odis::render

@@ -1,0 +1,124 @@
+// Piecewise-constant distributions over the unit interval and the unit square. Weights that are negative,
+// infinite or not numbers count as zero; if nothing is left the distribution is uniform. What pdf() states is
+// exactly the slope of the table that sample() inverts, rounding included. Densities are with respect to the
+// length or area of the domain.
+#pragma once
+
+#include <cmath>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "render/math/vec.h"
+
+namespace odis::render {
+
+// Fills `cdf` (one entry more than weights) and returns the sum of the weights.
+inline double buildCdf(std::span<const float> weights, std::span<float> cdf) {
+  const auto usable = [](float w) { return std::isfinite(w) && w > 0 ? double(w) : 0.0; };
+  const size_t n = weights.size();
+  double total = 0;
+  for (float w : weights) total += usable(w);
+  cdf[0] = 0;
+  double sum = 0;
+  for (size_t i = 0; i < n; ++i) {
+    sum += usable(weights[i]);
+    cdf[i + 1] = total > 0 ? float(sum / total) : float(i + 1) / float(n);
+  }
+  return total;
+}
+
+// The cell with cdf[i] <= u < cdf[i + 1]; never one of zero width.
+inline uint32_t findCell(std::span<const float> cdf, float u) {
+  u = std::min(std::max(u, 0.0f), kOneMinusEpsilon);
+  return uint32_t(std::upper_bound(cdf.begin(), cdf.end(), u) - cdf.begin()) - 1;
+}
+
+inline float cellPdf(std::span<const float> cdf, uint32_t cell) {
+  return (cdf[cell + 1] - cdf[cell]) * float(cdf.size() - 1);
+}
+
+inline float invertCell(std::span<const float> cdf, uint32_t cell, float u) {
+  const float within = (u - cdf[cell]) / (cdf[cell + 1] - cdf[cell]);
+  return std::min((float(cell) + within) / float(cdf.size() - 1), kOneMinusEpsilon);
+}
+
+inline uint32_t cellAt(float x, uint32_t count) {
+  return std::min(uint32_t(std::max(x, 0.0f) * float(count)), count - 1);
+}
+
+class PiecewiseConstant1D {
+ public:
+  struct Sample {
+    float x = 0;
+    float pdf = 0;
+    uint32_t cell = 0;
+  };
+
+  // At least one weight.
+  explicit PiecewiseConstant1D(std::span<const float> weights)
+      : m_cdf(weights.size() + 1), m_sum(buildCdf(weights, m_cdf)) {}
+
+  Sample sample(float u) const {
+    const uint32_t cell = findCell(m_cdf, u);
+    return {invertCell(m_cdf, cell, u), cellPdf(m_cdf, cell), cell};
+  }
+  float pdf(float x) const {
+    if (!(x >= 0 && x < 1)) return 0;
+    return cellPdf(m_cdf, cellAt(x, size()));
+  }
+  uint32_t size() const { return uint32_t(m_cdf.size()) - 1; }
+  double sum() const { return m_sum; }  // of the weights; 0 if the uniform distribution stands in
+  uint64_t bytes() const { return m_cdf.size() * sizeof(float); }
+
+ private:
+  std::vector<float> m_cdf;
+  double m_sum;
+};
+
+class PiecewiseConstant2D {
+ public:
+  struct Sample {
+    Vec2 x{0, 0};
+    float pdf = 0;
+  };
+
+  // width * height weights, row after row; x runs along a row, y across rows. At least one cell.
+  PiecewiseConstant2D(std::span<const float> weights, uint32_t width, uint32_t height)
+      : m_width(width), m_rows(size_t(width + 1) * height), m_marginal(rowSums(weights)) {}
+
+  Sample sample(const Vec2& u) const {
+    const PiecewiseConstant1D::Sample y = m_marginal.sample(u.y);
+    const std::span<const float> cdf = row(y.cell);
+    const uint32_t cell = findCell(cdf, u.x);
+    return {{invertCell(cdf, cell, u.x), y.x}, cellPdf(cdf, cell) * y.pdf};
+  }
+  float pdf(const Vec2& x) const {
+    if (!(x.x >= 0 && x.x < 1 && x.y >= 0 && x.y < 1)) return 0;
+    const std::span<const float> cdf = row(cellAt(x.y, m_marginal.size()));
+    return cellPdf(cdf, cellAt(x.x, m_width)) * m_marginal.pdf(x.y);
+  }
+  double sum() const { return m_marginal.sum(); }
+  uint64_t bytes() const { return m_rows.size() * sizeof(float) + m_marginal.bytes(); }
+
+ private:
+  std::span<const float> row(uint32_t y) const {
+    return {m_rows.data() + size_t(y) * (m_width + 1), size_t(m_width) + 1};
+  }
+  // Fills the table of every row on the way.
+  PiecewiseConstant1D rowSums(std::span<const float> weights) {
+    const size_t height = m_rows.size() / (m_width + 1);
+    std::vector<float> sums(height);
+    for (size_t y = 0; y < height; ++y) {
+      const std::span<float> cdf(m_rows.data() + y * (m_width + 1), size_t(m_width) + 1);
+      sums[y] = float(buildCdf(weights.subspan(y * m_width, m_width), cdf));
+    }
+    return PiecewiseConstant1D(sums);
+  }
+
+  uint32_t m_width;
+  std::vector<float> m_rows;  // height tables of width + 1 entries
+  PiecewiseConstant1D m_marginal;
+};
+
+}  // namespace odis::render

@@ -1,0 +1,142 @@
+#include "render/scene/builder.h"
+
+#include <algorithm>
+#include <filesystem>
+
+#include "render/image/image.h"
+#include "render/scene/names.h"
+
+namespace odis::render {
+namespace {
+
+class ConstantTexture final : public Texture {
+ public:
+  explicit ConstantTexture(const Rgb& value) : m_value(value) {}
+  Rgb rgb(const Vec2&) const override { return m_value; }
+  Vec2 gradient(const Vec2&) const override { return Vec2(0); }
+  Rgb mean() const override { return m_value; }
+  bool isConstant() const override { return true; }
+
+ private:
+  Rgb m_value;
+};
+
+// What scene files name, for suggestions: of these, the ones that a registry knows.
+constexpr const char* kTextureTypes[] = {"bitmap", "checkerboard", "uniform",       "srgb",
+                                         "scale",  "gridtexture",  "mesh_attribute"};
+constexpr const char* kBsdfTypes[] = {
+    "diffuse",        "roughdiffuse", "dielectric",   "thindielectric", "roughdielectric", "conductor",
+    "roughconductor", "plastic",      "roughplastic", "principled",     "principledthin",  "twosided",
+    "mask",           "blendbsdf",    "mixturebsdf",  "bumpmap",        "normalmap",       "coating",
+    "roughcoating",   "phong",        "ward",         "null",           "difftrans"};
+constexpr const char* kEmitterTypes[] = {"area",   "point", "spot", "directional", "collimated", "constant",
+                                         "envmap", "sky",   "sun",  "sunsky",      "projector"};
+
+template <class Types, class Find>
+std::string unknownType(const Properties& node, const Types& types, Find&& find) {
+  std::vector<std::string> known;
+  for (const char* type : types)
+    if (find(type)) known.push_back(type);
+  return "the " + node.tag + " '" + node.type + "' is unknown" + suggestion(node.type, known);
+}
+
+// Parameters of other programs that change nothing in an image.
+bool isHarmless(const std::string& name) {
+  static const char* const names[] = {"banner",           "pixel_format",  "file_format",
+                                      "component_format", "near_clip",     "far_clip",
+                                      "shutter_open",     "shutter_close", "sampling_weight"};
+  return std::find(std::begin(names), std::end(names), name) != std::end(names);
+}
+
+}  // namespace
+
+TexturePtr Builder::texture(const Properties& parent, const std::string& name, const Rgb& fallback) {
+  if (TexturePtr found = optionalTexture(parent, name)) return found;
+  return std::make_shared<ConstantTexture>(fallback);
+}
+
+TexturePtr Builder::optionalTexture(const Properties& parent, const std::string& name) {
+  if (const Properties* node = parent.child("texture", name)) return texture(*node);
+  if (!parent.has(name)) return nullptr;
+  return std::make_shared<ConstantTexture>(parent.color(name));
+}
+
+TexturePtr Builder::texture(const Properties& node) {
+  const auto known = m_textures.find(&node);
+  if (known != m_textures.end()) return known->second;
+  TexturePtr made;
+  if (const TextureFactory factory = findTextureFactory(node.type)) {
+    made = factory(node, *this);
+    warnUnqueried(node);
+  } else {
+    warn(node.location, unknownType(node, kTextureTypes, findTextureFactory) + ", a constant of 0.5 is used");
+    made = std::make_shared<ConstantTexture>(Rgb(0.5f));
+  }
+  return m_textures[&node] = made;
+}
+
+BsdfPtr Builder::bsdf(const Properties& node) {
+  const auto known = m_bsdfs.find(&node);
+  if (known != m_bsdfs.end()) return known->second;
+  BsdfPtr made;
+  if (const BsdfFactory factory = findBsdfFactory(node.type)) {
+    made = factory(node, *this);
+    warnUnqueried(node);
+  } else {
+    warn(node.location, unknownType(node, kBsdfTypes, findBsdfFactory) + ", a grey diffuse one is used");
+    made = findBsdfFactory("diffuse")(Properties(), *this);
+  }
+  return m_bsdfs[&node] = made;
+}
+
+BsdfPtr Builder::nestedBsdf(const Properties& parent, int index) {
+  int count = 0;
+  for (const Properties::Child& child : parent.children) {
+    if (child.node->tag != "bsdf" || count++ != index) continue;
+    child.queried = true;
+    return bsdf(*child.node);
+  }
+  throw SceneError(parent.location, "found " + std::to_string(count) + " nested BSDFs in the " + parent.tag +
+                                        " '" + parent.type + "', expected at least " +
+                                        std::to_string(index + 1));
+}
+
+std::vector<EmitterPtr> Builder::emitters(const Properties& node) {
+  if (const EmitterFactory factory = findEmitterFactory(node.type)) {
+    std::vector<EmitterPtr> made = factory(node, *this);
+    warnUnqueried(node);
+    return made;
+  }
+  warn(node.location, unknownType(node, kEmitterTypes, findEmitterFactory) + ", it is left out");
+  return {};
+}
+
+void Builder::warnUnqueried(const Properties& node) {
+  for (const auto& [name, location] : node.unqueried())
+    if (!isHarmless(name))
+      warn(location,
+           "unknown parameter '" + name + "' of the " + node.tag + " '" + node.type + "' is ignored");
+}
+
+std::string Builder::resolvePath(const std::string& fileName, const SourceLocation& at) const {
+  namespace fs = std::filesystem;
+  // Files written on Windows.
+  std::string portable = fileName;
+  std::replace(portable.begin(), portable.end(), '\\', '/');
+  std::vector<fs::path> folders = {fs::path(at.file).parent_path()};
+  folders.insert(folders.end(), m_folders.begin(), m_folders.end());
+  std::error_code error;
+  for (const fs::path& folder : folders)
+    for (const std::string& name : {fileName, portable})
+      if (fs::is_regular_file(folder / name, error)) return (folder / name).string();
+  throw SceneError(at, "there is no file '" + fileName + "', expected one relative to '" +
+                           (folders[0].empty() ? "." : folders[0].string()) + "'");
+}
+
+std::shared_ptr<const Image> Builder::image(const std::string& path, bool srgb, const SourceLocation& at) {
+  std::shared_ptr<const Image>& cached = m_images[path + (srgb ? "|srgb" : "|linear")];
+  if (!cached) cached = Image::read(path, srgb, at);
+  return cached;
+}
+
+}  // namespace odis::render

@@ -1,0 +1,56 @@
+#include "render/scene/info.h"
+
+#include <fmt/format.h>
+
+#include <set>
+
+namespace odis::render {
+
+std::string describe(const Scene& scene, const Warnings& warnings) {
+  uint64_t primitives = 0, lights = 0, instanced = 0;
+  std::set<const Bsdf*> bsdfs;
+  std::set<const std::vector<ShapePtr>*> groups;
+  const auto add = [&](const Shape& shape) {
+    primitives += shape.primitiveCount();
+    bsdfs.insert(&shape.bsdf());
+    lights += shape.emitter() != nullptr;
+  };
+  for (const ShapePtr& shape : scene.shapes()) add(*shape);
+  for (const Instance& instance : scene.instances()) {
+    for (const ShapePtr& shape : *instance.group) instanced += shape->primitiveCount();
+    if (!groups.insert(instance.group.get()).second) continue;
+    for (const ShapePtr& shape : *instance.group) add(*shape);
+  }
+  const SceneBounds& bounds = scene.bounds();
+  const FilmSettings& film = scene.film();
+  const IntegratorSettings& integrator = scene.integrator();
+  const uint64_t environments = scene.environments().size();
+  std::string text = fmt::format("shapes       {}, of {} primitives\n", scene.shapes().size(), primitives);
+  if (!scene.instances().empty())
+    text += fmt::format("instances    {} of {} groups, showing {} primitives\n", scene.instances().size(),
+                        groups.size(), instanced);
+  text += fmt::format("bsdfs        {}\n", bsdfs.size());
+  text += fmt::format("emitters     {}: {} of shapes, {} environments, {} others\n", scene.emitters().size(),
+                      lights, environments, scene.emitters().size() - lights - environments);
+  text += fmt::format("bounds       ({}, {}, {}) to ({}, {}, {})\n", bounds.min.x, bounds.min.y, bounds.min.z,
+                      bounds.max.x, bounds.max.y, bounds.max.z);
+  text += fmt::format("film         {} x {}", film.width, film.height);
+  if (film.crop.width != film.width || film.crop.height != film.height)
+    text += fmt::format(", crop {} x {} at ({}, {})", film.crop.width, film.crop.height, film.crop.x,
+                        film.crop.y);
+  text += fmt::format(", filter {}\n", film.filter->name());
+  const Ray view = scene.sensor().ray(Vec2(float(film.width), float(film.height)) * 0.5f, Vec2(0.5f));
+  text += fmt::format("sensor       at ({}, {}, {}), looks along ({}, {}, {})\n", view.origin.x,
+                      view.origin.y, view.origin.z, view.direction.x, view.direction.y, view.direction.z);
+  text +=
+      fmt::format("integrator   {}, max depth {}", integrator.type.empty() ? "not named" : integrator.type,
+                  integrator.maxDepth < 0 ? "unlimited" : std::to_string(integrator.maxDepth));
+  if (integrator.samplesPerPixel > 0)
+    text += fmt::format(", {} samples per pixel", integrator.samplesPerPixel);
+  text += fmt::format("\nmemory       {:.1f} MiB\n", double(scene.bytes()) / (1024 * 1024));
+  text += fmt::format("warnings     {}\n", warnings.texts().size());
+  for (const std::string& warning : warnings.texts()) text += "  " + warning + "\n";
+  return text;
+}
+
+}  // namespace odis::render

@@ -1,0 +1,47 @@
+// Rays against all shapes of a scene, by Embree.
+#pragma once
+
+#include <atomic>
+#include <memory>
+#include <vector>
+
+#include "render/scene/scene.h"
+
+struct RTCSceneTy;
+
+namespace odis::render {
+
+class Intersector {
+ public:
+  // Builds the acceleration structure on all cores. The shapes must outlive the intersector. Throws
+  // std::runtime_error if Embree fails, for example for want of memory.
+  Intersector(const std::vector<ShapePtr>& shapes, const std::vector<Instance>& instances);
+  ~Intersector();
+  Intersector(const Intersector&) = delete;
+
+  bool intersect(const Ray& ray, SurfacePoint& at) const;
+  bool occluded(const Ray& ray) const;
+  // The box around everything; false if there is nothing.
+  bool box(Vec3& min, Vec3& max) const;
+  uint64_t bytes() const { return m_bytes.load(); }  // what Embree allocated
+
+ private:
+  using ShapeArray = std::vector<const Shape*>;  // by Embree's geometry number
+  struct Placement {
+    Matrix4 toWorld, toInstance;
+    const ShapeArray* shapes;
+  };
+
+  RTCSceneTy* makeScene(const std::vector<ShapePtr>& shapes, ShapeArray& array);
+  void release();
+
+  std::atomic<int64_t> m_bytes = 0;
+  RTCDeviceTy* m_device = nullptr;
+  RTCSceneTy* m_scene = nullptr;
+  std::vector<RTCSceneTy*> m_groupScenes;
+  ShapeArray m_shapes;
+  std::vector<std::unique_ptr<ShapeArray>> m_groups;
+  std::vector<Placement> m_placements;
+};
+
+}  // namespace odis::render

@@ -1,0 +1,97 @@
+#include "render/scene/load_film.h"
+
+#include "render/scene/names.h"
+
+namespace odis::render {
+namespace {
+
+constexpr int64_t kMaxSize = 65536;  // pixels a side
+
+const SourceLocation& placeOf(const Properties& node, const std::string& name) {
+  const auto found = node.parameters.find(name);
+  return found == node.parameters.end() ? node.location : found->second.location;
+}
+
+int dimension(const Properties& node, const std::string& name, int fallback) {
+  const int64_t value = node.integer(name, fallback);
+  if (value < 1 || value > kMaxSize)
+    throw SceneError(placeOf(node, name), "found " + std::to_string(value) + " for '" + name +
+                                              "' of the film, expected 1 to " + std::to_string(kMaxSize) +
+                                              " pixels");
+  return int(value);
+}
+
+void checkCrop(const FilmSettings& film, int64_t x, int64_t y, int64_t width, int64_t height,
+               const SourceLocation& at) {
+  if (x >= 0 && y >= 0 && width >= 1 && height >= 1 && width <= film.width && height <= film.height &&
+      x <= film.width - width && y <= film.height - height)
+    return;
+  throw SceneError(at, "found a crop of " + std::to_string(width) + "x" + std::to_string(height) +
+                           " pixels at (" + std::to_string(x) + ", " + std::to_string(y) +
+                           "), expected one within the " + std::to_string(film.width) + "x" +
+                           std::to_string(film.height) + " pixels of the film");
+}
+
+float positive(const Properties& node, const std::string& name, float fallback) {
+  const float value = node.number(name, fallback);
+  if (value > 0 && value <= 100) return value;
+  throw SceneError(placeOf(node, name), "found " + std::to_string(value) + " for '" + name +
+                                            "' of the filter, expected more than 0 and at most 100 pixels");
+}
+
+std::shared_ptr<const Filter> loadFilter(const Properties* node, Warnings& warnings) {
+  if (!node) return makeGaussianFilter();
+  if (node->type == "box") return makeBoxFilter(positive(*node, "radius", 0.5f));
+  if (node->type == "tent") return makeTentFilter(positive(*node, "radius", 1.0f));
+  if (node->type == "gaussian") return makeGaussianFilter(positive(*node, "stddev", 0.5f));
+  if (node->type == "mitchell") {
+    // The two are called b and c, or a and b.
+    const bool older = node->has("a");
+    return makeMitchellFilter(node->number(older ? "a" : "b", 1.0f / 3.0f),
+                              node->number(older ? "b" : "c", 1.0f / 3.0f));
+  }
+  if (node->type == "catmullrom") return makeMitchellFilter(0.0f, 0.5f);
+  warnings.add(node->location,
+               "the filter '" + node->type + "' is unknown" +
+                   suggestion(node->type, {"box", "tent", "gaussian", "mitchell", "catmullrom"}) +
+                   ", a gaussian is used");
+  return makeGaussianFilter();
+}
+
+}  // namespace
+
+FilmSettings loadFilm(const Properties* node, const LoadOptions& options, Warnings& warnings) {
+  static const Properties absent;
+  const Properties& film = node ? *node : absent;
+  if (node && node->type != "hdrfilm" && node->type != "ldrfilm" && node->type != "mfilm")
+    warnings.add(node->location, "the film '" + node->type + "' is unknown" +
+                                     suggestion(node->type, {"hdrfilm", "ldrfilm", "mfilm"}) +
+                                     ", only its size and filter are used");
+  FilmSettings result;
+  result.width = dimension(film, "width", 768);
+  result.height = dimension(film, "height", 576);
+  result.filter = loadFilter(film.child("rfilter"), warnings);
+  if (options.resolution) {
+    const Vec2i size = *options.resolution;
+    if (size.x < 1 || size.y < 1 || size.x > kMaxSize || size.y > kMaxSize)
+      throw SceneError({}, "found the resolution " + std::to_string(size.x) + "x" + std::to_string(size.y) +
+                               ", expected 1 to " + std::to_string(kMaxSize) + " pixels a side");
+    result.width = size.x;
+    result.height = size.y;
+  }
+  result.crop = {0, 0, result.width, result.height};
+  if (options.crop) {
+    const Crop& crop = *options.crop;
+    checkCrop(result, crop.x, crop.y, crop.width, crop.height, {});
+    result.crop = crop;
+  } else if (!options.resolution) {
+    const int64_t x = film.integer("crop_offset_x", 0), y = film.integer("crop_offset_y", 0);
+    const int64_t width = film.integer("crop_width", result.width),
+                  height = film.integer("crop_height", result.height);
+    checkCrop(result, x, y, width, height, film.location);
+    result.crop = {int(x), int(y), int(width), int(height)};
+  }
+  return result;
+}
+
+}  // namespace odis::render

@@ -1,0 +1,135 @@
+#include "render/scene/load_shapes.h"
+
+#include <algorithm>
+
+#include "render/scene/names.h"
+
+namespace odis::render {
+namespace {
+
+bool isKnown(const std::string& type) {
+  static const char* const types[] = {"cube", "cylinder",  "disk",       "obj",
+                                      "ply",  "rectangle", "serialized", "sphere"};
+  return std::find(std::begin(types), std::end(types), type) != std::end(types);
+}
+
+// The children with this tag, marked as queried.
+std::vector<const Properties*> childrenOf(const Properties& node, const std::string& tag) {
+  std::vector<const Properties*> result;
+  for (const Properties::Child& child : node.children) {
+    if (child.node->tag != tag) continue;
+    child.queried = true;
+    result.push_back(child.node.get());
+  }
+  return result;
+}
+
+}  // namespace
+
+void ShapeLoader::load(const Properties& node) {
+  if (node.type == "shapegroup") return;  // drawn where an instance refers to it
+  if (node.type == "instance") {
+    loadInstance(node);
+  } else if (node.type == "merge") {
+    for (const Properties* part : childrenOf(node, "shape")) load(*part);
+  } else if (ShapePtr shape = make(node, false)) {
+    m_scene.addShape(std::move(shape));
+  }
+}
+
+ShapePtr ShapeLoader::make(const Properties& node, bool grouped) {
+  if (!isKnown(node.type)) {
+    m_builder.warn(node.location,
+                   "the shape '" + node.type + "' is unknown" +
+                       suggestion(node.type, {"cube", "cylinder", "disk", "obj", "ply", "rectangle",
+                                              "serialized", "sphere", "instance", "shapegroup", "merge"}) +
+                       ", it is left out");
+    return nullptr;
+  }
+  ShapePtr shape = makeShape(node, m_builder);
+  if (!shape) return nullptr;
+  const std::vector<const Properties*> bsdfs = childrenOf(node, "bsdf"),
+                                       emitters = childrenOf(node, "emitter");
+  if (bsdfs.size() > 1)
+    m_builder.warn(bsdfs[1]->location, "a shape has one BSDF only, this second one is ignored");
+  if (!bsdfs.empty()) {
+    shape->setBsdf(m_builder.bsdf(*bsdfs[0]));
+  } else {
+    // As in Mitsuba 3: grey, but a light reflects nothing.
+    BsdfPtr& bsdf = emitters.empty() ? m_defaultBsdf : m_black;
+    Properties diffuse;
+    diffuse.tag = "bsdf";
+    diffuse.type = "diffuse";
+    if (!emitters.empty()) diffuse.parameters["reflectance"] = {0.0, {}};
+    if (!bsdf) bsdf = findBsdfFactory("diffuse")(diffuse, m_builder);
+    shape->setBsdf(bsdf);
+  }
+  for (const Properties* emitter : emitters) setEmitter(*shape, *emitter, grouped);
+  if (!childrenOf(node, "medium").empty()) warnOfMedia(node);
+  for (const Properties* subsurface : childrenOf(node, "subsurface"))
+    m_builder.warn(subsurface->location,
+                   "subsurface scattering is not supported, only the BSDF of the shape is drawn");
+  m_builder.warnUnqueried(node);
+  return shape;
+}
+
+void ShapeLoader::setEmitter(Shape& shape, const Properties& node, bool grouped) {
+  if (node.type != "area") {
+    m_builder.warn(node.location, "a shape can only carry an emitter of type 'area', found '" + node.type +
+                                      "', it is left out");
+  } else if (grouped) {
+    m_builder.warn(node.location, "emitters can't be instanced, this one is left out");
+  } else if (shape.emitter()) {
+    m_builder.warn(node.location, "a shape has one emitter only, this second one is ignored");
+  } else {
+    shape.setEmitter(makeSurfaceEmitter(node, shape, m_builder));
+    m_builder.warnUnqueried(node);
+  }
+}
+
+ShapeLoader::Group ShapeLoader::group(const Properties& node) {
+  Group& known = m_groups[&node];
+  if (known) return known;
+  std::vector<ShapePtr> shapes;
+  collect(node, shapes);
+  m_builder.warnUnqueried(node);
+  return known = std::make_shared<const std::vector<ShapePtr>>(std::move(shapes));
+}
+
+void ShapeLoader::collect(const Properties& node, std::vector<ShapePtr>& shapes) {
+  for (const Properties* part : childrenOf(node, "shape")) {
+    if (part->type == "instance" || part->type == "shapegroup") {
+      throw SceneError(part->location, "found the shape '" + part->type + "' in a " + node.type +
+                                           ", expected shapes that are not instanced themselves");
+    } else if (part->type == "merge") {
+      collect(*part, shapes);
+    } else if (ShapePtr shape = make(*part, true)) {
+      shapes.push_back(std::move(shape));
+    }
+  }
+}
+
+void ShapeLoader::loadInstance(const Properties& node) {
+  const std::vector<const Properties*> groups = childrenOf(node, "shape");
+  if (groups.size() != 1 || groups[0]->type != "shapegroup")
+    throw SceneError(
+        node.location,
+        "found an instance without its shape group, expected one <ref> to a <shape type=\"shapegroup\">");
+  const Group shapes = group(*groups[0]);
+  const Matrix4 toWorld = node.transform("to_world");
+  m_builder.warnUnqueried(node);
+  if (shapes->empty()) {
+    m_builder.warn(node.location, "the shape group of this instance is empty, there is nothing to draw");
+    return;
+  }
+  m_scene.addInstance({shapes, toWorld});
+}
+
+void ShapeLoader::warnOfMedia(const Properties& node) {
+  if (m_warnedOfMedia) return;
+  m_warnedOfMedia = true;
+  m_builder.warn(node.location,
+                 "participating media are not supported, all of them are left out (this is the first)");
+}
+
+}  // namespace odis::render

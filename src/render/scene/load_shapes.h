@@ -1,0 +1,37 @@
+// The shapes of scene files: their geometry, BSDFs and area lights, shape groups and instances.
+#pragma once
+
+#include <map>
+#include <memory>
+#include <vector>
+
+#include "render/scene/builder.h"
+#include "render/scene/scene.h"
+
+namespace odis::render {
+
+class ShapeLoader {
+ public:
+  ShapeLoader(Scene& scene, Builder& builder) : m_scene(scene), m_builder(builder) {}
+  // Adds what a <shape> element stands for to the scene. Throws SceneError.
+  void load(const Properties& node);
+  // Media are not drawn: one warning for all of them.
+  void warnOfMedia(const Properties& node);
+
+ private:
+  using Group = std::shared_ptr<const std::vector<ShapePtr>>;
+
+  ShapePtr make(const Properties& node, bool grouped);
+  void setEmitter(Shape& shape, const Properties& node, bool grouped);
+  Group group(const Properties& node);
+  void collect(const Properties& node, std::vector<ShapePtr>& shapes);
+  void loadInstance(const Properties& node);
+
+  Scene& m_scene;
+  Builder& m_builder;
+  std::map<const Properties*, Group> m_groups;
+  BsdfPtr m_defaultBsdf, m_black;
+  bool m_warnedOfMedia = false;
+};
+
+}  // namespace odis::render

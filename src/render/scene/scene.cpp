@@ -1,0 +1,70 @@
+#include "render/scene/scene.h"
+
+#include "render/scene/intersector.h"
+#include "render/shape/surface_math.h"
+
+namespace odis::render {
+
+Scene::Scene() = default;
+Scene::~Scene() = default;
+
+void Scene::addShape(ShapePtr shape) {
+  if (const SurfaceEmitter* emitter = shape->emitter()) m_emitters.push_back(emitter);
+  m_shapes.push_back(std::move(shape));
+}
+
+void Scene::addInstance(Instance instance) {
+  m_instances.push_back(std::move(instance));
+}
+
+void Scene::addEmitter(EmitterPtr emitter) {
+  m_emitters.push_back(emitter.get());
+  if (const auto* environment = dynamic_cast<const EnvironmentEmitter*>(emitter.get()))
+    m_environments.push_back(environment);
+  m_ownedEmitters.push_back(std::move(emitter));
+}
+
+void Scene::finish() {
+  m_intersector = std::make_unique<Intersector>(m_shapes, m_instances);
+  // A scene of lights alone still has an extent, so that they may divide by it.
+  if (!m_intersector->box(m_bounds.min, m_bounds.max)) m_bounds.min = m_bounds.max = Vec3(0, 0, 0);
+  m_bounds.center = (m_bounds.min + m_bounds.max) * 0.5f;
+  m_bounds.radius = length(m_bounds.max - m_bounds.center);
+  if (!(m_bounds.radius > 0)) m_bounds.radius = 1;
+  // Surface emitters know their extent from their shape.
+  for (const EmitterPtr& emitter : m_ownedEmitters) emitter->setSceneBounds(m_bounds);
+}
+
+bool Scene::intersect(const Ray& ray, SurfacePoint& at) const {
+  return m_intersector->intersect(ray, at);
+}
+
+bool Scene::occluded(const Ray& ray) const {
+  return m_intersector->occluded(ray);
+}
+
+Ray Scene::spawn(const SurfacePoint& at, const Vec3& direction, float distance) {
+  // Leave the surface by more than the position may be wrong, to the side that the direction points to.
+  const float error = std::max(at.pError, positionError(maxAbs(at.p)));
+  const float offset = std::copysign(error, dot(at.ng, direction));
+  const Vec3 origin = at.p + at.ng * offset;
+  if (distance == kInfinity) return {origin, direction, distance};
+  // Stop before the target by what its own position may be wrong, and by what is lost of a long distance.
+  const float targetError = positionError(maxAbs(at.p + direction * distance));
+  return {origin, direction,
+          std::max(distance - std::max(distance * 1e-4f, 2 * (error + targetError)), 0.0f)};
+}
+
+uint64_t Scene::bytes() const {
+  uint64_t bytes = m_intersector ? m_intersector->bytes() : 0;
+  for (const ShapePtr& shape : m_shapes) bytes += shape->bytes();
+  std::vector<const void*> counted;
+  for (const Instance& instance : m_instances) {
+    if (std::find(counted.begin(), counted.end(), instance.group.get()) != counted.end()) continue;
+    counted.push_back(instance.group.get());
+    for (const ShapePtr& shape : *instance.group) bytes += shape->bytes();
+  }
+  return bytes;
+}
+
+}  // namespace odis::render

@@ -1,0 +1,17 @@
+#include "render/sensor/perspective.h"
+
+namespace odis::render {
+
+Projection::Projection(double fov, const Vec2i& resolution, const Vec2& principalPointOffset) {
+  const double width = 2 * std::tan(fov / 2), pixel = width / resolution.x;
+  m_pixel = float(pixel);
+  m_corner = {float(width / 2 - principalPointOffset.x * width),
+              float(pixel * resolution.y * (0.5 - principalPointOffset.y))};
+}
+
+Ray Perspective::ray(const Vec2& film, const Vec2&) const {
+  return {transformPoint(m_toWorld, Vec3(0)),
+          normalize(transformVector(m_toWorld, m_projection.direction(film)))};
+}
+
+}  // namespace odis::render

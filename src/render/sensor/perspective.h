@@ -1,0 +1,40 @@
+// perspective: a pinhole camera.
+//
+//   to_world                    where the camera is: it looks along +z, y is up in the image, x points to the
+//   left of it.
+//                               Mirroring is allowed; scale is removed, with a warning
+//   fov, fov_axis, focal_length see field_of_view.h
+//   principal_point_offset_x/y  shifts the image, in widths and heights of it (default: 0)
+//   near_clip, far_clip, shutter_open, shutter_close   have no effect
+#pragma once
+
+#include "render/sensor/sensor.h"
+
+namespace odis::render {
+
+// Which direction of the camera's space belongs to a place on the film.
+struct Projection {
+  // `fov` is the horizontal field of view in radians.
+  Projection(double fov, const Vec2i& resolution, const Vec2& principalPointOffset = Vec2(0));
+  // The point at depth one.
+  Vec3 direction(const Vec2& film) const {
+    return {m_corner.x - film.x * m_pixel, m_corner.y - film.y * m_pixel, 1};
+  }
+
+ private:
+  Vec2 m_corner;  // of the image's upper left corner, at depth one
+  float m_pixel;  // width of a pixel there
+};
+
+class Perspective final : public Sensor {
+ public:
+  Perspective(const Matrix4& toWorld, const Projection& projection)
+      : m_toWorld(toWorld), m_projection(projection) {}
+  Ray ray(const Vec2& film, const Vec2& lens) const override;
+
+ private:
+  Matrix4 m_toWorld;
+  Projection m_projection;
+};
+
+}  // namespace odis::render

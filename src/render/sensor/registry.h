@@ -1,0 +1,15 @@
+// Makes the cameras of scene files.
+#pragma once
+
+#include <memory>
+
+#include "render/scene/properties.h"
+#include "render/sensor/sensor.h"
+
+namespace odis::render {
+
+// Makes the sensor of a <sensor> element for a full image of this size. Throws SceneError; a type that isn't
+// known is seen through a pinhole, with a warning.
+std::shared_ptr<const Sensor> makeSensor(const Properties& node, const Vec2i& resolution, Warnings& warnings);
+
+}  // namespace odis::render

@@ -1,0 +1,32 @@
+// The factories of shapes, one a model and defined in its file, and what they have in common.
+#pragma once
+
+#include "render/scene/builder.h"
+#include "render/shape/mesh.h"
+
+namespace odis::render {
+
+ShapePtr makeCube(const Properties& node, Builder& builder);
+ShapePtr makeCylinder(const Properties& node, Builder& builder);
+ShapePtr makeDisk(const Properties& node, Builder& builder);
+ShapePtr makeObj(const Properties& node, Builder& builder);
+ShapePtr makePly(const Properties& node, Builder& builder);
+ShapePtr makeRectangle(const Properties& node, Builder& builder);
+ShapePtr makeSerialized(const Properties& node, Builder& builder);
+ShapePtr makeSphere(const Properties& node, Builder& builder);
+
+// The parameter to_world; throws SceneError if it can't be inverted.
+Matrix4 readToWorld(const Properties& node);
+
+// The parameters that all mesh files share.
+struct MeshFile {
+  MeshFile(const Properties& node, Builder& builder, bool flipTexCoordsDefault);
+  std::shared_ptr<Mesh> makeMesh(MeshData data, Builder& builder) const;
+
+  std::string path;
+  SourceLocation location;  // of the file's name in the scene
+  MeshOptions options;
+  bool flipTexCoords;
+};
+
+}  // namespace odis::render

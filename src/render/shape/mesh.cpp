@@ -1,0 +1,182 @@
+#include "render/shape/mesh.h"
+
+#include <fmt/format.h>
+
+#include "render/math/warp.h"
+#include "render/shape/embree.h"
+#include "render/shape/surface_math.h"
+
+namespace odis::render {
+
+namespace {
+
+using Vec3d = Imath::V3d;
+
+// Twice the area of the triangle along its normal. Differences of floats are exact enough in double precision
+// for triangles that are tiny and far from the origin.
+Vec3d areaVector(const Vec3& a, const Vec3& b, const Vec3& c) {
+  const Vec3d base(a);
+  return (Vec3d(b) - base).cross(Vec3d(c) - base);
+}
+
+void dropNonFinite(MeshData& data, const SourceLocation& at, Warnings& warnings) {
+  const auto broken = [&](const Triangle& t) {
+    return !isFinite(data.positions[t[0]]) || !isFinite(data.positions[t[1]]) ||
+           !isFinite(data.positions[t[2]]);
+  };
+  const size_t dropped = std::erase_if(data.triangles, broken);
+  if (dropped > 0) warnings.add(at, fmt::format("dropped {} triangles with non-finite vertices", dropped));
+  for (Vec2& uv : data.uvs)
+    if (!std::isfinite(uv.x) || !std::isfinite(uv.y)) uv = {0, 0};
+}
+
+void transform(MeshData& data, const Matrix4& toWorld) {
+  if (toWorld == Matrix4()) return;
+  const Imath::M44d matrix(toWorld);
+  for (Vec3& p : data.positions) p = Vec3(Vec3d(p) * matrix);
+  const Matrix4 inverse(matrix.inverse());
+  for (Vec3& n : data.normals) n = transformNormal(inverse, n);
+}
+
+// Averages the normals of the adjacent triangles, weighted by their angle at the vertex (Thürmer and Wüthrich
+// 1998, "Computing Vertex Normals from Polygonal Facets").
+std::vector<Vec3> smoothNormals(const MeshData& data) {
+  std::vector<Vec3> normals(data.positions.size(), Vec3(0, 0, 0));
+  for (const Triangle& triangle : data.triangles) {
+    const Vec3 p[3] = {data.positions[triangle[0]], data.positions[triangle[1]], data.positions[triangle[2]]};
+    const Vec3 normal = normalizeOr(areaVector(p[0], p[1], p[2]), Vec3(0, 0, 0));
+    for (int i = 0; i < 3; ++i) {
+      const Vec3 a = p[(i + 1) % 3] - p[i], b = p[(i + 2) % 3] - p[i];
+      const float angle = std::atan2(length(cross(a, b)), dot(a, b));
+      normals[triangle[i]] += normal * angle;
+    }
+  }
+  return normals;
+}
+
+}  // namespace
+
+std::shared_ptr<Mesh> Mesh::make(MeshData data, const MeshOptions& options, const SourceLocation& at,
+                                 Warnings& warnings) {
+  const size_t count = data.positions.size();
+  for (size_t i = 0; i < data.triangles.size(); ++i)
+    for (const uint32_t vertex : data.triangles[i])
+      if (vertex >= count)
+        throw SceneError(
+            at, fmt::format("triangle {} refers to vertex {}, expected less than {}", i, vertex, count));
+  transform(data, options.toWorld);
+  dropNonFinite(data, at, warnings);
+  if (data.triangles.empty()) {
+    warnings.add(at, "the mesh has no triangles and is left out");
+    return nullptr;
+  }
+  return std::shared_ptr<Mesh>(new Mesh(std::move(data), options));
+}
+
+Mesh::Mesh(MeshData data, const MeshOptions& options) : m_flipFaceNormals(options.flipNormals) {
+  if (options.faceNormals)
+    data.normals.clear();
+  else if (data.normals.empty())
+    data.normals = smoothNormals(data);
+  // A normal that has no direction stays zero: the triangle's own takes its place.
+  for (Vec3& n : data.normals) n = normalizeOr(Vec3d(n), {0, 0, 0}) * (options.flipNormals ? -1.0f : 1.0f);
+
+  m_positions = std::move(data.positions);
+  m_positions.emplace_back(0.0f);
+  m_normals = std::move(data.normals);
+  m_uvs = std::move(data.uvs);
+  m_triangles = std::move(data.triangles);
+
+  double sum = 0;
+  std::vector<double> sums;
+  sums.reserve(m_triangles.size());
+  for (const Triangle& t : m_triangles) {
+    const Vec3d normal = areaVector(m_positions[t[0]], m_positions[t[1]], m_positions[t[2]]);
+    sums.push_back(sum += 0.5 * std::sqrt(normal.dot(normal)));
+  }
+  m_area = float(sum);
+  m_cdf.assign(m_triangles.size() + 1, 0.0f);
+  if (sum > 0)
+    for (size_t i = 0; i < sums.size(); ++i) m_cdf[i + 1] = float(sums[i] / sum);
+}
+
+RTCGeometryTy* Mesh::makeGeometry(RTCDeviceTy* device) const {
+  RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
+  rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, m_positions.data(), 0,
+                             sizeof(Vec3), m_positions.size() - 1);
+  rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, m_triangles.data(), 0,
+                             sizeof(Triangle), m_triangles.size());
+  rtcCommitGeometry(geometry);
+  return geometry;
+}
+
+SurfacePoint Mesh::surfacePoint(const Ray&, const RawHit& hit) const {
+  SurfacePoint at = pointOn(hit.primitive, {hit.u, hit.v});
+  toWorld(at, hit);
+  return at;
+}
+
+SurfacePoint Mesh::pointOn(uint32_t triangle, const Vec2& barycentric) const {
+  const Triangle& t = m_triangles[triangle];
+  const Vec3 &p0 = m_positions[t[0]], &p1 = m_positions[t[1]], &p2 = m_positions[t[2]];
+  const float b1 = barycentric.x, b2 = barycentric.y, b0 = 1 - b1 - b2;
+  const Vec3 e1 = p1 - p0, e2 = p2 - p0;
+
+  SurfacePoint at;
+  at.shape = this;
+  at.primitive = triangle;
+  at.barycentric = barycentric;
+  at.p = p0 * b0 + p1 * b1 + p2 * b2;
+  at.pError = positionError(std::max({maxAbs(p0), maxAbs(p1), maxAbs(p2)}));
+  at.ng = normalizeOr(areaVector(p0, p1, p2), {0, 0, 1});
+  if (m_flipFaceNormals) at.ng = -at.ng;
+
+  if (m_uvs.empty()) {
+    at.uv = barycentric;
+    at.dpdu = e1;
+    at.dpdv = e2;
+  } else {
+    const Vec2 &uv0 = m_uvs[t[0]], &uv1 = m_uvs[t[1]], &uv2 = m_uvs[t[2]];
+    at.uv = uv0 * b0 + uv1 * b1 + uv2 * b2;
+    const Vec2 d1 = uv1 - uv0, d2 = uv2 - uv0;
+    // In double precision the products are exact, so coordinates without area are found out.
+    const auto inverse = float(1 / (double(d1.x) * d2.y - double(d1.y) * d2.x));
+    if (std::isfinite(inverse)) {
+      at.dpdu = (e1 * d2.y - e2 * d1.y) * inverse;
+      at.dpdv = (e2 * d1.x - e1 * d2.x) * inverse;
+    } else {
+      const Frame frame(at.ng);
+      at.dpdu = frame.s;
+      at.dpdv = frame.t;
+    }
+  }
+
+  Vec3 n = at.ng;
+  if (!m_normals.empty()) {
+    n = normalizeOr(Vec3d(m_normals[t[0]] * b0 + m_normals[t[1]] * b1 + m_normals[t[2]] * b2), at.ng);
+    if (dot(n, at.ng) < 0) at.ng = -at.ng;
+  }
+  at.shading = Frame::fromTangent(n, at.dpdu);
+  return at;
+}
+
+ShapeSample Mesh::sample(const Vec3& ref, const Vec2& u) const {
+  // The first triangle whose end lies above u: those without area begin where they end, and are never found.
+  const auto end = std::upper_bound(m_cdf.begin() + 1, m_cdf.end(), u.x);
+  if (end == m_cdf.end()) return {};
+  const auto triangle = uint32_t(end - m_cdf.begin() - 1);
+  const float rest = std::min((u.x - end[-1]) / (end[0] - end[-1]), kOneMinusEpsilon);
+  return uniformAreaSample(ref, pointOn(triangle, squareToTriangle({rest, u.y})), m_area);
+}
+
+float Mesh::pdf(const Vec3& ref, const SurfacePoint& at) const {
+  return uniformAreaPdf(ref, at, m_area);
+}
+
+uint64_t Mesh::bytes() const {
+  return m_positions.capacity() * sizeof(Vec3) + m_normals.capacity() * sizeof(Vec3) +
+         m_uvs.capacity() * sizeof(Vec2) + m_triangles.capacity() * sizeof(Triangle) +
+         m_cdf.capacity() * sizeof(float);
+}
+
+}  // namespace odis::render

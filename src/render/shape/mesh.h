@@ -1,0 +1,59 @@
+// Triangle meshes: what files and the shapes made of triangles become.
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "render/scene/error.h"
+#include "render/shape/shape.h"
+
+namespace odis::render {
+
+using Triangle = std::array<uint32_t, 3>;
+
+// A mesh in object space. `normals` and `uvs` are empty or have one element a position.
+struct MeshData {
+  std::vector<Vec3> positions, normals;
+  std::vector<Vec2> uvs;
+  std::vector<Triangle> triangles;
+};
+
+struct MeshOptions {
+  Matrix4 toWorld;
+  bool faceNormals = false;  // shade with the normal of the triangle
+  bool flipNormals = false;
+};
+
+// Without normals in `data`, smooth ones are computed unless face normals are asked for. The side of the
+// shading normal is the outside, even where the winding disagrees.
+class Mesh final : public Shape {
+ public:
+  // Null, with a warning, if there is nothing to draw. Triangles with non-finite vertices are dropped with a
+  // warning. Throws SceneError if a triangle names a vertex that does not exist.
+  static std::shared_ptr<Mesh> make(MeshData data, const MeshOptions& options, const SourceLocation& at,
+                                    Warnings& warnings);
+
+  RTCGeometryTy* makeGeometry(RTCDeviceTy* device) const override;
+  SurfacePoint surfacePoint(const Ray& ray, const RawHit& hit) const override;
+  float area() const override { return m_area; }
+  ShapeSample sample(const Vec3& ref, const Vec2& u) const override;  // uniform by area
+  float pdf(const Vec3& ref, const SurfacePoint& at) const override;
+  uint64_t primitiveCount() const override { return m_triangles.size(); }
+  uint64_t bytes() const override;
+
+  // The point with barycentric coordinates (b1, b2) on a triangle, in the space of the mesh.
+  SurfacePoint pointOn(uint32_t triangle, const Vec2& barycentric) const;
+
+ private:
+  Mesh(MeshData data, const MeshOptions& options);
+
+  std::vector<Vec3> m_positions;  // one more than there are vertices: Embree reads 16 bytes at each
+  std::vector<Vec3> m_normals;    // empty: face normals
+  std::vector<Vec2> m_uvs;        // empty: barycentric coordinates stand in for them
+  std::vector<Triangle> m_triangles;
+  std::vector<float> m_cdf;  // of the triangles by area, size n + 1
+  float m_area = 0;
+  bool m_flipFaceNormals = false;
+};
+
+}  // namespace odis::render

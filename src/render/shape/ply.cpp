@@ -1,0 +1,291 @@
+// ply: a triangle mesh in Stanford's polygon format, as text or binary of either byte order.
+//
+//   filename         string           of the file
+//   face_normals     boolean, false   shade with the triangles' own normals
+//   flip_normals     boolean, false   turn the surface inside out
+//   flip_tex_coords  boolean, false   v becomes 1 - v
+//   to_world         transform
+//
+// Reads x, y, z, nx, ny, nz and u, v (or s, t) of the vertices and the lists vertex_indices (or vertex_index)
+// of the faces; polygons become fans of triangles; other properties and elements are skipped. Without normals
+// in the file, smooth ones are computed.
+#include <fmt/format.h>
+
+#include <bit>
+#include <cstring>
+#include <optional>
+
+#include "render/shape/factories.h"
+#include "render/shape/file_bytes.h"
+#include "render/shape/mesh_files.h"
+#include "render/shape/text_cursor.h"
+
+namespace odis::render {
+
+namespace {
+
+enum class Encoding { ascii, little, big };
+enum class Scalar { int8, uint8, int16, uint16, int32, uint32, float32, float64 };
+
+std::optional<Scalar> scalarNamed(std::string_view name) {
+  static constexpr std::pair<std::string_view, Scalar> names[] = {
+      {"char", Scalar::int8},      {"int8", Scalar::int8},       {"uchar", Scalar::uint8},
+      {"uint8", Scalar::uint8},    {"short", Scalar::int16},     {"int16", Scalar::int16},
+      {"ushort", Scalar::uint16},  {"uint16", Scalar::uint16},   {"int", Scalar::int32},
+      {"int32", Scalar::int32},    {"uint", Scalar::uint32},     {"uint32", Scalar::uint32},
+      {"float", Scalar::float32},  {"float32", Scalar::float32}, {"double", Scalar::float64},
+      {"float64", Scalar::float64}};
+  for (const auto& [known, scalar] : names)
+    if (name == known) return scalar;
+  return {};
+}
+
+// What a property of a vertex is stored as.
+enum class Role { none, x, y, z, nx, ny, nz, u, v };
+
+Role roleNamed(std::string_view name) {
+  static constexpr std::pair<std::string_view, Role> names[] = {
+      {"x", Role::x},   {"y", Role::y}, {"z", Role::z}, {"nx", Role::nx}, {"ny", Role::ny},
+      {"nz", Role::nz}, {"u", Role::u}, {"s", Role::u}, {"v", Role::v},   {"t", Role::v}};
+  for (const auto& [known, role] : names)
+    if (name == known) return role;
+  return Role::none;
+}
+
+struct Property {
+  std::string name;
+  Scalar type = Scalar::float32;
+  std::optional<Scalar> countType;  // of a list
+  Role role = Role::none;
+};
+
+struct Element {
+  std::string name;
+  uint64_t count = 0;
+  std::vector<Property> properties;
+
+  bool has(Role role) const {
+    return std::any_of(properties.begin(), properties.end(),
+                       [&](const Property& p) { return p.role == role; });
+  }
+};
+
+class PlyReader {
+ public:
+  PlyReader(const std::string& path, std::string_view bytes)
+      : m_path(path), m_cursor(bytes), m_bytes(bytes) {}
+
+  MeshData read(Warnings& warnings) {
+    readHeader();
+    m_offset = size_t(m_cursor.position() - m_bytes.data());
+    for (const Element& element : m_elements) {
+      if (element.properties.empty()) continue;
+      // Each row takes at least a byte, so this bounds what an absurd count can make us allocate.
+      if (element.count > remaining())
+        fail(fmt::format("{} elements \"{}\" are announced, but only {} bytes follow", element.count,
+                         element.name, remaining()));
+      if (element.name == "vertex")
+        readVertices(element);
+      else if (element.name == "face")
+        readFaces(element);
+      else
+        for (m_row = 0; m_row < element.count; ++m_row)
+          for (const Property& property : element.properties) skip(property);
+    }
+    if (m_degenerate > 0)
+      warnings.add({m_path, 0, 0},
+                   fmt::format("ignored {} faces with fewer than three corners", m_degenerate));
+    return std::move(m_data);
+  }
+
+ private:
+  void readHeader() {
+    if (m_cursor.takeLine() != "ply") fail("not a PLY file: expected \"ply\" on the first line");
+    bool hasFormat = false;
+    for (;;) {
+      if (m_cursor.atEnd()) fail("the header has no end_header");
+      const std::string_view keyword = m_cursor.word();
+      if (keyword == "format") {
+        hasFormat = true;
+        readFormat();
+      } else if (keyword == "element") {
+        Element& element = m_elements.emplace_back();
+        element.name = m_cursor.word();
+        m_cursor.skipBlanks();
+        if (!m_cursor.number(element.count)) fail("expected the count of an element");
+      } else if (keyword == "property") {
+        readProperty();
+      } else if (keyword == "end_header") {
+        m_cursor.takeLine();
+        break;
+      }
+      m_cursor.takeLine();
+    }
+    if (!hasFormat) fail("the header names no format");
+  }
+
+  void readFormat() {
+    const std::string_view format = m_cursor.word();
+    if (format == "ascii")
+      m_encoding = Encoding::ascii;
+    else if (format == "binary_little_endian")
+      m_encoding = Encoding::little;
+    else if (format == "binary_big_endian")
+      m_encoding = Encoding::big;
+    else
+      fail(fmt::format("unknown format \"{}\", expected ascii, binary_little_endian or binary_big_endian",
+                       format));
+  }
+
+  void readProperty() {
+    if (m_elements.empty()) fail("a property before the first element");
+    Property property;
+    std::string_view type = m_cursor.word();
+    if (type == "list") {
+      property.countType = scalarNamed(m_cursor.word());
+      if (!property.countType) fail("unknown type of a list's count");
+      type = m_cursor.word();
+    }
+    const std::optional<Scalar> scalar = scalarNamed(type);
+    if (!scalar) fail(fmt::format("unknown type \"{}\"", type));
+    property.type = *scalar;
+    property.name = m_cursor.word();
+    if (!property.countType) property.role = roleNamed(property.name);
+    m_elements.back().properties.push_back(std::move(property));
+  }
+
+  void readVertices(const Element& element) {
+    if (!element.has(Role::x) || !element.has(Role::y) || !element.has(Role::z))
+      fail("the vertices have no x, y and z");
+    const bool hasNormals = element.has(Role::nx) && element.has(Role::ny) && element.has(Role::nz);
+    const bool hasUvs = element.has(Role::u) && element.has(Role::v);
+    m_data.positions.reserve(element.count);
+    if (hasNormals) m_data.normals.reserve(element.count);
+    if (hasUvs) m_data.uvs.reserve(element.count);
+    float values[9] = {};
+    for (m_row = 0; m_row < element.count; ++m_row) {
+      for (const Property& property : element.properties) {
+        if (property.countType)
+          skip(property);
+        else
+          values[int(property.role)] = float(next(property.type));
+      }
+      m_data.positions.emplace_back(values[1], values[2], values[3]);
+      if (hasNormals) m_data.normals.emplace_back(values[4], values[5], values[6]);
+      if (hasUvs) m_data.uvs.emplace_back(values[7], values[8]);
+    }
+  }
+
+  void readFaces(const Element& element) {
+    for (m_row = 0; m_row < element.count; ++m_row)
+      for (const Property& property : element.properties) {
+        if (property.countType && (property.name == "vertex_indices" || property.name == "vertex_index"))
+          readPolygon(property);
+        else
+          skip(property);
+      }
+  }
+
+  void readPolygon(const Property& property) {
+    const uint64_t corners = listLength(property);
+    uint32_t first = 0, previous = 0;
+    for (uint64_t i = 0; i < corners; ++i) {
+      const double index = next(property.type);
+      if (!(index >= 0 && index < double(m_data.positions.size())))
+        fail(fmt::format("face {} refers to vertex {}, expected less than {}", m_row, index,
+                         m_data.positions.size()));
+      const auto vertex = uint32_t(index);
+      if (i == 0) first = vertex;
+      if (i >= 2) m_data.triangles.push_back({first, previous, vertex});
+      previous = vertex;
+    }
+    if (corners < 3) ++m_degenerate;
+  }
+
+  uint64_t listLength(const Property& property) {
+    const double length = next(*property.countType);
+    if (!(length >= 0 && length <= double(remaining())))
+      fail(fmt::format("a list of {} elements in row {}, but only {} bytes follow", length, m_row,
+                       remaining()));
+    return uint64_t(length);
+  }
+
+  void skip(const Property& property) {
+    const uint64_t count = property.countType ? listLength(property) : 1;
+    for (uint64_t i = 0; i < count; ++i) next(property.type);
+  }
+
+  uint64_t remaining() const {
+    return m_encoding == Encoding::ascii ? uint64_t(m_bytes.data() + m_bytes.size() - m_cursor.position())
+                                         : m_bytes.size() - m_offset;
+  }
+
+  // The next number of the body.
+  double next(Scalar type) {
+    if (m_encoding == Encoding::ascii) {
+      double value;
+      m_cursor.skipSpace();
+      if (!m_cursor.number(value)) fail(m_cursor.atEnd() ? "the file ends too early" : "expected a number");
+      return value;
+    }
+    switch (type) {
+      case Scalar::int8:
+        return raw<int8_t>();
+      case Scalar::uint8:
+        return raw<uint8_t>();
+      case Scalar::int16:
+        return raw<int16_t>();
+      case Scalar::uint16:
+        return raw<uint16_t>();
+      case Scalar::int32:
+        return raw<int32_t>();
+      case Scalar::uint32:
+        return raw<uint32_t>();
+      case Scalar::float32:
+        return raw<float>();
+      case Scalar::float64:
+        return raw<double>();
+    }
+    return 0;
+  }
+
+  template <class T>
+  T raw() {
+    if (remaining() < sizeof(T)) fail(fmt::format("the file ends too early, in row {}", m_row));
+    char bytes[sizeof(T)];
+    std::memcpy(bytes, m_bytes.data() + m_offset, sizeof(T));
+    m_offset += sizeof(T);
+    if ((m_encoding == Encoding::little) != (std::endian::native == std::endian::little))
+      std::reverse(bytes, bytes + sizeof(T));
+    return std::bit_cast<T>(bytes);
+  }
+
+  // Text has lines; of a binary body only the file is known, and messages name the row.
+  [[noreturn]] void fail(const std::string& message) const {
+    throw SceneError({m_path, m_encoding == Encoding::ascii ? m_cursor.line() : 0, 0}, message);
+  }
+
+  const std::string& m_path;
+  TextCursor m_cursor;
+  std::string_view m_bytes;
+  size_t m_offset = 0;  // of the next byte of a binary body
+  Encoding m_encoding = Encoding::ascii;
+  std::vector<Element> m_elements;
+  MeshData m_data;
+  uint64_t m_row = 0, m_degenerate = 0;
+};
+
+}  // namespace
+
+MeshData readPly(const std::string& path, const SourceLocation& at, Warnings& warnings) {
+  const FileBytes file(path, at);
+  return PlyReader(path, file.view()).read(warnings);
+}
+
+ShapePtr makePly(const Properties& node, Builder& builder) {
+  const MeshFile file(node, builder, false);
+  MeshData data = readPly(file.path, file.location, builder.warnings());
+  return file.makeMesh(std::move(data), builder);
+}
+
+}  // namespace odis::render

@@ -1,0 +1,67 @@
+// The names of shapes in scene files.
+#include <fmt/format.h>
+
+#include "render/shape/factories.h"
+
+namespace odis::render {
+
+Matrix4 readToWorld(const Properties& node) {
+  const Matrix4 matrix = node.transform("to_world");
+  const Imath::V3d x(matrix[0][0], matrix[0][1], matrix[0][2]), y(matrix[1][0], matrix[1][1], matrix[1][2]),
+      z(matrix[2][0], matrix[2][1], matrix[2][2]);
+  // The volume of the transformed axes against that of a box with edges as long: zero if they lie in a plane.
+  const double volume = std::abs(x.cross(y).dot(z)), box = std::sqrt(x.dot(x) * y.dot(y) * z.dot(z));
+  const Vec3 origin(matrix[3][0], matrix[3][1], matrix[3][2]);
+  if (!(volume > 1e-9 * box) || !std::isfinite(box) || !isFinite(origin)) {
+    const auto parameter = node.parameters.find("to_world");
+    throw SceneError(
+        parameter == node.parameters.end() ? node.location : parameter->second.location,
+        "to_world cannot be inverted; expected a finite transform that keeps all three dimensions");
+  }
+  return matrix;
+}
+
+MeshFile::MeshFile(const Properties& node, Builder& builder, bool flipTexCoordsDefault) {
+  const auto parameter = node.parameters.find("filename");
+  location = parameter == node.parameters.end() ? node.location : parameter->second.location;
+  path = builder.resolvePath(node.string("filename"), location);
+  options.toWorld = readToWorld(node);
+  options.faceNormals = node.boolean("face_normals", false);
+  options.flipNormals = node.boolean("flip_normals", false);
+  flipTexCoords = node.boolean("flip_tex_coords", flipTexCoordsDefault);
+  if (node.has("max_smooth_angle")) {
+    node.number("max_smooth_angle");
+    builder.warn(node.location, "max_smooth_angle is not supported: normals are smooth everywhere");
+  }
+}
+
+std::shared_ptr<Mesh> MeshFile::makeMesh(MeshData data, Builder& builder) const {
+  if (flipTexCoords)
+    for (Vec2& uv : data.uvs) uv.y = 1 - uv.y;
+  return Mesh::make(std::move(data), options, {path, 0, 0}, builder.warnings());
+}
+
+ShapePtr makeShape(const Properties& node, Builder& builder) {
+  struct Entry {
+    const char* type;
+    ShapePtr (*factory)(const Properties&, Builder&);
+  };
+  static constexpr Entry entries[] = {
+      {"cube", makeCube},
+      {"cylinder", makeCylinder},
+      {"disk", makeDisk},
+      {"obj", makeObj},
+      {"ply", makePly},
+      {"rectangle", makeRectangle},
+      {"serialized", makeSerialized},
+      {"sphere", makeSphere},
+  };
+  std::string known;
+  for (const Entry& entry : entries) {
+    if (node.type == entry.type) return entry.factory(node, builder);
+    known += (known.empty() ? "" : ", ") + std::string(entry.type);
+  }
+  throw SceneError(node.location, fmt::format("unknown shape \"{}\", expected one of: {}", node.type, known));
+}
+
+}  // namespace odis::render

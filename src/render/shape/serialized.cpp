@@ -1,0 +1,162 @@
+// serialized: a triangle mesh in the binary format of Mitsuba 0.x, versions 3 and 4.
+//
+//   filename      string           of the file
+//   shape_index   integer, 0       which of the file's meshes
+//   face_normals  boolean, false   shade with the triangles' own normals (the file may ask for it too)
+//   flip_normals  boolean, false   turn the surface inside out
+//   to_world      transform
+//
+// The file: for each mesh a header (uint16 0x041C, uint16 version) and a zlib stream; at the end the offset
+// of each mesh (uint64, version 3: uint32) and their number (uint32). All little-endian.
+#include <fmt/format.h>
+#include <zlib.h>
+
+#include <cstring>
+
+#include "render/shape/factories.h"
+#include "render/shape/file_bytes.h"
+#include "render/shape/mesh_files.h"
+
+namespace odis::render {
+
+namespace {
+
+constexpr uint16_t kMagic = 0x041C;
+enum Flag : uint32_t {
+  kHasNormals = 0x0001,
+  kHasUvs = 0x0002,
+  kHasColors = 0x0008,
+  kFaceNormals = 0x0010,
+  kDouble = 0x2000,
+};
+
+template <class T>
+T readAt(std::string_view bytes, uint64_t offset, const SourceLocation& at) {
+  if (offset > bytes.size() || bytes.size() - offset < sizeof(T))
+    throw SceneError(at, "the file ends too early");
+  T value;
+  std::memcpy(&value, bytes.data() + offset, sizeof(T));
+  return value;
+}
+
+// Decompresses a zlib stream piece by piece.
+class Inflater {
+ public:
+  Inflater(std::string_view compressed, const SourceLocation& at) : m_at(at), m_size(compressed.size()) {
+    m_stream.next_in = reinterpret_cast<Bytef*>(const_cast<char*>(compressed.data()));
+    m_stream.avail_in = uInt(std::min<size_t>(compressed.size(), UINT32_MAX));
+    if (inflateInit(&m_stream) != Z_OK) throw SceneError(m_at, "cannot start zlib");
+  }
+  ~Inflater() { inflateEnd(&m_stream); }
+  Inflater(const Inflater&) = delete;
+
+  void read(void* target, uint64_t bytes) {
+    auto* out = static_cast<Bytef*>(target);
+    while (bytes > 0) {
+      const uInt piece = uInt(std::min<uint64_t>(bytes, 1u << 30));
+      m_stream.next_out = out;
+      m_stream.avail_out = piece;
+      const int result = inflate(&m_stream, Z_SYNC_FLUSH);
+      const uInt done = piece - m_stream.avail_out;
+      out += done;
+      bytes -= done;
+      if (bytes > 0 && (result != Z_OK || done == 0))
+        throw SceneError(m_at, "the compressed mesh is damaged or ends too early");
+    }
+  }
+  template <class T>
+  T read() {
+    T value;
+    read(&value, sizeof(T));
+    return value;
+  }
+  // An upper bound of the decompressed size: deflate shrinks by no more than 1032 to one.
+  uint64_t maxBytes() const { return uint64_t(m_size) * 1032 + 1032; }
+
+ private:
+  const SourceLocation& m_at;
+  size_t m_size;
+  z_stream m_stream = {};
+};
+
+template <class V>
+void readVectors(Inflater& in, std::vector<V>& target, uint64_t count, bool isDouble) {
+  target.resize(count);
+  constexpr unsigned n = V::dimensions();
+  if (!isDouble) {
+    in.read(target.data(), count * sizeof(V));
+    return;
+  }
+  for (V& v : target) {
+    double values[n];
+    in.read(values, sizeof(values));
+    for (unsigned i = 0; i < n; ++i) v[i] = float(values[i]);
+  }
+}
+
+// Where mesh number `index` starts, from the table at the end of the file.
+uint64_t findMesh(std::string_view bytes, int64_t index, uint16_t version, const SourceLocation& at) {
+  if (bytes.size() < 8) throw SceneError(at, "the file ends too early");
+  const auto count = readAt<uint32_t>(bytes, bytes.size() - 4, at);
+  if (index < 0 || index >= int64_t(count))
+    throw SceneError(at, fmt::format("shape_index is {}, but the file has {} meshes", index, count));
+  const uint64_t entry = version == 4 ? 8 : 4, fromEnd = 4 + entry * (count - uint64_t(index));
+  if (fromEnd > bytes.size()) throw SceneError(at, "the file ends too early");
+  const uint64_t offset = bytes.size() - fromEnd;
+  return version == 4 ? readAt<uint64_t>(bytes, offset, at) : readAt<uint32_t>(bytes, offset, at);
+}
+
+}  // namespace
+
+SerializedMesh readSerialized(const std::string& path, int64_t shapeIndex, const SourceLocation& at) {
+  const FileBytes file(path, at);
+  const std::string_view bytes = file.view();
+  const SourceLocation inFile{path, 0, 0};
+  const auto checkVersion = [&](uint64_t offset) {
+    if (readAt<uint16_t>(bytes, offset, inFile) != kMagic)
+      throw SceneError(inFile, fmt::format("no serialized mesh at byte {}", offset));
+    const auto version = readAt<uint16_t>(bytes, offset + 2, inFile);
+    if (version != 3 && version != 4)
+      throw SceneError(inFile, fmt::format("version {} is not supported, expected 3 or 4", version));
+    return version;
+  };
+  const uint16_t version = checkVersion(0);
+  const uint64_t offset = findMesh(bytes, shapeIndex, version, inFile);
+  checkVersion(offset);
+
+  Inflater in(bytes.substr(offset + 4), inFile);
+  const auto flags = in.read<uint32_t>();
+  if (version == 4)
+    while (in.read<char>() != '\0') {
+    }
+  const auto vertices = in.read<uint64_t>(), triangles = in.read<uint64_t>();
+  const bool isDouble = flags & kDouble;
+  const uint64_t scalar = isDouble ? 8 : 4;
+  if (vertices > UINT32_MAX || vertices > in.maxBytes() / (3 * scalar) ||
+      triangles > in.maxBytes() / sizeof(Triangle))
+    throw SceneError(
+        inFile, fmt::format("mesh {} announces {} vertices and {} triangles, more than the file can hold",
+                            shapeIndex, vertices, triangles));
+
+  SerializedMesh mesh;
+  mesh.faceNormals = flags & kFaceNormals;
+  readVectors(in, mesh.data.positions, vertices, isDouble);
+  if (flags & kHasNormals) readVectors(in, mesh.data.normals, vertices, isDouble);
+  if (flags & kHasUvs) readVectors(in, mesh.data.uvs, vertices, isDouble);
+  if (flags & kHasColors) {
+    std::vector<Vec3> colors;
+    readVectors(in, colors, vertices, isDouble);
+  }
+  mesh.data.triangles.resize(triangles);
+  in.read(mesh.data.triangles.data(), triangles * sizeof(Triangle));
+  return mesh;
+}
+
+ShapePtr makeSerialized(const Properties& node, Builder& builder) {
+  MeshFile file(node, builder, false);
+  SerializedMesh mesh = readSerialized(file.path, node.integer("shape_index", 0), file.location);
+  file.options.faceNormals |= mesh.faceNormals;
+  return file.makeMesh(std::move(mesh.data), builder);
+}
+
+}  // namespace odis::render

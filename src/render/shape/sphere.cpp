@@ -1,0 +1,129 @@
+// sphere
+//
+//   center        point, (0, 0, 0)
+//   radius        number, 1
+//   to_world      transform        applied after center and radius; rotations turn the uv coordinates
+//   flip_normals  boolean, false   turn the surface inside out; a transform that mirrors does so too
+//
+// u runs about the z axis, v from the north pole (0) to the south pole (1).
+#include "render/shape/sphere.h"
+
+#include "render/math/warp.h"
+#include "render/shape/factories.h"
+#include "render/shape/surface_math.h"
+
+namespace odis::render {
+
+Sphere::Sphere(const Vec3d& center, double radius, const std::array<Vec3d, 3>& axes, bool flipNormals)
+    : m_center(center), m_radius(radius), m_axes(axes), m_flipNormals(flipNormals) {}
+
+RTCGeometryTy* Sphere::makeGeometry(RTCDeviceTy* device) const {
+  return makeUserGeometry(device, *this);
+}
+
+Imath::Box3d Sphere::bounds() const {
+  return {m_center - Vec3d(m_radius), m_center + Vec3d(m_radius)};
+}
+
+bool Sphere::hit(const PreciseRay& ray, double& t) const {
+  // From the point of the ray nearest to the centre, both hits are equally far.
+  const Vec3d fromCenter = ray.origin - m_center;
+  const double squared = ray.direction.dot(ray.direction);
+  const double nearest = -fromCenter.dot(ray.direction) / squared;
+  const Vec3d offset = fromCenter + ray.direction * nearest;
+  const double rest = m_radius * m_radius - offset.dot(offset);
+  if (!(rest >= 0)) return false;
+  const double half = std::sqrt(rest / squared);
+  t = nearest - half;
+  if (!ray.contains(t)) t = nearest + half;
+  return ray.contains(t);
+}
+
+SurfacePoint Sphere::pointToward(const Vec3d& unit) const {
+  const Vec3d local(unit.dot(m_axes[0]), unit.dot(m_axes[1]), unit.dot(m_axes[2]));
+  const double rho = std::hypot(local.x, local.y);
+  const double cosPhi = rho > 0 ? local.x / rho : 1, sinPhi = rho > 0 ? local.y / rho : 0;
+  double phi = std::atan2(local.y, local.x);
+  if (phi < 0) phi += 2 * M_PI;
+
+  SurfacePoint at;
+  at.shape = this;
+  at.p = Vec3(m_center + unit * m_radius);
+  at.pError = positionError(
+      float(std::max({std::abs(m_center.x), std::abs(m_center.y), std::abs(m_center.z)}) + m_radius));
+  at.uv = {float(phi / (2 * M_PI)), float(std::atan2(rho, local.z) / M_PI)};
+  at.dpdu = Vec3((m_axes[1] * local.x - m_axes[0] * local.y) * (2 * M_PI * m_radius));
+  at.dpdv = Vec3((m_axes[0] * (local.z * cosPhi) + m_axes[1] * (local.z * sinPhi) - m_axes[2] * rho) *
+                 (M_PI * m_radius));
+  at.ng = Vec3(m_flipNormals ? -unit : unit);
+  at.shading = Frame::fromTangent(at.ng, at.dpdu);
+  return at;
+}
+
+SurfacePoint Sphere::surfacePoint(const Ray& ray, const RawHit& hit) const {
+  const Ray local = toObject(ray, hit);
+  // t is rounded, so the point is moved onto the sphere.
+  const Vec3d fromCenter = Vec3d(local.origin) + Vec3d(local.direction) * double(hit.t) - m_center;
+  SurfacePoint at = pointToward(fromCenter / std::sqrt(fromCenter.dot(fromCenter)));
+  toWorld(at, hit);
+  return at;
+}
+
+float Sphere::area() const {
+  return float(4 * M_PI * m_radius * m_radius);
+}
+
+double Sphere::coneHeight(const Vec3d& toCenter) const {
+  const double sinSquared = m_radius * m_radius / toCenter.dot(toCenter);
+  if (!(sinSquared < 1)) return -1;
+  return sinSquared / (1 + std::sqrt(1 - sinSquared));  // 1 - cos, without its cancellation
+}
+
+ShapeSample Sphere::sample(const Vec3& ref, const Vec2& u) const {
+  const Vec3d toCenter = m_center - Vec3d(ref);
+  const double height = coneHeight(toCenter);
+  if (height < 0) return uniformAreaSample(ref, pointToward(Vec3d(squareToSphere(u))), area());
+
+  // Draw a direction in the cone, and find where it enters the sphere: the angle at the centre follows from
+  // the two sides of the triangle and the angle at the reference point.
+  const double distance = std::sqrt(toCenter.dot(toCenter));
+  const double oneMinusCos = u.x * height, cosTheta = 1 - oneMinusCos;
+  const double sinSquared = oneMinusCos * (2 - oneMinusCos);
+  const double toSurface =
+      distance * cosTheta - std::sqrt(std::max(0.0, m_radius * m_radius - distance * distance * sinSquared));
+  const Frame frame(Vec3(toCenter / distance));
+  const double phi = 2 * M_PI * u.y, sinTheta = std::sqrt(sinSquared);
+  const Vec3d direction = (Vec3d(frame.s) * std::cos(phi) + Vec3d(frame.t) * std::sin(phi)) * sinTheta +
+                          toCenter * (cosTheta / distance);
+  const Vec3d fromCenter = direction * toSurface - toCenter;
+
+  ShapeSample sample;
+  sample.at = pointToward(fromCenter / std::sqrt(fromCenter.dot(fromCenter)));
+  sample.wi = Vec3(direction / std::sqrt(direction.dot(direction)));
+  sample.distance = float(toSurface);
+  sample.pdf = float(1 / (2 * M_PI * height));
+  return sample;
+}
+
+float Sphere::pdf(const Vec3& ref, const SurfacePoint& at) const {
+  const double height = coneHeight(m_center - Vec3d(ref));
+  return height < 0 ? uniformAreaPdf(ref, at, area()) : float(1 / (2 * M_PI * height));
+}
+
+ShapePtr makeSphere(const Properties& node, Builder& builder) {
+  const Affine affine(readToWorld(node));
+  if (!isSquare(affine.x, affine.y) || !isSquare(affine.y, affine.z) || !isSquare(affine.z, affine.x))
+    builder.warn(node.location, "to_world shears or scales unevenly, which a sphere can't: it stays round");
+  const float radius = node.number("radius", 1.0f);
+  if (!(radius > 0) || !std::isfinite(radius))
+    throw SceneError(node.location, "the radius of a sphere must be positive and finite");
+  const Vec3d center = affine.point(Vec3d(node.vector("center", Vec3(0, 0, 0))));
+  // Orthonormal axes, also if the transform's are not quite.
+  const double scale = std::sqrt(affine.x.dot(affine.x));
+  const Vec3d x = affine.x / scale, z = x.cross(affine.y).normalized(), y = z.cross(x);
+  const bool flip = node.boolean("flip_normals", false) != affine.mirrors();
+  return std::make_shared<Sphere>(center, radius * scale,
+                                  std::array<Vec3d, 3>{x, y, affine.mirrors() ? -z : z}, flip);
+}
+
+}  // namespace odis::render

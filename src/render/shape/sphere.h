@@ -1,0 +1,39 @@
+// Spheres, intersected analytically.
+#pragma once
+
+#include <array>
+
+#include "render/shape/affine.h"
+#include "render/shape/shape.h"
+#include "render/shape/user_geometry.h"
+
+namespace odis::render {
+
+class Sphere final : public Shape {
+ public:
+  // The axes are orthonormal and orient the uv coordinates; a left-handed set mirrors them.
+  Sphere(const Vec3d& center, double radius, const std::array<Vec3d, 3>& axes, bool flipNormals);
+
+  RTCGeometryTy* makeGeometry(RTCDeviceTy* device) const override;
+  SurfacePoint surfacePoint(const Ray& ray, const RawHit& hit) const override;
+  float area() const override;
+  // Uniform in the cone of directions that the sphere subtends; uniform by area as seen from its inside.
+  ShapeSample sample(const Vec3& ref, const Vec2& u) const override;
+  float pdf(const Vec3& ref, const SurfacePoint& at) const override;
+  uint64_t bytes() const override { return sizeof(*this); }
+
+  Imath::Box3d bounds() const;
+  bool hit(const PreciseRay& ray, double& t) const;
+
+ private:
+  // 1 - cos of half the cone's angle; negative inside the sphere.
+  double coneHeight(const Vec3d& toCenter) const;
+  SurfacePoint pointToward(const Vec3d& unit) const;  // at center + radius * unit
+
+  Vec3d m_center;
+  double m_radius;
+  std::array<Vec3d, 3> m_axes;
+  bool m_flipNormals;
+};
+
+}  // namespace odis::render

@@ -1,0 +1,68 @@
+// What shapes share: sampling by area, points inside instances, and the precision of positions.
+#pragma once
+
+#include "render/shape/shape.h"
+
+namespace odis::render {
+
+// How far a point whose coordinates (or those that it was computed from) reach `magnitude` may be off the
+// surface: interpolation, the offset itself and the next intersection each err by a few units of 2^-24.
+inline float positionError(float magnitude) {
+  return magnitude * (64 * 0x1p-24f);
+}
+
+inline float maxAbs(const Vec3& v) {
+  return std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)});
+}
+
+// `v` over its length in double precision, so that tiny vectors have a direction too; `fallback` if it has
+// none.
+inline Vec3 normalizeOr(const Imath::V3d& v, const Vec3& fallback) {
+  const double length = std::sqrt(v.dot(v));
+  return length > 0 && std::isfinite(length) ? Vec3(v / length) : fallback;
+}
+
+// The solid-angle density at `ref` of a point that is distributed uniformly over `area`.
+inline float uniformAreaPdf(const Vec3& ref, const SurfacePoint& at, float area) {
+  const Vec3 d = at.p - ref;
+  const float squared = lengthSquared(d);
+  const float cosine = absDot(at.ng, d) / std::sqrt(squared);
+  const float pdf = squared / (cosine * area);
+  return std::isfinite(pdf) ? pdf : 0.0f;
+}
+
+// Completes the sample of a point that was drawn uniformly over `area`.
+inline ShapeSample uniformAreaSample(const Vec3& ref, const SurfacePoint& at, float area) {
+  ShapeSample sample;
+  sample.at = at;
+  const Vec3 d = at.p - ref;
+  sample.distance = length(d);
+  if (!(sample.distance > 0)) return sample;
+  sample.wi = d * (1 / sample.distance);
+  sample.pdf = uniformAreaPdf(ref, at, area);
+  return sample;
+}
+
+// The ray in the space of the instance that was hit; its direction is not of unit length there, so t is the
+// same.
+inline Ray toObject(const Ray& ray, const RawHit& hit) {
+  if (!hit.worldToInstance) return ray;
+  return {transformPoint(*hit.worldToInstance, ray.origin),
+          transformVector(*hit.worldToInstance, ray.direction), ray.tMax};
+}
+
+// Takes a point from the space of the instance that was hit to world space.
+inline void toWorld(SurfacePoint& at, const RawHit& hit) {
+  if (!hit.instanceToWorld) return;
+  const Matrix4 &m = *hit.instanceToWorld, &inverse = *hit.worldToInstance;
+  float scale = 0;
+  for (int row = 0; row < 3; ++row) scale += sqr(m[row][0]) + sqr(m[row][1]) + sqr(m[row][2]);
+  at.p = transformPoint(m, at.p);
+  at.pError = at.pError * std::sqrt(scale) + positionError(maxAbs(at.p));
+  at.dpdu = transformVector(m, at.dpdu);
+  at.dpdv = transformVector(m, at.dpdv);
+  at.ng = normalize(transformNormal(inverse, at.ng));
+  at.shading = Frame::fromTangent(normalize(transformNormal(inverse, at.shading.n)), at.dpdu);
+}
+
+}  // namespace odis::render

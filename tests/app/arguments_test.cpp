@@ -1,0 +1,74 @@
+#include <gtest/gtest.h>
+
+#include "command.h"
+#include "output.h"
+#include "render_arguments.h"
+#include "suggest.h"
+
+using namespace odis::app;
+using namespace odis::render;
+
+namespace {
+
+TEST(Arguments, Resolution) {
+  EXPECT_EQ(parseResolution("640x360"), Vec2i(640, 360));
+  for (const char* wrong : {"", "640", "640x", "x360", "640X360", "640x0", "-1x5", "640x360x", "640,360",
+                            "1e3x5", "99999999999x5"})
+    EXPECT_THROW(parseResolution(wrong), UsageError) << wrong;
+}
+
+TEST(Arguments, CropWindow) {
+  const Crop crop = parseCrop("1,2,30,40");
+  EXPECT_EQ(crop.x, 1);
+  EXPECT_EQ(crop.y, 2);
+  EXPECT_EQ(crop.width, 30);
+  EXPECT_EQ(crop.height, 40);
+  for (const char* wrong : {"", "1,2,3", "1,2,3,0", "-1,2,3,4", "1,2,3,4,5", "1;2;3;4", "1,2,3,4x"})
+    EXPECT_THROW(parseCrop(wrong), UsageError) << wrong;
+}
+
+TEST(Arguments, Define) {
+  EXPECT_EQ(parseDefine("a=b=c"), std::make_pair(std::string("a"), std::string("b=c")));
+  EXPECT_EQ(parseDefine("a=").second, "");
+  EXPECT_THROW(parseDefine("a"), UsageError);
+  EXPECT_THROW(parseDefine("=a"), UsageError);
+}
+
+TEST(Arguments, Layers) {
+  const odis::app::Layers some = parseLayers("albedo,depth");
+  EXPECT_TRUE(some.albedo && some.depth);
+  EXPECT_FALSE(some.normal || some.position || some.roughness);
+  EXPECT_TRUE(parseLayers("all").roughness);
+  EXPECT_FALSE(parseLayers("").any());
+  EXPECT_THROW(parseLayers("albedo,normals"), UsageError);
+}
+
+TEST(Arguments, MethodOfAComparison) {
+  const RenderOptions options =
+      parseMethod("--integrator odis --guide-bounces 3 --pilot-spp 0.25 --sampler independent");
+  EXPECT_EQ(options.integrator, IntegratorKind::odis);
+  EXPECT_EQ(options.guideBounces, 3);
+  EXPECT_EQ(options.pilotSpp, 0.25);
+  EXPECT_EQ(options.sampler, SamplerKind::independent);
+  EXPECT_EQ(parseMethod("--integrator path").integrator, IntegratorKind::path);
+  EXPECT_THROW(parseMethod("--integrator bdpt"), UsageError);
+  EXPECT_THROW(parseMethod("--guide-bounce 3"), UsageError);
+}
+
+TEST(Suggest, FindsTheNearestWord) {
+  EXPECT_EQ(nearest("--ssp", {"--spp", "--seed", "--stats"}), "--spp");
+  EXPECT_EQ(nearest("rendr", {"render", "metrics"}), "render");
+  EXPECT_EQ(nearest("--quantum", {"--spp", "--seed"}), "");
+}
+
+TEST(Text, ForPeople) {
+  EXPECT_EQ(durationText(0.0123), "12 ms");
+  EXPECT_EQ(durationText(4.25), "4.2 s");
+  EXPECT_EQ(durationText(65), "1 min 05 s");
+  EXPECT_EQ(durationText(3725), "1 h 02 min");
+  EXPECT_EQ(bytesText(512), "512 B");
+  EXPECT_EQ(bytesText(1536), "1.5 KiB");
+  EXPECT_EQ(bytesText(3.0 * 1024 * 1024 * 1024), "3.0 GiB");
+}
+
+}  // namespace

@@ -1,0 +1,164 @@
+// Runs the built command: exit codes, messages, and what is left on disk.
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+
+#include <array>
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+#include "render/image/write.h"
+
+namespace fs = std::filesystem;
+
+namespace {
+
+struct Outcome {
+  int code = -1;
+  std::string text;  // stdout and stderr
+};
+
+class Odis : public testing::Test {
+ protected:
+  void SetUp() override {
+    std::string pattern = (fs::temp_directory_path() / "odis-test-XXXXXX").string();
+    m_folder = mkdtemp(pattern.data());
+    write("room.xml", R"(<scene version="3.0.0">
+  <default name="radiance" value="1"/>
+  <sensor type="perspective">
+    <film type="hdrfilm"><integer name="width" value="12"/><integer name="height" value="8"/></film>
+    <sampler type="independent"><integer name="sample_count" value="2"/></sampler>
+  </sensor>
+  <shape type="sphere"><point name="center" x="0" y="0" z="4"/></shape>
+  <emitter type="constant"><float name="radiance" value="$radiance"/></emitter>
+</scene>)");
+  }
+  void TearDown() override { fs::remove_all(m_folder); }
+
+  void write(const std::string& name, const std::string& text) const {
+    std::ofstream(m_folder / name) << text;
+  }
+  fs::path file(const std::string& name) const { return m_folder / name; }
+  bool exists(const std::string& name) const { return fs::exists(m_folder / name); }
+
+  // Runs `odis` with these arguments in the temporary folder.
+  Outcome run(const std::string& arguments) const {
+    const std::string command = "cd '" + m_folder.string() + "' && '" ODIS_COMMAND "' " + arguments + " 2>&1";
+    Outcome outcome;
+    FILE* pipe = popen(command.c_str(), "r");
+    std::array<char, 512> buffer;
+    while (const size_t count = fread(buffer.data(), 1, buffer.size(), pipe))
+      outcome.text.append(buffer.data(), count);
+    const int status = pclose(pipe);
+    outcome.code = WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+    return outcome;
+  }
+  void expectFailure(const std::string& arguments, int code, const std::string& message) const {
+    const Outcome outcome = run(arguments);
+    EXPECT_EQ(outcome.code, code) << arguments << "\n" << outcome.text;
+    EXPECT_NE(outcome.text.find(message), std::string::npos) << arguments << "\n" << outcome.text;
+  }
+
+  fs::path m_folder;
+};
+
+TEST_F(Odis, HelpAndVersion) {
+  EXPECT_EQ(run("--help").code, 0);
+  EXPECT_NE(run("--help").text.find("Exit codes"), std::string::npos);
+  EXPECT_NE(run("render --help").text.find("--guide-bounces"), std::string::npos);
+  EXPECT_EQ(run("--version").code, 0);
+  EXPECT_EQ(run("--version").text.rfind("odis ", 0), 0u);
+}
+
+TEST_F(Odis, WrongUsageIsTwo) {
+  expectFailure("", 2, "subcommand");
+  expectFailure("rendr room.xml", 2, "Did you mean render?");
+  expectFailure("render", 2, "SCENE");
+  expectFailure("render room.xml --ssp 4", 2, "Did you mean --spp?");
+  expectFailure("render room.xml --spp 0", 2, "--spp");
+  expectFailure("render room.xml --spp four", 2, "--spp");
+  expectFailure("render room.xml --integrator bdpt", 2, "bdpt");
+  expectFailure("render room.xml --resolution 640", 2, "expected WIDTHxHEIGHT");
+  expectFailure("render room.xml --crop 0,0,5", 2, "expected x,y,width,height");
+  expectFailure("render room.xml -D radiance", 2, "expected key=value");
+  expectFailure("render room.xml --aov normals", 2, "expected albedo");
+  expectFailure("render room.xml -o image.jpg", 2, "expected a name that ends in .exr or .png");
+  expectFailure("render room.xml --replay 1,2", 2, "expected x,y,sample");
+  expectFailure("render room.xml --replay 99,2,0", 2, "outside");
+  expectFailure("scene", 2, "subcommand");
+  expectFailure("compare room.xml -o out --methods path", 2, "expected name=options");
+  expectFailure("compare room.xml -o out --methods 'a=--guide-bounce 1'", 2, "Did you mean --guide-bounces?");
+  expectFailure("compare room.xml -o out --methods a=,a=", 2, "two methods");
+  expectFailure("compare room.xml room.xml -o out", 2, "two scenes");
+}
+
+TEST_F(Odis, BadSceneIsThreeAndLeavesNothing) {
+  write("broken.xml", "<scene version=\"3.0.0\">\n  <shape type=\"sphere\">\n</scene>");
+  write("unknown.xml", "<scene version=\"3.0.0\">\n  <shape type=\"sphear\"/>\n</scene>");
+  expectFailure("render nowhere.xml", 3, "nowhere.xml");
+  expectFailure("render broken.xml", 3, "broken.xml:");
+  expectFailure("render unknown.xml", 3, "unknown.xml:2:");
+  expectFailure("scene info broken.xml", 3, "broken.xml:");
+  EXPECT_FALSE(exists("nowhere.exr"));
+  EXPECT_FALSE(exists("broken.exr"));
+  EXPECT_FALSE(exists("unknown.exr"));
+}
+
+TEST_F(Odis, OutputThatCannotBeWrittenIsFour) {
+  expectFailure("render room.xml -o nowhere/image.exr", 4, "no such folder");
+  fs::create_directory(file("folder.exr"));
+  expectFailure("render room.xml -o folder.exr", 4, "is a folder");
+}
+
+TEST_F(Odis, RendersWithMetadataAndStats) {
+  const Outcome outcome =
+      run("render room.xml --integrator path --seed 3 --variance --aov all --stats-json s.json --stats");
+  ASSERT_EQ(outcome.code, 0) << outcome.text;
+  EXPECT_NE(outcome.text.find("samples per pixel"), std::string::npos) << outcome.text;
+  const odis::render::ExrFile image = odis::render::readExr(file("room.exr").string());
+  EXPECT_EQ(image.window.width, 12);
+  for (const char* channel :
+       {"R", "G", "B", "variance.R", "albedo.G", "N.X", "P.Z", "depth.Z", "roughness.Y"})
+    EXPECT_EQ(image.channels.count(channel), 1u) << channel;
+  EXPECT_EQ(image.metadata.at("odis:seed"), "3");
+  EXPECT_EQ(image.metadata.at("odis:spp"), "2");  // as the scene asks for
+  EXPECT_NE(image.metadata.at("odis:commandLine").find("--seed 3"), std::string::npos);
+  std::ifstream stream(file("s.json"));
+  const nlohmann::json stats = nlohmann::json::parse(stream);
+  EXPECT_EQ(stats.at("samples"), 12 * 8 * 2);
+  EXPECT_GT(stats.at("bytes").at("peak"), 0);
+  EXPECT_TRUE(stats.at("seconds").contains("guided"));
+}
+
+TEST_F(Odis, ConstantSkyIsOneAndDefinesReachTheScene) {
+  ASSERT_EQ(run("render room.xml --integrator path -D radiance=2 --crop 0,0,2,2 -o sky.exr -q").code, 0);
+  const odis::render::ExrFile image = odis::render::readExr(file("sky.exr").string());
+  EXPECT_EQ(image.window.width, 2);
+  EXPECT_NEAR(image.channels.at("G")[0], 2.0f, 1e-4f);
+}
+
+TEST_F(Odis, MetricsAndMontage) {
+  ASSERT_EQ(run("render room.xml --integrator path -o a.exr -q").code, 0);
+  ASSERT_EQ(run("render room.xml --integrator path --resolution 6x4 -o b.exr -q").code, 0);
+  const Outcome same = run("metrics a.exr a.exr --json");
+  ASSERT_EQ(same.code, 0) << same.text;
+  EXPECT_EQ(nlohmann::json::parse(same.text).at("relMse"), 0.0);
+  expectFailure("metrics a.exr b.exr", 3, "one size");
+  expectFailure("metrics a.exr missing.exr", 3, "missing.exr");
+  EXPECT_EQ(run("montage a.exr b.exr -o both.png").code, 0);
+  EXPECT_TRUE(exists("both.png"));
+}
+
+TEST_F(Odis, ComparesAndResumes) {
+  const std::string arguments = "compare room.xml -o out --spp 2 --seeds 2 --reference-spp 16 --images -q";
+  const Outcome first = run(arguments);
+  ASSERT_EQ(first.code, 0) << first.text;
+  EXPECT_NE(first.text.find("| room"), std::string::npos) << first.text;
+  EXPECT_TRUE(exists("out/comparison.json"));
+  EXPECT_TRUE(exists("out/images/room.png"));
+  const Outcome second = run(arguments);
+  EXPECT_EQ(second.text, first.text);  // times too: nothing was rendered again
+}
+
+}  // namespace

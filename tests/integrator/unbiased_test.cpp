@@ -1,0 +1,167 @@
+// Guided images have the same expectation as path-traced ones, whatever the maps say.
+#include <gtest/gtest.h>
+
+#include <random>
+
+#include "integrator/test_scenes.h"
+#include "odis/decisions/direction_model.h"
+#include "support/chi2.h"
+
+namespace odis::render {
+namespace {
+
+// Maps that a broken or malicious model might make.
+class AdversarialModel : public DirectionModel {
+ public:
+  enum class Kind { random, oneHot, zero, notANumber, inverted };
+  explicit AdversarialModel(Kind kind) : m_kind(kind) {}
+  DirectionDistribution predict(const CellStatistics& cell, const DirectionDistribution*) const override {
+    DirectionDistribution result;
+    std::mt19937 engine(uint32_t(cell.count) * 7919u + uint32_t(cell.level));
+    const float most = *std::max_element(cell.histogram.begin(), cell.histogram.end());
+    const uint32_t hot = engine() % kMapTexels;
+    for (int t = 0; t < kMapTexels; ++t) {
+      result.perCosine[t] = 1;
+      switch (m_kind) {
+        case Kind::random: result.probability[t] = float(engine() % 1000) / 1000; break;
+        case Kind::oneHot: result.probability[t] = uint32_t(t) == hot ? 1 : 0; break;
+        case Kind::zero: result.probability[t] = 0; break;
+        case Kind::notANumber: result.probability[t] = engine() % 4 ? 1 : NAN; break;
+        case Kind::inverted: result.probability[t] = most - cell.histogram[t]; break;
+      }
+    }
+    return result;
+  }
+
+ private:
+  Kind m_kind;
+};
+
+struct PixelStatistics {
+  std::vector<Rgbd> sum, squares;
+  int count = 0;
+  void add(const std::vector<Rgb>& image) {
+    sum.resize(image.size(), Rgbd(0, 0, 0));
+    squares.resize(image.size(), Rgbd(0, 0, 0));
+    for (size_t i = 0; i < image.size(); ++i) {
+      const Rgbd c(image[i].x, image[i].y, image[i].z);
+      sum[i] += c;
+      squares[i] += c * c;
+    }
+    ++count;
+  }
+  double mean(size_t i, int c) const { return sum[i][c] / count; }
+  double varianceOfMean(size_t i, int c) const {
+    return std::max(0.0, squares[i][c] / count - mean(i, c) * mean(i, c)) / (count - 1);
+  }
+};
+
+PixelStatistics renderSeeds(const Scene& scene, RenderOptions options, int seeds, uint64_t firstSeed) {
+  PixelStatistics result;
+  for (int s = 0; s < seeds; ++s) {
+    options.seed = firstSeed + uint64_t(s);
+    result.add(test::renderScene(scene, options).frame.color);
+  }
+  return result;
+}
+
+// Per-pixel z-scores must look standard normal: none beyond the Šidák-corrected bound, their squares a chi-squared
+// variable, and the image's mean within its own standard error.
+void expectSameExpectation(const PixelStatistics& a, const PixelStatistics& b, int testCount) {
+  const size_t pixels = a.sum.size();
+  double squares = 0, difference = 0, variance = 0, worst = 0;
+  int used = 0;
+  for (size_t i = 0; i < pixels; ++i) {
+    const double d = a.mean(i, 1) - b.mean(i, 1), v = a.varianceOfMean(i, 1) + b.varianceOfMean(i, 1);
+    difference += d;
+    variance += v;
+    if (v <= 0) continue;
+    squares += d * d / v;
+    worst = std::max(worst, std::abs(d) / std::sqrt(v));
+    ++used;
+  }
+  ASSERT_GT(used, int(pixels / 2));
+  const double significance = 1 - std::pow(0.99, 1.0 / testCount);
+  // Means of 32 and more values have light enough tails for a normal bound with some slack; chi-squared over all pixels
+  // has standard deviation sqrt(2 n), inflated by a quarter for estimated variances.
+  EXPECT_LT(worst, 6.0);
+  EXPECT_LT(squares / used, 1 + 5 * 1.25 * std::sqrt(2.0 / used) + 0.1);
+  const double z = std::abs(difference) / std::sqrt(variance);
+  EXPECT_GT(std::erfc(z / std::sqrt(2.0)), significance) << "z of the image's mean is " << z;
+}
+
+class UnbiasedTest : public ::testing::Test {
+ protected:
+  static void SetUpTestSuite() {
+    s_scene = test::loadScene(test::indirectRoom(16)).release();
+    RenderOptions options;
+    options.integrator = IntegratorKind::path;
+    options.spp = 64;
+    options.maxDepth = 6;
+    s_path = new PixelStatistics(renderSeeds(*s_scene, options, 48, 1000));
+  }
+  static void TearDownTestSuite() {
+    delete s_path;
+    delete s_scene;
+  }
+  static RenderOptions guidedOptions() {
+    RenderOptions options;
+    options.spp = 8;
+    options.maxDepth = 6;
+    return options;
+  }
+  static Scene* s_scene;
+  static PixelStatistics* s_path;
+};
+Scene* UnbiasedTest::s_scene = nullptr;
+PixelStatistics* UnbiasedTest::s_path = nullptr;
+
+constexpr int kTests = 10;
+
+TEST_F(UnbiasedTest, Histogram) { expectSameExpectation(*s_path, renderSeeds(*s_scene, guidedOptions(), 96, 1), kTests); }
+
+TEST_F(UnbiasedTest, FirstBounceOnly) {
+  RenderOptions options = guidedOptions();
+  options.guideBounces = 1;
+  expectSameExpectation(*s_path, renderSeeds(*s_scene, options, 96, 1), kTests);
+}
+
+TEST_F(UnbiasedTest, FractionalPilotAndIndependentSamples) {
+  RenderOptions options = guidedOptions();
+  options.pilotSpp = 0.25;
+  options.sampler = SamplerKind::independent;
+  expectSameExpectation(*s_path, renderSeeds(*s_scene, options, 96, 1), kTests);
+}
+
+TEST_F(UnbiasedTest, Oracle) {
+  RenderOptions options = guidedOptions();
+  options.guide = GuideKind::oracle;
+  options.oracleSpp = 4;
+  expectSameExpectation(*s_path, renderSeeds(*s_scene, options, 96, 1), kTests);
+}
+
+TEST_F(UnbiasedTest, AdversarialMaps) {
+  using Kind = AdversarialModel::Kind;
+  for (const Kind kind : {Kind::random, Kind::oneHot, Kind::zero, Kind::notANumber, Kind::inverted}) {
+    RenderOptions options = guidedOptions();
+    options.guideOptions.model = std::make_shared<AdversarialModel>(kind);
+    options.guideOptions.fixedAlpha = 0.3f;
+    expectSameExpectation(*s_path, renderSeeds(*s_scene, options, 96, 1), kTests);
+  }
+}
+
+// The test itself must be able to fail: a third of a per cent of energy lost is found.
+TEST_F(UnbiasedTest, ABiasIsFound) {
+  PixelStatistics biased = renderSeeds(*s_scene, guidedOptions(), 96, 1);
+  for (Rgbd& c : biased.sum) c *= 1.03;
+  for (Rgbd& c : biased.squares) c *= 1.03 * 1.03;
+  double difference = 0, variance = 0;
+  for (size_t i = 0; i < biased.sum.size(); ++i) {
+    difference += biased.mean(i, 1) - s_path->mean(i, 1);
+    variance += biased.varianceOfMean(i, 1) + s_path->varianceOfMean(i, 1);
+  }
+  EXPECT_GT(std::abs(difference) / std::sqrt(variance), 3.3);
+}
+
+}  // namespace
+}  // namespace odis::render
