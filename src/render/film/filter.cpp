@@ -1,0 +1,162 @@
+#include "render/film/filter.h"
+
+#include <array>
+#include <stdexcept>
+#include <utility>
+
+namespace odis::render {
+
+namespace {
+
+void require(bool valid, const char* message) {
+  if (!valid) throw std::invalid_argument(message);
+}
+
+// Constant within the radius. Offsets lie in [-radius, radius).
+class BoxFilter final : public Filter {
+ public:
+  explicit BoxFilter(float radius) : m_radius(radius) {
+    require(radius > 0 && std::isfinite(radius), "the radius of a box filter must be positive");
+  }
+  FilterSample sample(const Vec2& u) const override {
+    return {{(2 * u.x - 1) * m_radius, (2 * u.y - 1) * m_radius}, 1.0f};
+  }
+  float value(const Vec2& offset) const override {
+    const bool inside = std::abs(offset.x) <= m_radius && std::abs(offset.y) <= m_radius;
+    return inside ? 1 / sqr(2 * m_radius) : 0.0f;
+  }
+  float radius() const override { return m_radius; }
+  std::string name() const override { return "box"; }
+
+ private:
+  float m_radius;
+};
+
+// Falls linearly to zero at the radius.
+class TentFilter final : public Filter {
+ public:
+  explicit TentFilter(float radius) : m_radius(radius) {
+    require(radius > 0 && std::isfinite(radius), "the radius of a tent filter must be positive");
+  }
+  FilterSample sample(const Vec2& u) const override { return {{invert(u.x), invert(u.y)}, 1.0f}; }
+  float value(const Vec2& offset) const override { return profile(offset.x) * profile(offset.y); }
+  float radius() const override { return m_radius; }
+  std::string name() const override { return "tent"; }
+
+ private:
+  float profile(float x) const { return std::max(0.0f, 1 - std::abs(x) / m_radius) / m_radius; }
+  float invert(float u) const {
+    return m_radius * (u < 0.5f ? std::sqrt(2 * u) - 1 : 1 - std::sqrt(2 - 2 * u));
+  }
+
+  float m_radius;
+};
+
+// Samples a symmetric, normalised profile on [-radius, radius] by the linear interpolation of its absolute
+// value between kCells + 1 nodes a side. The weight is the exact profile over that density, so the table
+// costs no bias, only weights that differ from their mean by less than a part in a thousand (but for the
+// cells where the profile changes its sign).
+template <class Profile>
+class TabulatedFilter final : public Filter {
+ public:
+  TabulatedFilter(Profile profile, std::string name) : m_profile(profile), m_name(std::move(name)) {
+    for (int i = 0; i <= kCells; ++i) m_density[i] = std::abs(m_profile(float(i) * cellWidth()));
+    m_cdf[0] = 0;
+    double sum = 0;
+    for (int i = 0; i < kCells; ++i) {
+      sum += 0.5 * (double(m_density[i]) + m_density[i + 1]) * cellWidth();
+      m_cdf[i + 1] = float(sum);
+    }
+    for (float& node : m_density) node = float(node / sum);
+    for (float& node : m_cdf) node = float(node / sum);
+    m_cdf[kCells] = 1;
+  }
+
+  FilterSample sample(const Vec2& u) const override {
+    const auto [x, weightX] = sample1D(u.x);
+    const auto [y, weightY] = sample1D(u.y);
+    return {{x, y}, weightX * weightY};
+  }
+  float value(const Vec2& offset) const override { return profileAt(offset.x) * profileAt(offset.y); }
+  float radius() const override { return m_profile.radius; }
+  std::string name() const override { return m_name; }
+
+ private:
+  static constexpr int kCells = 512;
+  float cellWidth() const { return m_profile.radius / kCells; }
+  float profileAt(float x) const { return std::abs(x) < m_profile.radius ? m_profile(std::abs(x)) : 0.0f; }
+
+  // An offset of either sign and its weight.
+  std::pair<float, float> sample1D(float u) const {
+    const bool negative = u < 0.5f;
+    const float v = std::min(negative ? 1 - 2 * u : 2 * u - 1, kOneMinusEpsilon);
+    const int cell = int(std::upper_bound(m_cdf.begin(), m_cdf.end(), v) - m_cdf.begin()) - 1;
+    // Inverts the integral of a + (b - a) t over [0, t], in the form that is stable for a = b.
+    const float a = m_density[cell], b = m_density[cell + 1];
+    const float area = (v - m_cdf[cell]) / cellWidth();
+    const float root = std::sqrt(std::max(sqr(a) + 2 * (b - a) * area, 0.0f));
+    const float t = a + root > 0 ? std::min(2 * area / (a + root), 1.0f) : 0.0f;
+    const float x = (float(cell) + t) * cellWidth();
+    const float density = 0.5f * (a + (b - a) * t);
+    const float weight = density > 0 ? profileAt(x) / density : 0.0f;
+    return {negative ? -x : x, weight};
+  }
+
+  Profile m_profile;
+  std::string m_name;
+  std::array<float, kCells + 1> m_density;  // of |x| over [0, radius]
+  std::array<float, kCells + 1> m_cdf;
+};
+
+// exp(-x^2 / (2 stddev^2)) less its value at the radius of four standard deviations, so that it ends at zero.
+struct GaussianProfile {
+  explicit GaussianProfile(float stddev) : radius(4 * stddev), exponent(-0.5f / sqr(stddev)) {
+    offset = std::exp(exponent * sqr(radius));
+    const double integral =
+        double(stddev) * std::sqrt(2 * M_PI) * std::erf(radius / (stddev * std::sqrt(2.0))) -
+        2.0 * radius * offset;
+    scale = float(1 / integral);
+  }
+  float operator()(float x) const { return std::max(0.0f, std::exp(exponent * sqr(x)) - offset) * scale; }
+
+  float radius, exponent, offset, scale;
+};
+
+// The cubics of Mitchell and Netravali 1988, "Reconstruction Filters in Computer Graphics"; their integral is
+// one for every b and c. Takes x >= 0.
+struct MitchellProfile {
+  float operator()(float x) const {
+    const float x2 = sqr(x), x3 = x2 * x;
+    if (x < 1) return ((12 - 9 * b - 6 * c) * x3 + (-18 + 12 * b + 6 * c) * x2 + (6 - 2 * b)) / 6;
+    const float y = 2 - x;  // the outer cubic about its double root at the radius
+    return ((b + 6 * c) * y - 6 * c) * sqr(y) / 6;
+  }
+
+  float b, c;
+  float radius = 2;
+};
+
+}  // namespace
+
+std::unique_ptr<Filter> makeBoxFilter(float radius) {
+  return std::make_unique<BoxFilter>(radius);
+}
+
+std::unique_ptr<Filter> makeTentFilter(float radius) {
+  return std::make_unique<TentFilter>(radius);
+}
+
+std::unique_ptr<Filter> makeGaussianFilter(float stddev) {
+  require(stddev > 0 && std::isfinite(stddev),
+          "the standard deviation of a gaussian filter must be positive");
+  return std::make_unique<TabulatedFilter<GaussianProfile>>(GaussianProfile(stddev), "gaussian");
+}
+
+std::unique_ptr<Filter> makeMitchellFilter(float b, float c) {
+  require(std::isfinite(b) && std::isfinite(c), "the parameters of a mitchell filter must be finite");
+  const bool catmullRom = b == 0.0f && c == 0.5f;
+  return std::make_unique<TabulatedFilter<MitchellProfile>>(MitchellProfile{b, c},
+                                                            catmullRom ? "catmullrom" : "mitchell");
+}
+
+}  // namespace odis::render

@@ -1,0 +1,89 @@
+// Reading PNG, JPEG, TGA and BMP by stb_image.
+#include <fmt/format.h>
+#include <stb_image.h>
+
+#include <stdexcept>
+
+#include "render/image/image.h"
+#include "render/image/limits.h"
+#include "render/image/srgb.h"
+
+namespace odis::render {
+
+namespace {
+
+struct Free {
+  void operator()(void* p) const { stbi_image_free(p); }
+};
+
+// Takes the colour channels out of `file` channels (1: grey, 2: grey and alpha, 3: RGB, 4: RGBA) by
+// `convert`.
+template <class Out, class In, class Convert>
+std::vector<Out> colours(const In* pixels, size_t count, int fileChannels, Convert&& convert) {
+  const size_t stride = size_t(fileChannels), kept = fileChannels < 3 ? 1 : 3;
+  std::vector<Out> result(count * kept);
+  for (size_t i = 0; i < count; ++i)
+    for (size_t c = 0; c < kept; ++c) result[kept * i + c] = convert(pixels[stride * i + c]);
+  return result;
+}
+
+// The alpha channel as bytes; empty if there is none or if it is opaque everywhere.
+template <class In>
+std::vector<uint8_t> alphaBytes(const In* pixels, size_t count, int fileChannels, int shift) {
+  std::vector<uint8_t> result;
+  if (fileChannels % 2 != 0) return result;
+  const size_t stride = size_t(fileChannels);
+  result.resize(count);
+  bool opaque = true;
+  for (size_t i = 0; i < count; ++i) {
+    result[i] = uint8_t(pixels[stride * i + stride - 1] >> shift);
+    opaque &= result[i] == 255;
+  }
+  if (opaque) result.clear();
+  return result;
+}
+
+}  // namespace
+
+std::shared_ptr<Image> Image::readStbPixels(const std::vector<uint8_t>& file, bool srgb) {
+  const int size = int(file.size());
+  int width = 0, height = 0, channels = 0;
+  const auto fail = [] {
+    const char* reason = stbi_failure_reason();
+    throw std::runtime_error(fmt::format("not a readable PNG, JPEG, TGA, BMP, HDR or EXR file ({})",
+                                         reason ? reason : "unknown reason"));
+  };
+  // The header first, so that a damaged one does not make stb allocate what it promises.
+  if (!stbi_info_from_memory(file.data(), size, &width, &height, &channels)) fail();
+  checkImageSize(width, height);
+
+  std::shared_ptr<Image> image(new Image);
+  const auto finish = [&] {
+    image->m_width = width;
+    image->m_height = height;
+    image->m_channels = channels < 3 ? 1 : 3;
+    return image;
+  };
+  const size_t count = size_t(width) * size_t(height);
+  image->m_linear = false;
+  if (stbi_is_16_bit_from_memory(file.data(), size)) {
+    std::unique_ptr<uint16_t, Free> pixels(
+        stbi_load_16_from_memory(file.data(), size, &width, &height, &channels, 0));
+    if (!pixels) fail();
+    image->m_floats = colours<float>(pixels.get(), count, channels, [srgb](uint16_t v) {
+      const float stored = float(v) * (1.0f / 65535.0f);
+      return srgb ? srgbDecode(stored) : stored;
+    });
+    image->m_alpha = alphaBytes(pixels.get(), count, channels, 8);
+    return finish();
+  }
+  std::unique_ptr<uint8_t, Free> pixels(
+      stbi_load_from_memory(file.data(), size, &width, &height, &channels, 0));
+  if (!pixels) fail();
+  image->m_bytes = colours<uint8_t>(pixels.get(), count, channels, [](uint8_t v) { return v; });
+  image->m_alpha = alphaBytes(pixels.get(), count, channels, 0);
+  for (int i = 0; i < 256; ++i) image->m_decode[i] = srgb ? srgbDecode(float(i) / 255.0f) : float(i) / 255.0f;
+  return finish();
+}
+
+}  // namespace odis::render

@@ -1,0 +1,37 @@
+// A client of the image viewer tev (https://github.com/Tom94/tev), to watch an image while it is rendered.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "render/math/vec.h"
+
+namespace odis::render {
+
+class TevClient {
+ public:
+  // Connects to "host:port", "host" (port 14158, tev's own) or ":port" (this machine). Throws
+  // std::runtime_error with address and reason.
+  explicit TevClient(const std::string& address);
+  ~TevClient();
+  TevClient(const TevClient&) = delete;
+  TevClient& operator=(const TevClient&) = delete;
+
+  // Shows linear `pixels` (width * height, row 0 at the top) under `name`; creates the image when name or
+  // size are new, else updates it. Throws std::runtime_error if the viewer is gone.
+  void send(const std::string& name, int width, int height, const Rgb* pixels);
+
+ private:
+  void sendPacket(std::vector<char>& packet);
+
+  struct Known {
+    std::string name;
+    int width, height;
+  };
+  std::string m_address;
+  int m_socket = -1;
+  std::vector<Known> m_known;
+};
+
+}  // namespace odis::render

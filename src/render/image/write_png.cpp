@@ -1,0 +1,44 @@
+#include <fmt/format.h>
+#include <stb_image_write.h>
+
+#include <cerrno>
+#include <cstdint>
+#include <cstring>
+#include <fstream>
+#include <stdexcept>
+
+#include "render/film/tonemap.h"
+#include "render/image/limits.h"
+#include "render/image/replace_file.h"
+#include "render/image/write.h"
+
+namespace odis::render {
+
+void writePng(const std::string& path, int width, int height, const Rgb* pixels, float exposure,
+              ToneMap toneMap) {
+  replaceFile(path, [&](const std::string& temporary) {
+    if (width < 1 || height < 1 || width > kMaxImageSide || height > kMaxImageSide)
+      throw std::runtime_error(fmt::format("an image cannot have {} x {} pixels", width, height));
+    const size_t count = size_t(width) * size_t(height);
+    const float scale = std::exp2(exposure);
+    std::vector<uint8_t> bytes(3 * count);
+    for (size_t i = 0; i < count; ++i)
+      for (int c = 0; c < 3; ++c) {
+        const float linear = pixels[i][c] * scale;
+        bytes[3 * i + size_t(c)] = toByte(toneMap == ToneMap::filmic ? filmicCurve(linear) : linear);
+      }
+
+    std::vector<char> encoded;
+    const auto append = [](void* context, void* data, int size) {
+      auto& out = *static_cast<std::vector<char>*>(context);
+      out.insert(out.end(), static_cast<char*>(data), static_cast<char*>(data) + size);
+    };
+    if (!stbi_write_png_to_func(append, &encoded, width, height, 3, bytes.data(), 3 * width))
+      throw std::runtime_error("the PNG encoder ran out of memory");
+    std::ofstream stream(temporary, std::ios::binary);
+    if (!stream.write(encoded.data(), std::streamsize(encoded.size())) || !stream.flush())
+      throw std::runtime_error(std::strerror(errno));
+  });
+}
+
+}  // namespace odis::render

@@ -1,0 +1,150 @@
+// The client of tev against a socket that listens here: every byte of the packets, as tev's Ipc.cpp reads
+// them.
+#include <arpa/inet.h>
+#include <gtest/gtest.h>
+#include <netinet/in.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
+#include <cstring>
+#include <thread>
+
+#include "render/image/tev.h"
+
+namespace odis::render {
+namespace {
+
+// Takes one connection on a free port of 127.0.0.1 and keeps all that it sends.
+class Listener {
+ public:
+  Listener() {
+    m_socket = socket(AF_INET, SOCK_STREAM, 0);
+    sockaddr_in address{};
+    address.sin_family = AF_INET;
+    address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+    socklen_t size = sizeof address;
+    if (bind(m_socket, reinterpret_cast<sockaddr*>(&address), size) != 0 || listen(m_socket, 1) != 0 ||
+        getsockname(m_socket, reinterpret_cast<sockaddr*>(&address), &size) != 0)
+      throw std::runtime_error("cannot listen on 127.0.0.1");
+    m_port = ntohs(address.sin_port);
+  }
+  ~Listener() {
+    if (m_thread.joinable()) m_thread.join();
+    close(m_socket);
+  }
+  std::string address() const { return "127.0.0.1:" + std::to_string(m_port); }
+  void start() {
+    m_thread = std::thread([this] {
+      const int connection = accept(m_socket, nullptr, nullptr);
+      char buffer[4096];
+      for (ssize_t n; (n = recv(connection, buffer, sizeof buffer, 0)) > 0;)
+        m_received.append(buffer, size_t(n));
+      close(connection);
+    });
+  }
+  const std::string& received() {
+    m_thread.join();
+    return m_received;
+  }
+
+ private:
+  int m_socket = -1, m_port = 0;
+  std::thread m_thread;
+  std::string m_received;
+};
+
+class Reader {
+ public:
+  explicit Reader(const std::string& bytes) : m_bytes(bytes) {}
+  template <class T>
+  T get() {
+    T value{};
+    if (m_at + sizeof value > m_bytes.size()) throw std::runtime_error("the stream ended early");
+    std::memcpy(&value, m_bytes.data() + m_at, sizeof value);
+    m_at += sizeof value;
+    return value;
+  }
+  std::string text() {
+    const std::string result = m_bytes.c_str() + m_at;
+    m_at += result.size() + 1;
+    return result;
+  }
+  size_t at() const { return m_at; }
+  bool atEnd() const { return m_at == m_bytes.size(); }
+
+ private:
+  const std::string& m_bytes;
+  size_t m_at = 0;
+};
+
+void expectCreate(Reader& reader, const std::string& name, int width, int height) {
+  const size_t begin = reader.at();
+  const uint32_t size = reader.get<uint32_t>();
+  EXPECT_EQ(reader.get<char>(), 4);
+  reader.get<char>();  // whether to grab the focus
+  EXPECT_EQ(reader.text(), name);
+  EXPECT_EQ(reader.get<int32_t>(), width);
+  EXPECT_EQ(reader.get<int32_t>(), height);
+  EXPECT_EQ(reader.get<int32_t>(), 3);
+  for (const char* channel : {"R", "G", "B"}) EXPECT_EQ(reader.text(), channel);
+  EXPECT_EQ(reader.at() - begin, size);
+}
+
+void expectUpdate(Reader& reader, const std::string& name, int width, int height,
+                  const std::vector<Rgb>& pixels) {
+  const size_t begin = reader.at();
+  const uint32_t size = reader.get<uint32_t>();
+  EXPECT_EQ(reader.get<char>(), 6);
+  EXPECT_EQ(reader.get<char>(), 0);
+  EXPECT_EQ(reader.text(), name);
+  EXPECT_EQ(reader.get<int32_t>(), 3);
+  for (const char* channel : {"R", "G", "B"}) EXPECT_EQ(reader.text(), channel);
+  for (int expected : {0, 0, width, height}) EXPECT_EQ(reader.get<int32_t>(), expected);
+  for (int64_t expected : {0, 1, 2, 3, 3, 3}) EXPECT_EQ(reader.get<int64_t>(), expected);
+  for (const Rgb& pixel : pixels)
+    for (int c = 0; c < 3; ++c) EXPECT_EQ(reader.get<float>(), pixel[c]);
+  EXPECT_EQ(reader.at() - begin, size);
+}
+
+TEST(TevClient, CreatesThenUpdates) {
+  Listener listener;
+  listener.start();
+  const std::vector<Rgb> pixels = {{1, 2, 3},    {4, 5, 6},  {7, 8, 9},
+                                   {10, 11, 12}, {-1, 0, 1}, {0.5f, 0.25f, 1e10f}};
+  {
+    TevClient client(listener.address());
+    client.send("a", 3, 2, pixels.data());
+    client.send("a", 3, 2, pixels.data());
+    client.send("a", 2, 3, pixels.data());
+  }
+  Reader reader(listener.received());
+  expectCreate(reader, "a", 3, 2);
+  expectUpdate(reader, "a", 3, 2, pixels);
+  expectUpdate(reader, "a", 3, 2, pixels);
+  // A new size: the old image is closed, a new one is made.
+  EXPECT_EQ(reader.get<uint32_t>(), 7u);
+  EXPECT_EQ(reader.get<char>(), 2);
+  EXPECT_EQ(reader.text(), "a");
+  expectCreate(reader, "a", 2, 3);
+  expectUpdate(reader, "a", 2, 3, pixels);
+  EXPECT_TRUE(reader.atEnd());
+}
+
+TEST(TevClient, SaysWhyItCannotConnect) {
+  std::string address;
+  {
+    const Listener listener;  // a port that was free a moment ago, and is closed again
+    address = listener.address();
+  }
+  try {
+    TevClient client(address);
+    FAIL() << "connected to nobody";
+  } catch (const std::runtime_error& e) {
+    EXPECT_NE(std::string(e.what()).find(address), std::string::npos) << e.what();
+  }
+  EXPECT_THROW(TevClient("localhost:"), std::runtime_error);
+  EXPECT_THROW(TevClient("localhost:tev"), std::runtime_error);
+}
+
+}  // namespace
+}  // namespace odis::render
