@@ -1,9 +1,10 @@
 // The interface of surface scattering.
 //
-// All directions are unit vectors in the local shading frame (normal along +z) and point away from the surface:
-// `wo` is where the path came from, `wi` where it goes to (light travels from wi to wo). Densities are with respect
-// to solid angle; values include the cosine |cos(theta_i)|. Radiance is transported, so transmission through an
-// interface of relative index eta scales by 1/eta^2 as in Mitsuba's TransportMode::Radiance.
+// All directions are unit vectors in the local shading frame (normal along +z) and point away from the
+// surface: `wo` is where the path came from, `wi` where it goes to (light travels from wi to wo). Densities
+// are with respect to solid angle; values include the cosine |cos(theta_i)|. Radiance is transported, so
+// transmission through an interface of relative index eta scales by 1/eta^2 as in Mitsuba's
+// TransportMode::Radiance.
 #pragma once
 
 #include <memory>
@@ -24,26 +25,28 @@ enum class Lobe : uint8_t {
 // Perceptual roughness below which a lobe counts as `nearDelta` (alpha of the microfacet distribution).
 inline constexpr float kMinGuidedRoughness = 0.05f;
 
-inline bool isDiscrete(Lobe lobe) { return lobe == Lobe::delta || lobe == Lobe::null; }
+inline bool isDiscrete(Lobe lobe) {
+  return lobe == Lobe::delta || lobe == Lobe::null;
+}
 
 struct BsdfSample {
   Vec3 wi{0, 0, 1};
-  Rgb weight{0, 0, 0};      // f |cos(theta_i)| / pdf, over all lobes that are evaluable if this one is
-  float pdf = 0;            // smooth, nearDelta: density of evaluate(); delta, null: discrete probability
-  float guidablePdf = 0;    // the part of pdf that smooth lobes contribute; 0 for delta and null
-  float eta = 1;            // relative index of refraction along the path (1 for reflection), for Russian roulette
+  Rgb weight{0, 0, 0};    // f |cos(theta_i)| / pdf, over all lobes that are evaluable if this one is
+  float pdf = 0;          // smooth, nearDelta: density of evaluate(); delta, null: discrete probability
+  float guidablePdf = 0;  // the part of pdf that smooth lobes contribute; 0 for delta and null
+  float eta = 1;  // relative index of refraction along the path (1 for reflection), for Russian roulette
   Lobe lobe = Lobe::none;
 };
 
 struct BsdfValue {
-  Rgb value{0, 0, 0};     // f |cos(theta_i)| of all smooth and nearDelta lobes
-  float pdf = 0;          // density with which sample() gives wi through these lobes (their probability included)
+  Rgb value{0, 0, 0};  // f |cos(theta_i)| of all smooth and nearDelta lobes
+  float pdf = 0;  // density with which sample() gives wi through these lobes (their probability included)
   float guidablePdf = 0;  // the part of it that smooth lobes contribute
 };
 
 struct BsdfFeatures {
-  Rgb albedo{0, 0, 0};    // approximate directional-hemispherical reflectance (plus transmittance), in [0, 1]
-  float roughness = 1;    // alpha in [0, 1] of the lobe that matters most; 0 for delta, 1 for diffuse
+  Rgb albedo{0, 0, 0};  // approximate directional-hemispherical reflectance (plus transmittance), in [0, 1]
+  float roughness = 1;  // alpha in [0, 1] of the lobe that matters most; 0 for delta, 1 for diffuse
 };
 
 // Static properties, fixed at construction.
@@ -60,7 +63,8 @@ class Bsdf {
   virtual BsdfSample sample(const SurfacePoint& at, const Vec3& wo, float uLobe, const Vec2& u) const = 0;
   // Value and density of the smooth and nearDelta lobes; zero for delta lobes.
   virtual BsdfValue evaluate(const SurfacePoint& at, const Vec3& wo, const Vec3& wi) const = 0;
-  // Probability in [0, 1] that sample() draws from a smooth lobe: the integral of guidablePdf plus failed draws.
+  // Probability in [0, 1] that sample() draws from a smooth lobe: the integral of guidablePdf plus failed
+  // draws.
   virtual float guidableProbability(const SurfacePoint& at, const Vec3& wo) const = 0;
   virtual BsdfFeatures features(const SurfacePoint& at, const Vec3& wo) const = 0;
 

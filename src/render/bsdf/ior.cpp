@@ -2,8 +2,9 @@
 #include "render/bsdf/ior.h"
 
 #include <algorithm>
-#include <cctype>
 #include <cmath>
+
+#include "render/scene/names.h"
 
 namespace odis::render {
 namespace {
@@ -24,12 +25,6 @@ constexpr Dielectric kDielectrics[] = {
 };
 
 }  // namespace
-
-std::string lowerCase(std::string text) {
-  std::transform(text.begin(), text.end(), text.begin(),
-                 [](unsigned char c) { return char(std::tolower(c)); });
-  return text;
-}
 
 float readIor(const Properties& properties, const std::string& name, const std::string& fallback) {
   const auto found = properties.parameters.find(name);
