@@ -55,7 +55,8 @@ TEST(Intersector, OcclusionAgreesWithIntersection) {
   Random random(11);
   int hits = 0;
   for (int i = 0; i < 20000; ++i) {
-    Ray ray{random.direction() * 3.0f, random.direction()};
+    const Vec3 origin = random.direction() * 3.0f;
+    Ray ray{origin, normalize(random.direction() * 1.5f - origin)};
     SurfacePoint at;
     const bool hit = scene->intersect(ray, at);
     hits += hit;

@@ -107,7 +107,7 @@ TEST(Ply, RefusesWhatCannotBe) {
             std::string::npos);
   EXPECT_NE(failure(head + z + faces("1") + vertices + "1e18 0 1 2\n").find("a list of"), std::string::npos);
   EXPECT_NE(failure(head + faces("1") + "0 0\n1 0\n0 1\n3 0 1 2\n").find("no x, y and z"), std::string::npos);
-  EXPECT_NE(failure(head + z + faces("1") + "0 0 zero\n").find("mesh.ply:9: expected a number"),
+  EXPECT_NE(failure(head + z + faces("1") + "0 0 zero\n").find("mesh.ply:10: expected a number"),
             std::string::npos);
   EXPECT_NE(failure("ply\nformat ascii 1.0\nelement vertex 3\n").find("end_header"), std::string::npos);
   EXPECT_NE(failure("ply\nformat morse 1.0\nend_header\n").find("unknown format"), std::string::npos);

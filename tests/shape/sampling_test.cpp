@@ -22,8 +22,8 @@ float directionPdf(const Scene& scene, const Shape& shape, const Vec3& ref, cons
 void expectMatch(const ShapePtr& shape, const Vec3& ref, bool once = false) {
   const auto scene = sceneOf({shape});
   Chi2Options options;
-  options.samples = 50000;
-  options.quadrature = 32;
+  options.samples = 100000;
+  options.quadrature = 48;
   options.testCount = kTests;
   EXPECT_TRUE(chi2Test(
       [&](float, float u0, float u1) -> std::optional<Vec3> {
@@ -57,17 +57,18 @@ TEST(ShapeSampling, SphereFromInside) {
 TEST(ShapeSampling, Rectangle) {
   expectMatch(meshOf(rectangleMesh()), {0.5f, -0.2f, 0.7f});
 }
-TEST(ShapeSampling, Cube) {
-  expectMatch(meshOf(cubeMesh(), {scaling({1, 2, 0.5f})}), {1.8f, 2.7f, 0.2f});
-}
 TEST(ShapeSampling, Disk) {
   expectMatch(std::make_shared<Disk>(Affine(scaling({2, 1, 1}) * rotation(1, 2, 3)), false),
               {0.5f, 0.6f, 0.7f});
 }
+// These two from inside, as the density has a pole at the silhouettes that are seen from outside.
+TEST(ShapeSampling, Cube) {
+  expectMatch(meshOf(cubeMesh(), {scaling({1, 2, 0.5f})}), {0.3f, -0.7f, 0.1f});
+}
 TEST(ShapeSampling, Cylinder) {
   expectMatch(std::make_shared<Cylinder>(Vec3d(-1, 0, 0), Vec3d(2, 0, 0), Vec3d(0, 0, -1), Vec3d(0, 1, 0),
                                          0.5, false),
-              {0.2f, 0.9f, 0.3f});
+              {0.2f, 0.1f, 0.15f});
 }
 TEST(ShapeSampling, MeshOfUnequalTriangles) {
   MeshData data;

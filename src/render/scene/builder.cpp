@@ -5,21 +5,10 @@
 
 #include "render/image/image.h"
 #include "render/scene/names.h"
+#include "render/texture/constant.h"
 
 namespace odis::render {
 namespace {
-
-class ConstantTexture final : public Texture {
- public:
-  explicit ConstantTexture(const Rgb& value) : m_value(value) {}
-  Rgb rgb(const Vec2&) const override { return m_value; }
-  Vec2 gradient(const Vec2&) const override { return Vec2(0); }
-  Rgb mean() const override { return m_value; }
-  bool isConstant() const override { return true; }
-
- private:
-  Rgb m_value;
-};
 
 // What scene files name, for suggestions: of these, the ones that a registry knows.
 constexpr const char* kTextureTypes[] = {"bitmap", "checkerboard", "uniform",       "srgb",

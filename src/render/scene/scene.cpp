@@ -49,10 +49,14 @@ Ray Scene::spawn(const SurfacePoint& at, const Vec3& direction, float distance) 
   const float offset = std::copysign(error, dot(at.ng, direction));
   const Vec3 origin = at.p + at.ng * offset;
   if (distance == kInfinity) return {origin, direction, distance};
-  // Stop before the target by what its own position may be wrong, and by what is lost of a long distance.
-  const float targetError = positionError(maxAbs(at.p + direction * distance));
-  return {origin, direction,
-          std::max(distance - std::max(distance * 1e-4f, 2 * (error + targetError)), 0.0f)};
+  // Aim at the same target from the new origin, and stop before it by what its own position may be wrong and
+  // by what is lost of a long distance.
+  const Vec3 target = at.p + direction * distance;
+  const Vec3 toTarget = target - origin;
+  const float remaining = length(toTarget);
+  const float margin = std::max(remaining * 1e-4f, 2 * (error + positionError(maxAbs(target))));
+  if (!(remaining > margin)) return {origin, direction, 0.0f};
+  return {origin, toTarget * (1 / remaining), remaining - margin};
 }
 
 uint64_t Scene::bytes() const {

@@ -1,0 +1,170 @@
+// Whole scenes: what they hold once loaded, and what they warn of.
+#include <algorithm>
+
+#include "render/scene/info.h"
+#include "render/scene/scene.h"
+#include "scene/scene_text.h"
+
+namespace odis::test {
+namespace {
+
+using namespace render;
+
+struct Loaded {
+  std::unique_ptr<Scene> scene;
+  Warnings warnings;
+  std::string error;
+
+  bool warnsOf(const std::string& text) const {
+    return std::any_of(warnings.texts().begin(), warnings.texts().end(),
+                       [&](const std::string& w) { return w.find(text) != std::string::npos; });
+  }
+};
+
+Loaded load(const std::string& body, const LoadOptions& options = {}) {
+  const TemporaryFolder folder;
+  const std::string path = folder.write("scene.xml", "<scene version='3.0.0'>\n" + body + "\n</scene>");
+  Loaded result;
+  try {
+    result.scene = Scene::load(path, options, result.warnings);
+  } catch (const SceneError& error) {
+    result.error = error.what();
+    const size_t place = result.error.find("scene.xml:");
+    if (place != std::string::npos) result.error.erase(0, place);
+  }
+  return result;
+}
+
+const std::string kSensor =
+    "<sensor type='perspective'><float name='fov' value='90'/><film type='hdrfilm'>"
+    "<integer name='width' value='40'/><integer name='height' value='20'/>"
+    "<integer name='crop_offset_x' value='10'/><integer name='crop_width' value='20'/></film></sensor>";
+const std::string kSphere = "<shape type='sphere'><point name='center' x='0' y='0' z='5'/></shape>";
+const std::string kLight = "<emitter type='constant'/>";
+
+TEST(Load, ACompleteSceneWithoutWarnings) {
+  const Loaded loaded = load("<integrator type='path'><integer name='max_depth' value='7'/></integrator>" +
+                             kSensor + kSphere + kLight);
+  ASSERT_TRUE(loaded.scene) << loaded.error;
+  EXPECT_TRUE(loaded.warnings.texts().empty()) << loaded.warnings.texts()[0];
+  EXPECT_EQ(loaded.scene->shapes().size(), 1u);
+  EXPECT_EQ(loaded.scene->emitters().size(), 1u);
+  EXPECT_EQ(loaded.scene->integrator().maxDepth, 7);
+  EXPECT_EQ(loaded.scene->integrator().rrDepth, 5);
+  EXPECT_EQ(loaded.scene->film().filter->name(), "gaussian");
+  SurfacePoint at;
+  ASSERT_TRUE(loaded.scene->intersect(loaded.scene->sensor().ray({20, 10}, {}), at));
+  EXPECT_NEAR(at.p.z, 4, 1e-5f);
+  EXPECT_NE(describe(*loaded.scene, loaded.warnings).find("film         40 x 20, crop 20 x 20 at (10, 0)"),
+            std::string::npos);
+}
+
+TEST(Load, TheCommandLineOverridesTheFilm) {
+  LoadOptions options;
+  options.resolution = Vec2i(20, 80);
+  Loaded loaded = load(kSensor + kSphere + kLight, options);
+  ASSERT_TRUE(loaded.scene) << loaded.error;
+  EXPECT_EQ(loaded.scene->film().height, 80);
+  EXPECT_EQ(loaded.scene->film().crop.width, 20);
+  EXPECT_EQ(loaded.scene->film().crop.x, 0);
+  // The field of view of 90 degrees stays that of the width.
+  const Vec3 corner = loaded.scene->sensor().ray({0, 0}, {}).direction;
+  EXPECT_NEAR(corner.x / corner.z, 1, 1e-5f);
+  EXPECT_NEAR(corner.y / corner.z, 4, 1e-4f);
+  options.crop = Crop{5, 70, 15, 10};
+  EXPECT_EQ(load(kSensor + kSphere, options).scene->film().crop.y, 70);
+  options.crop = Crop{5, 71, 15, 10};
+  EXPECT_EQ(load(kSensor + kSphere, options).error,
+            "found a crop of 15x10 pixels at (5, 71), expected one within the 20x80 pixels of the film");
+  options.crop.reset();
+  options.resolution = Vec2i(0, 5);
+  EXPECT_EQ(load(kSphere, options).error, "found the resolution 0x5, expected 1 to 65536 pixels a side");
+}
+
+TEST(Load, RejectsFilmsThatCannotBe) {
+  const auto film = [](const std::string& parameters) {
+    return load("<sensor type='perspective'><film type='hdrfilm'>" + parameters + "</film></sensor>").error;
+  };
+  EXPECT_EQ(film("<integer name='width' value='0'/>"),
+            "scene.xml:2:50: found 0 for 'width' of the film, expected 1 to 65536 pixels");
+  EXPECT_EQ(film("<integer name='height' value='65537'/>"),
+            "scene.xml:2:50: found 65537 for 'height' of the film, expected 1 to 65536 pixels");
+  EXPECT_EQ(film("<integer name='crop_offset_x' value='9223372036854775807'/>")
+                .rfind("scene.xml:2:30: found a crop", 0),
+            0u);
+  EXPECT_EQ(film("<rfilter type='tent'><float name='radius' value='-1'/></rfilter>")
+                .rfind("scene.xml:2:71: found -1", 0),
+            0u);
+}
+
+TEST(Load, DrawsWhatItDoesNotKnowAsWellAsItCan) {
+  const Loaded loaded = load(
+      "<integrator type='volpath'><integer name='max_depth' value='3'/></integrator>" + kLight +
+      "<sensor type='perspective'><sampler type='halton'><integer name='sampleCount' value='9'/></sampler>"
+      "<film type='specfilm'><rfilter type='lanczos'/></film></sensor>"
+      "<shape type='sphere'><bsdf type='difuse'><float name='alpha' value='1'/></bsdf>"
+      "<medium name='interior' type='homogeneous'/></shape>"
+      "<shape type='hair'/><emitter type='projektor'/>"
+      "<shape type='sphere'><bsdf type='diffuse'><texture name='reflectance' type='wood'/></bsdf></shape>"
+      "<shape type='sphere'><float name='radios' value='2'/></shape>");
+  ASSERT_TRUE(loaded.scene) << loaded.error;
+  EXPECT_EQ(loaded.scene->shapes().size(), 3u);
+  EXPECT_EQ(loaded.scene->integrator().maxDepth, 3);
+  EXPECT_EQ(loaded.scene->integrator().samplesPerPixel, 9);
+  for (const char* text :
+       {"integrator 'volpath'", "sampler 'halton'", "film 'specfilm'", "filter 'lanczos'",
+        "bsdf 'difuse' is unknown (did you mean 'diffuse'", "media are not supported", "shape 'hair'",
+        "emitter 'projektor'", "texture 'wood'", "unknown parameter 'radios' of the shape 'sphere'"})
+    EXPECT_TRUE(loaded.warnsOf(text)) << text;
+  EXPECT_EQ(loaded.warnings.texts().size(), 10u);
+}
+
+TEST(Load, MakesDoWithoutSensorAndLight) {
+  const Loaded loaded = load(kSphere);
+  ASSERT_TRUE(loaded.scene) << loaded.error;
+  EXPECT_TRUE(loaded.warnsOf("no sensor"));
+  EXPECT_TRUE(loaded.warnsOf("no emitter"));
+  SurfacePoint at;
+  const float width = float(loaded.scene->film().width), height = float(loaded.scene->film().height);
+  EXPECT_TRUE(loaded.scene->intersect(loaded.scene->sensor().ray({width / 2, height / 2}, {}), at));
+  // All of the sphere is in view, so its surroundings are, too.
+  EXPECT_FALSE(loaded.scene->intersect(loaded.scene->sensor().ray({width / 2, 0.5f}, {}), at));
+  EXPECT_FALSE(loaded.scene->intersect(loaded.scene->sensor().ray({0.5f, height / 2}, {}), at));
+  EXPECT_TRUE(load("").scene);
+}
+
+TEST(Load, PlacesInstancesOfShapeGroups) {
+  const std::string group = "<shape type='shapegroup' id='g'><shape type='sphere'/></shape>";
+  const Loaded loaded =
+      load(kLight + group +
+           "<shape type='instance'><ref id='g'/><transform name='to_world'><translate z='9'/>"
+           "</transform></shape><shape type='instance'><ref id='g'/></shape>");
+  ASSERT_TRUE(loaded.scene) << loaded.error;
+  EXPECT_TRUE(loaded.scene->shapes().empty());
+  ASSERT_EQ(loaded.scene->instances().size(), 2u);
+  EXPECT_EQ(loaded.scene->instances()[0].group, loaded.scene->instances()[1].group);
+  SurfacePoint at;
+  ASSERT_TRUE(loaded.scene->intersect({Vec3(0, 0, 20), Vec3(0, 0, -1)}, at));
+  EXPECT_NEAR(at.p.z, 10, 1e-5f);
+  EXPECT_EQ(load("<shape type='instance'/>")
+                .error.rfind("scene.xml:2:1: found an instance without its shape group", 0),
+            0u);
+}
+
+TEST(Load, SharesBsdfsAndGivesLightsABlackOne) {
+  const Loaded loaded = load(
+      "<bsdf type='diffuse' id='m'/><shape type='sphere'><ref id='m'/></shape>"
+      "<shape type='cube'><ref id='m'/></shape><shape type='sphere'><emitter type='area'/></shape>");
+  ASSERT_TRUE(loaded.scene) << loaded.error;
+  const auto& shapes = loaded.scene->shapes();
+  EXPECT_EQ(&shapes[0]->bsdf(), &shapes[1]->bsdf());
+  EXPECT_EQ(shapes[0]->emitter(), nullptr);
+  ASSERT_TRUE(shapes[2]->emitter());
+  SurfacePoint at;
+  EXPECT_EQ(shapes[2]->bsdf().features(at, {0, 0, 1}).albedo, Rgb(0));
+  EXPECT_TRUE(loaded.warnsOf("no sensor"));
+  EXPECT_FALSE(loaded.warnsOf("no emitter"));
+}
+
+}  // namespace
+}  // namespace odis::test
