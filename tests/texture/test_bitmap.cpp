@@ -122,7 +122,7 @@ TEST(Bitmap, OnePixelIsConstant) {
   const BitmapTexture texture(image, {});
   EXPECT_TRUE(texture.isConstant());
   EXPECT_EQ(texture.mean(), Rgb(0.1f, 0.2f, 0.3f));
-  EXPECT_EQ(texture.rgb({0.7f, -3.1f}), texture.mean());
+  EXPECT_TRUE(texture.rgb({0.7f, -3.1f}).equalWithAbsError(texture.mean(), 1e-6f));
   EXPECT_FALSE(BitmapTexture(image, {WrapMode::zero, WrapMode::repeat, false, {}}).isConstant());
 }
 

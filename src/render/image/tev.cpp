@@ -7,6 +7,7 @@
 #include <sys/socket.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <bit>
 #include <cerrno>
 #include <cstring>
@@ -29,24 +30,22 @@ class Packet {
   template <class T>
   Packet& put(T value) {
     static_assert(std::is_trivially_copyable_v<T>);
-    const char* bytes = reinterpret_cast<const char*>(&value);
-    m_bytes.insert(m_bytes.end(), bytes, bytes + sizeof value);
+    m_bytes.append(reinterpret_cast<const char*>(&value), sizeof value);
     return *this;
   }
   Packet& putText(const std::string& text) {
-    m_bytes.insert(m_bytes.end(), text.c_str(), text.c_str() + text.size() + 1);
+    m_bytes.append(text.c_str(), text.size() + 1);
     return *this;
   }
   Packet& putPixels(const Rgb* pixels, size_t count) {
     static_assert(sizeof(Rgb) == 3 * sizeof(float));
-    const char* bytes = reinterpret_cast<const char*>(pixels);
-    m_bytes.insert(m_bytes.end(), bytes, bytes + count * sizeof(Rgb));
+    m_bytes.append(reinterpret_cast<const char*>(pixels), count * sizeof(Rgb));
     return *this;
   }
-  std::vector<char>& bytes() { return m_bytes; }
+  std::string& bytes() { return m_bytes; }
 
  private:
-  std::vector<char> m_bytes;
+  std::string m_bytes;
 };
 
 // Connects to the first address that answers; throws with the last reason.
@@ -90,7 +89,7 @@ TevClient::~TevClient() {
   close(m_socket);
 }
 
-void TevClient::sendPacket(std::vector<char>& packet) {
+void TevClient::sendPacket(std::string& packet) {
   const uint32_t size = uint32_t(packet.size());
   std::memcpy(packet.data(), &size, sizeof size);
   for (size_t done = 0; done < packet.size();) {

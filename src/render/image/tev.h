@@ -1,7 +1,6 @@
 // A client of the image viewer tev (https://github.com/Tom94/tev), to watch an image while it is rendered.
 #pragma once
 
-#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -23,7 +22,7 @@ class TevClient {
   void send(const std::string& name, int width, int height, const Rgb* pixels);
 
  private:
-  void sendPacket(std::vector<char>& packet);
+  void sendPacket(std::string& packet);
 
   struct Known {
     std::string name;
