@@ -4,7 +4,6 @@
 #include "render/scene/builder.h"
 #include "render/scene/load_film.h"
 #include "render/scene/load_shapes.h"
-#include "render/scene/names.h"
 #include "render/scene/scene.h"
 #include "render/scene/xml.h"
 #include "render/sensor/perspective.h"
@@ -19,9 +18,10 @@ IntegratorSettings loadIntegrator(const Properties* node, Warnings& warnings) {
   if (!node) return settings;
   settings.type = node->type;
   if (node->type != "path" && node->type != "odis" && !node->type.empty())
-    warnings.add(node->location, "the integrator '" + node->type + "' is unknown" +
-                                     suggestion(node->type, {"path", "odis"}) +
-                                     ", the integrator of this program is used with its path depths");
+    warnings.add(
+        node->location,
+        "the integrator '" + node->type +
+            "' is not one of path and odis, the integrator of this program is used with its path depths");
   // Integrators that record something about another hold that other one.
   while (const Properties* nested = node->child("integrator")) node = nested;
   const auto depth = [&](const char* name, int fallback, int least) {
@@ -44,9 +44,9 @@ IntegratorSettings loadIntegrator(const Properties* node, Warnings& warnings) {
 int loadSampleCount(const Properties* sampler, Warnings& warnings) {
   if (!sampler) return 0;
   if (sampler->type != "independent" && sampler->type != "sobol")
-    warnings.add(sampler->location, "the sampler '" + sampler->type + "' is unknown" +
-                                        suggestion(sampler->type, {"independent", "sobol"}) +
-                                        ", the sampler of this program is used with its sample count");
+    warnings.add(sampler->location, "the sampler '" + sampler->type +
+                                        "' is not one of independent and sobol, the sampler of this program "
+                                        "is used with its sample count");
   if (!sampler->has("sample_count")) return 0;
   const int64_t count = sampler->integer("sample_count");
   if (count < 1 || count > std::numeric_limits<int>::max())
