@@ -48,7 +48,7 @@ std::string snakeCase(const std::string& name) {
   return result;
 }
 
-std::string inLowerCase(std::string text) {
+std::string lowerCase(std::string text) {
   for (char& c : text) c = char(std::tolower(static_cast<unsigned char>(c)));
   return text;
 }

@@ -8,7 +8,7 @@ namespace odis::render {
 
 // "toWorld" and "to_world" -> "to_world", "intIOR" -> "int_ior", "kNN" -> "k_nn", "color0" -> "color0".
 std::string snakeCase(const std::string& name);
-std::string inLowerCase(std::string text);
+std::string lowerCase(std::string text);
 // " (did you mean 'a' or 'b'?)" with the known names that are near, the nearest first; "" if none is.
 std::string suggestion(const std::string& name, const std::vector<std::string>& known);
 

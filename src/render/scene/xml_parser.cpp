@@ -159,7 +159,7 @@ std::shared_ptr<Properties> XmlParser::parseObject(const Place& place, const pug
                                                    const XmlElement& e) {
   const auto object = std::make_shared<Properties>();
   object->tag = e.tag;
-  object->type = inLowerCase(e.require("type"));
+  object->type = lowerCase(e.require("type"));
   if (e.has("id")) object->id = e.require("id");
   object->location = e.at;
   parseChildren({place.file, place.depth + 1, place.emitter || e.tag == "emitter"}, node, *object);

@@ -71,7 +71,7 @@ Matrix parseLookAt(const XmlElement& element) {
 }
 
 Matrix parseStep(const XmlElement& element) {
-  const std::string tag = inLowerCase(element.tag);
+  const std::string tag = lowerCase(element.tag);
   if (tag == "matrix") return parseMatrix(element);
   if (tag == "rotate") return parseRotation(element);
   if (tag == "lookat") return parseLookAt(element);

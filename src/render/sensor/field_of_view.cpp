@@ -34,7 +34,7 @@ double horizontalFieldOfView(const Properties& node, const Vec2i& resolution) {
       throw SceneError(node.parameters.at("focal_length").location,
                        "found both 'fov' and 'focal_length', expected one of them");
     angle = degrees * M_PI / 180;
-    axis = inLowerCase(node.string("fov_axis", "x"));
+    axis = lowerCase(node.string("fov_axis", "x"));
   } else {
     if (node.has("focal_length")) at = node.parameters.at("focal_length").location;
     node.string("fov_axis", "x");  // has no meaning for focal lengths
