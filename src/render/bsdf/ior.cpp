@@ -25,7 +25,7 @@ constexpr Dielectric kDielectrics[] = {
 
 }  // namespace
 
-std::string lowerCase(std::string text) {
+std::string lowered(std::string text) {
   std::transform(text.begin(), text.end(), text.begin(),
                  [](unsigned char c) { return char(std::tolower(c)); });
   return text;
@@ -40,7 +40,7 @@ float readIor(const Properties& properties, const std::string& name, const std::
       throw SceneError(found->second.location, "\"" + name + "\" is not a positive number");
     return value;
   }
-  const std::string material = lowerCase(properties.string(name, fallback));
+  const std::string material = lowered(properties.string(name, fallback));
   std::string known;
   for (const Dielectric& candidate : kDielectrics) {
     if (material == candidate.name) return candidate.ior;

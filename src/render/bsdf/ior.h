@@ -19,6 +19,7 @@ const Metal* findMetal(const std::string& name);
 // SceneError if the name is unknown or the number not positive.
 float readIor(const Properties& properties, const std::string& name, const std::string& fallback);
 
-std::string lowerCase(std::string text);
+// The text in lower case.
+std::string lowered(std::string text);
 
 }  // namespace odis::render

@@ -27,7 +27,7 @@ ScalarParameter readScalar(const Properties& properties, Builder& builder, const
 
 RoughnessParameters readRoughness(const Properties& properties, Builder& builder) {
   RoughnessParameters result;
-  const std::string distribution = lowerCase(properties.string("distribution", "beckmann"));
+  const std::string distribution = lowered(properties.string("distribution", "beckmann"));
   if (distribution == "ggx") {
     result.type = Microfacet::Type::ggx;
   } else if (distribution == "phong" || distribution == "as") {
