@@ -158,8 +158,7 @@ TEST(NearDelta, RoughnessDecides) {
   EXPECT_EQ(lobe(0.01, 0.1), Lobe::smooth);
 }
 
-// The slope of a plane that rises by 0.5 along u turns the normal by atan(0.5); values come from
-// Mitsuba 3.9.1's bumpmap of a bitmap with that slope.
+// A slope of 0.5 along u turns the normal by atan(0.5); Mitsuba's bumpmap of a bitmap with that slope agrees.
 TEST(BumpMap, TiltsTheFrame) {
   const BsdfPtr diffuse = makeModel({{"type", "diffuse"}, {"reflectance", 0.8}});
   const PerturbationOptions plain{true, false};

@@ -22,8 +22,10 @@ TEST(Golden, ValuesAgreeWithMitsuba) {
     fields >> name >> wo.x >> wo.y >> wo.z >> wi.x >> wi.y >> wi.z >> value.x >> value.y >> value.z >> pdf;
     ASSERT_TRUE(fields) << line;
     const BsdfValue ours = allModels().at(name)->evaluate(flatPoint(), wo, wi);
-    // Mitsuba fits Beckmann's masking by a rational function that is good to 0.35 %, twice in a value.
-    const float tolerance = 8e-3f;
+    // Mitsuba fits Beckmann's masking by a rational function that is good to 0.35 %, twice in a value; the
+    // tables of rough plastic depend on the quadrature.
+    const bool exact = name.find("_ggx") != std::string::npos || name.find("principled") == 0;
+    const float tolerance = exact ? 1e-3f : 8e-3f;
     const auto compare = [&](float a, float b, const char* what) {
       const float difference = std::abs(a - b) / std::max(std::abs(b), 1e-6f);
       EXPECT_LT(difference, tolerance) << what << " of " << line << " is " << a;
