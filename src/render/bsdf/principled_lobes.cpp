@@ -77,6 +77,7 @@ BsdfSample PrincipledPoint::sample(const Vec3& wo, float uLobe, const Vec2& u) c
 
   // The interface: Fresnel's term of the facet decides between transmission and reflection.
   const Vec3 m = facets.sample(upper(wo), u);
+  if (!(dot(wo, m) * wo.z > 0)) return {};  // a facet that faces away
   const DielectricFresnel f = fresnelDielectric(dot(wo, m), eta);
   const bool transmitted =
       uLobe < early.diffuse + early.clearcoat + probabilities(front, f.reflectance).transmission;

@@ -27,6 +27,7 @@ class RoughDielectric final : public Bsdf {
     if (wo.z == 0) return {};
     const Microfacet facets = m_roughness(at);
     const Vec3 m = proposal(facets, wo).sample(upper(wo), u);
+    if (!(dot(wo, m) * wo.z > 0)) return {};  // a facet that faces away
     const DielectricFresnel f = fresnelDielectric(dot(wo, m), m_eta);
     const bool reflected = uLobe < f.reflectance;
     const Vec3 wi = reflected ? reflect(wo, m) : refract(wo, m, f);
