@@ -95,14 +95,16 @@ TEST_F(Odis, WrongUsageIsTwo) {
 
 TEST_F(Odis, BadSceneIsThreeAndLeavesNothing) {
   write("broken.xml", "<scene version=\"3.0.0\">\n  <shape type=\"sphere\">\n</scene>");
-  write("unknown.xml", "<scene version=\"3.0.0\">\n  <shape type=\"sphear\"/>\n</scene>");
+  write("number.xml",
+        "<scene version=\"3.0.0\">\n  <shape type=\"sphere\"><float name=\"radius\" "
+        "value=\"big\"/></shape>\n</scene>");
   expectFailure("render nowhere.xml", 3, "nowhere.xml");
   expectFailure("render broken.xml", 3, "broken.xml:");
-  expectFailure("render unknown.xml", 3, "unknown.xml:2:");
+  expectFailure("render number.xml", 3, "number.xml:2:");
   expectFailure("scene info broken.xml", 3, "broken.xml:");
   EXPECT_FALSE(exists("nowhere.exr"));
   EXPECT_FALSE(exists("broken.exr"));
-  EXPECT_FALSE(exists("unknown.exr"));
+  EXPECT_FALSE(exists("number.exr"));
 }
 
 TEST_F(Odis, OutputThatCannotBeWrittenIsFour) {
