@@ -4,7 +4,6 @@ find_package(Imath REQUIRED)
 find_package(OpenEXR REQUIRED)
 find_package(pugixml REQUIRED)
 find_package(fmt REQUIRED)
-find_package(spdlog REQUIRED)
 find_package(ZLIB REQUIRED)
 find_package(nlohmann_json REQUIRED)
 
@@ -14,16 +13,11 @@ if(NOT embree_FOUND)
   find_package(embree 3 REQUIRED)
 endif()
 
-# stb and tinyobjloader are used as headers. stb lies in a folder of its own on Debian, not everywhere.
+# stb is used as headers, which lie in a folder of its own on Debian, not everywhere.
 find_path(STB_INCLUDE_DIR stb_image.h PATH_SUFFIXES stb REQUIRED)
 mark_as_advanced(STB_INCLUDE_DIR)
 add_library(stb INTERFACE)
 target_include_directories(stb SYSTEM INTERFACE ${STB_INCLUDE_DIR})
-find_path(TINYOBJLOADER_INCLUDE_DIR tiny_obj_loader.h REQUIRED)
-mark_as_advanced(TINYOBJLOADER_INCLUDE_DIR)
-add_library(tinyobjloader INTERFACE)
-target_include_directories(tinyobjloader SYSTEM INTERFACE ${TINYOBJLOADER_INCLUDE_DIR})
-
 if(ODIS_APPS)
   find_package(CLI11 REQUIRED)
 endif()

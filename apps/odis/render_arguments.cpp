@@ -38,6 +38,35 @@ void MethodArguments::addTo(CLI::App& app) {
       ->check(CLI::IsMember({"sobol", "independent"}))
       ->capture_default_str()
       ->group(group);
+  addCellsTo(app);
+}
+
+void MethodArguments::addCellsTo(CLI::App& app) {
+  const std::string group = "Cells";
+  app.add_option("--cells", cells.cellsPerDiagonal, "Finest cells along the diagonal of what the pilot saw")
+      ->check(CLI::Range(1, 1 << 16))
+      ->capture_default_str()
+      ->group(group);
+  app.add_option("--trust", trust, "Samples' worth of the coarser level in each finer one, finest first")
+      ->expected(kCellLevels)
+      ->check(CLI::Range(0.0, 1e9))
+      ->capture_default_str()
+      ->group(group);
+  app.add_option("--map-floor", cells.floor, "Share of the uniform distribution in every map")
+      ->check(CLI::Range(0.0, 1.0))
+      ->capture_default_str()
+      ->group(group);
+  app.add_option(
+         "--alpha", cells.fixedAlpha,
+         "Share of the samples that stays with the BSDF, everywhere; 0: by predicted variance and cost")
+      ->check(CLI::Range(0.0, 1.0))
+      ->capture_default_str()
+      ->group(group);
+  app.add_option("--pilot-weight", pilotWeight,
+                 "Of a pilot sample relative to a guided one; -1: by predicted variance")
+      ->check(CLI::Range(-1.0, 1e6))
+      ->capture_default_str()
+      ->group(group);
 }
 
 void MethodArguments::apply(RenderOptions& options) const {
@@ -47,6 +76,9 @@ void MethodArguments::apply(RenderOptions& options) const {
   options.guideBounces = guideBounces;
   options.pilotSpp = pilotSpp;
   options.oracleSpp = oracleSpp;
+  options.pilotWeight = pilotWeight;
+  options.guideOptions = cells;
+  std::copy(trust.begin(), trust.end(), options.guideOptions.trust);
 }
 
 void SceneArguments::addTo(CLI::App& app) {

@@ -14,10 +14,15 @@ namespace odis::app {
 struct MethodArguments {
   std::string integrator = "odis", sampler = "sobol", guide = "histogram";
   int guideBounces = -1, oracleSpp = 64;
-  double pilotSpp = 1;
+  double pilotSpp = 1, pilotWeight = -1;
+  GuideOptions cells;
+  std::vector<float> trust{std::begin(cells.trust), std::end(cells.trust)};
 
   void addTo(CLI::App& app);
   void apply(render::RenderOptions& options) const;
+
+ private:
+  void addCellsTo(CLI::App& app);
 };
 
 // Which scene, and which part and size of it.

@@ -1,4 +1,5 @@
-// From pilot vertices to decisions: nested cells in world space, a sampling map and selection probabilities a cell.
+// From pilot vertices to decisions: nested cells in world space, a sampling map and selection probabilities a
+// cell.
 //
 //   odis::GuideBuilder builder(options);
 //   builder.add(pilotVertices);              // once, or as samples arrive
@@ -21,16 +22,18 @@ namespace odis {
 
 class DirectionModel;
 
+inline constexpr int kCellLevels = 4;  // nested cells with edges e, 2e, 4e, 8e
+
 struct GuideOptions {
   // What turns statistics into maps (src/odis/decisions/direction_model.h); null: the histogram formula.
   std::shared_ptr<const DirectionModel> model;
   int cellsPerDiagonal = 32;  // the finest cells have an edge of (diagonal of what the pilot saw) / this
-  // How many samples' worth of trust the coarser level has when it is blended with a finer one, per level, finest
-  // first; the last one is for the uniform map.
-  float trust[4] = {300, 300, 150, 30};
-  float floor = 0.1f;         // share of the uniform distribution in every map
-  float clamp = 20;           // a sample counts at most this many times the mean of its neighbourhood (maps only)
-  float fixedAlpha = 0;       // > 0: this selection probability everywhere instead of the one by variance and cost
+  // How many samples' worth of trust the coarser level has when it is blended with a finer one, per level,
+  // finest first; the last one is for the uniform map.
+  float trust[kCellLevels] = {300, 300, 150, 30};
+  float floor = 0.1f;    // share of the uniform distribution in every map
+  float clamp = 20;      // a sample counts at most this many times the mean of its neighbourhood (maps only)
+  float fixedAlpha = 0;  // > 0: this selection probability everywhere instead of the one by variance and cost
 };
 
 // What a cell tells a path.
@@ -67,11 +70,11 @@ class GuideBuilder {
   explicit GuideBuilder(const GuideOptions& options = {});
   ~GuideBuilder();
 
-  // Adds to the statistics of the cells. The first call fixes the extent of the cells, so it should hold at least one
-  // pass over the image. Vertices with values that are not finite are left out.
+  // Adds to the statistics of the cells. The first call fixes the extent of the cells, so it should hold at
+  // least one pass over the image. Vertices with values that are not finite are left out.
   void add(std::span<const PilotVertex> vertices);
-  // Builds maps from all that was added, and selection probabilities from `vertices`, which should be (a part of) the
-  // same.
+  // Builds maps from all that was added, and selection probabilities from `vertices`, which should be (a part
+  // of) the same.
   Guide build(std::span<const PilotVertex> vertices) const;
   uint64_t bytes() const;
 

@@ -1,6 +1,6 @@
-// The equal-area octahedral map between the unit sphere and the unit square (Clarberg 2008, "Fast Equal-Area Mapping
-// of the (Hemi)Sphere using SIMD"): equal areas of the square are equal solid angles, so a density p on the square is
-// the density p / (4 pi) on the sphere.
+// The equal-area octahedral map between the unit sphere and the unit square (Clarberg 2008, "Fast Equal-Area
+// Mapping of the (Hemi)Sphere using SIMD"): equal areas of the square are equal solid angles, so a density p
+// on the square is the density p / (4 pi) on the sphere.
 #pragma once
 
 #include <algorithm>

@@ -1,5 +1,5 @@
-// Sampling maps: 16 x 16 equal-area octahedral maps of how much light comes from each direction, in world space, and
-// the density that they give together with the cosine at a vertex. No allocation, no virtual call.
+// Sampling maps: 16 x 16 equal-area octahedral maps of how much light comes from each direction, in world
+// space, and the density that they give together with the cosine at a vertex. No allocation, no virtual call.
 #pragma once
 
 #include <algorithm>
@@ -20,7 +20,8 @@ inline int texelOf(const Float3& w) {
   return y * kMapSize + x;
 }
 
-// A cell's map: relative incident radiance in 16 bits, at least 1 so that no direction is impossible. 512 bytes.
+// A cell's map: relative incident radiance in 16 bits, at least 1 so that no direction is impossible. 512
+// bytes.
 struct SamplingMap {
   std::array<uint16_t, kMapTexels> texels;
 };
@@ -28,13 +29,13 @@ struct SamplingMap {
 // Which side of the surface a vertex scatters to.
 enum class Sides : uint8_t { reflection, both };
 
-// A map times the cosine at one vertex: a density over directions, constant within each texel, with respect to solid
-// angle. It is zero in texels whose centre is below the horizon of a `reflection` vertex; the mixture with the BSDF's
-// own density covers what the rim of such a texel holds above it.
+// A map times the cosine at one vertex: a density over directions, constant within each texel, with respect
+// to solid angle. It is zero in texels whose centre is below the horizon of a `reflection` vertex; the
+// mixture with the BSDF's own density covers what the rim of such a texel holds above it.
 class VertexMap {
  public:
-  // Multiplies by max(cos, 0), or |cos| for `both`, at the texels' centres. `normal` is the unit shading normal on the
-  // side of the outgoing direction.
+  // Multiplies by max(cos, 0), or |cos| for `both`, at the texels' centres. `normal` is the unit shading
+  // normal on the side of the outgoing direction.
   void prepare(const SamplingMap& map, const Float3& normal, Sides sides);
 
   // Whether there is anything to sample (a NaN normal, say, leaves nothing).
@@ -72,15 +73,17 @@ class VertexMap {
   float m_toPdf = 0;  // weight -> solid-angle density
 };
 
-// The power heuristic with exponent two (Veach and Guibas 1995): the weight of a sample drawn with density `pdf` where
-// another strategy would have drawn it with density `other`. A `pdf` that is infinite for all practical purposes is fine.
+// The power heuristic with exponent two (Veach and Guibas 1995): the weight of a sample drawn with density
+// `pdf` where another strategy would have drawn it with density `other`. A `pdf` that is infinite for all
+// practical purposes is fine.
 inline float powerHeuristic(float pdf, float other) {
   if (!(pdf > 0)) return 0;
   const float ratio = other / pdf;
   return 1 / (1 + ratio * ratio);
 }
 
-// The density of the one-sample mixture that replaces a share of the BSDF's smooth draws by draws from the map.
+// The density of the one-sample mixture that replaces a share of the BSDF's smooth draws by draws from the
+// map.
 //   pdf, guidablePdf        the BSDF's density of a direction: all lobes, and those that may be guided
 //   guidableProbability     how often the BSDF's sampling draws from lobes that may be guided
 //   alpha                   the share of those draws that stays with the BSDF, in (0, 1]

@@ -30,11 +30,15 @@ const Cell* Guide::find(const Float3& position, const Float3& normal) const {
   return nullptr;
 }
 
-uint64_t Guide::cellCount() const { return m_data ? m_data->cells.size() : 0; }
+uint64_t Guide::cellCount() const {
+  return m_data ? m_data->cells.size() : 0;
+}
 uint64_t Guide::bytes() const {
   return m_data ? m_data->cells.size() * sizeof(Cell) + m_data->index.bytes() : 0;
 }
-float Guide::predictedVarianceRatio() const { return m_data ? m_data->predictedVarianceRatio : 1; }
+float Guide::predictedVarianceRatio() const {
+  return m_data ? m_data->predictedVarianceRatio : 1;
+}
 
 struct GuideBuilder::Data {
   explicit Data(const GuideOptions& o) : options(o), store(o.clamp) {
@@ -50,7 +54,9 @@ GuideBuilder::~GuideBuilder() = default;
 void GuideBuilder::add(std::span<const PilotVertex> vertices) {
   m_data->store.add(vertices, m_data->options.cellsPerDiagonal);
 }
-uint64_t GuideBuilder::bytes() const { return m_data->store.bytes(); }
+uint64_t GuideBuilder::bytes() const {
+  return m_data->store.bytes();
+}
 
 namespace {
 
@@ -58,7 +64,8 @@ namespace {
 SamplingMap pack(const DirectionDistribution& distribution, float floor) {
   Histogram radiance;
   float sum = 0;
-  for (int t = 0; t < kMapTexels; ++t) sum += radiance[t] = distribution.probability[t] * distribution.perCosine[t];
+  for (int t = 0; t < kMapTexels; ++t)
+    sum += radiance[t] = distribution.probability[t] * distribution.perCosine[t];
   float brightest = 0;
   for (float& value : radiance) {
     value = (sum > 0 ? (1 - floor) * value / sum : 0) + floor / kMapTexels;
@@ -79,7 +86,8 @@ void forEachCell(size_t count, const Body& body) {
 
 // The sums of a cell's vertices, each judged by the map without its own sample.
 void sumCell(CellSelection& sums, std::span<const PilotVertex> vertices, std::span<const uint32_t> order,
-             const CellStatistics& cell, const DirectionDistribution& distribution, const SamplingMap& map, float limit) {
+             const CellStatistics& cell, const DirectionDistribution& distribution, const SamplingMap& map,
+             float limit) {
   VertexMap vertexMap;
   for (const uint32_t i : order) {
     const PilotVertex& v = vertices[i];
@@ -116,8 +124,8 @@ Guide GuideBuilder::build(std::span<const PilotVertex> vertices) const {
   for (int level = kCellLevels - 1; level >= 0; --level)
     forEachCell(cells.size(), [&](size_t c) {
       if (cells[c].level != level) return;
-      distributions[c] =
-          options.model->predict(cells[c], cells[c].parent == kNoCell ? nullptr : &distributions[cells[c].parent]);
+      distributions[c] = options.model->predict(
+          cells[c], cells[c].parent == kNoCell ? nullptr : &distributions[cells[c].parent]);
       result[c].map = pack(distributions[c], options.floor);
     });
   if (options.fixedAlpha > 0) {
@@ -129,7 +137,8 @@ Guide GuideBuilder::build(std::span<const PilotVertex> vertices) const {
   std::vector<uint32_t> cellOfVertex(vertices.size(), kNoCell);
   tbb::parallel_for(size_t(0), vertices.size(), [&](size_t i) {
     if (vertices[i].discrete || isUsable(vertices[i]))
-      cellOfVertex[i] = guide.m_data->index.find(guide.m_data->grid.key(vertices[i].position, vertices[i].normal, 0));
+      cellOfVertex[i] =
+          guide.m_data->index.find(guide.m_data->grid.key(vertices[i].position, vertices[i].normal, 0));
   });
   const CellOrder sorted = sortByCell(cellOfVertex, uint32_t(cells.size()));
   std::vector<CellSelection> sums(cells.size());
@@ -138,8 +147,9 @@ Guide GuideBuilder::build(std::span<const PilotVertex> vertices) const {
     if (cell.level != 0) return;
     const CellStatistics& parent = cells[cell.parent];
     const float limit = parent.count > 0 ? m_data->store.clamp() * float(parent.sum / parent.count) : 0;
-    sumCell(sums[c], vertices, std::span(sorted.order).subspan(sorted.begin[c], sorted.begin[c + 1] - sorted.begin[c]),
-            cell, distributions[c], result[c].map, limit);
+    sumCell(sums[c], vertices,
+            std::span(sorted.order).subspan(sorted.begin[c], sorted.begin[c + 1] - sorted.begin[c]), cell,
+            distributions[c], result[c].map, limit);
   });
   for (int level = 0; level + 1 < kCellLevels; ++level)
     for (size_t c = 0; c < cells.size(); ++c)

@@ -23,9 +23,10 @@ TEST(Records, FirstVerticesAddUpToTheImage) {
   ASSERT_EQ(sum.size(), result.frame.color.size());
   for (const PilotVertex& v : result.records)
     if (v.depth == 1)
-      sum[v.pixel] += (Rgb(v.direct.x, v.direct.y, v.direct.z) +
-                       Rgb(v.weight.x, v.weight.y, v.weight.z) * Rgb(v.radiance.x, v.radiance.y, v.radiance.z)) *
-                      v.sampleWeight;
+      sum[v.pixel] +=
+          (Rgb(v.direct.x, v.direct.y, v.direct.z) +
+           Rgb(v.weight.x, v.weight.y, v.weight.z) * Rgb(v.radiance.x, v.radiance.y, v.radiance.z)) *
+          v.sampleWeight;
   for (size_t i = 0; i < sum.size(); ++i)
     for (int c = 0; c < 3; ++c)
       EXPECT_NEAR(sum[i][c] / 2, result.frame.color[i][c], 1e-4f * std::max(1.0f, result.frame.color[i][c]));

@@ -15,8 +15,9 @@ namespace odis::test {
 
 inline std::unique_ptr<render::Scene> loadScene(const std::string& body) {
   static int count = 0;
-  const std::filesystem::path path = std::filesystem::temp_directory_path() /
-                                     ("odis_test_" + std::to_string(getpid()) + "_" + std::to_string(count++) + ".xml");
+  const std::filesystem::path path =
+      std::filesystem::temp_directory_path() /
+      ("odis_test_" + std::to_string(getpid()) + "_" + std::to_string(count++) + ".xml");
   std::ofstream(path) << "<scene version=\"3.0.0\">" << body << "</scene>";
   render::Warnings warnings;
   auto scene = render::Scene::load(path.string(), {}, warnings);
@@ -26,25 +27,27 @@ inline std::unique_ptr<render::Scene> loadScene(const std::string& body) {
 
 inline std::string sensor(const std::string& lookAt, float fov, int width, int height) {
   return "<sensor type=\"perspective\"><float name=\"fov\" value=\"" + std::to_string(fov) +
-         "\"/><transform name=\"to_world\"><lookat " + lookAt + "/></transform><film type=\"hdrfilm\"><integer name=\"width\" value=\"" +
-         std::to_string(width) + "\"/><integer name=\"height\" value=\"" + std::to_string(height) +
+         "\"/><transform name=\"to_world\"><lookat " + lookAt +
+         "/></transform><film type=\"hdrfilm\"><integer name=\"width\" value=\"" + std::to_string(width) +
+         "\"/><integer name=\"height\" value=\"" + std::to_string(height) +
          "\"/><rfilter type=\"box\"/></film></sensor>";
 }
 
-// The inside of a unit sphere that emits radiance 1 and reflects half of what it receives: radiance 1 / (1 - 0.5) = 2
-// arrives everywhere from every direction.
+// The inside of a unit sphere that emits radiance 1 and reflects half of what it receives: radiance 1 / (1 -
+// 0.5) = 2 arrives everywhere from every direction.
 inline std::string furnace(const std::string& bsdf) {
   return sensor("origin=\"0.1,0.2,0.1\" target=\"1,0,0\" up=\"0,1,0\"", 60, 8, 8) +
          "<shape type=\"sphere\"><boolean name=\"flip_normals\" value=\"true\"/>" + bsdf +
          "<emitter type=\"area\"><rgb name=\"radiance\" value=\"1\"/></emitter></shape>";
 }
 
-// A room lit by a lamp that is turned to the ceiling: mostly indirect light, so that guiding has something to do.
+// A room lit by a lamp that is turned to the ceiling: mostly indirect light, so that guiding has something to
+// do.
 inline std::string indirectRoom(int size = 24) {
   const auto wall = [](const std::string& transform, const std::string& color) {
     return "<shape type=\"rectangle\"><transform name=\"to_world\">" + transform +
-           "</transform><bsdf type=\"twosided\"><bsdf type=\"diffuse\"><rgb name=\"reflectance\" value=\"" + color +
-           "\"/></bsdf></bsdf></shape>";
+           "</transform><bsdf type=\"twosided\"><bsdf type=\"diffuse\"><rgb name=\"reflectance\" value=\"" +
+           color + "\"/></bsdf></bsdf></shape>";
   };
   return sensor("origin=\"0,0,3.4\" target=\"0,0,0\" up=\"0,1,0\"", 38, size, size) +
          wall("<rotate x=\"1\" angle=\"-90\"/><translate y=\"-1\"/>", "0.7 0.7 0.7") +
@@ -52,12 +55,16 @@ inline std::string indirectRoom(int size = 24) {
          wall("<translate z=\"-1\"/>", "0.6 0.6 0.7") +
          wall("<rotate y=\"1\" angle=\"90\"/><translate x=\"-1\"/>", "0.7 0.2 0.2") +
          wall("<rotate y=\"1\" angle=\"-90\"/><translate x=\"1\"/>", "0.2 0.7 0.2") +
-         "<shape type=\"rectangle\"><transform name=\"to_world\"><scale value=\"0.15\"/><rotate x=\"1\" angle=\"-90\"/>"
+         "<shape type=\"rectangle\"><transform name=\"to_world\"><scale value=\"0.15\"/><rotate x=\"1\" "
+         "angle=\"-90\"/>"
          "<translate x=\"0.4\" y=\"0.5\" z=\"-0.3\"/></transform><bsdf type=\"diffuse\"/>"
          "<emitter type=\"area\"><rgb name=\"radiance\" value=\"60\"/></emitter></shape>"
-         "<shape type=\"sphere\"><point name=\"center\" x=\"-0.4\" y=\"-0.6\" z=\"-0.2\"/><float name=\"radius\" value=\"0.4\"/>"
-         "<bsdf type=\"roughconductor\"><string name=\"material\" value=\"Cu\"/><float name=\"alpha\" value=\"0.25\"/></bsdf></shape>"
-         "<shape type=\"sphere\"><point name=\"center\" x=\"0.5\" y=\"-0.7\" z=\"0.1\"/><float name=\"radius\" value=\"0.3\"/>"
+         "<shape type=\"sphere\"><point name=\"center\" x=\"-0.4\" y=\"-0.6\" z=\"-0.2\"/><float "
+         "name=\"radius\" value=\"0.4\"/>"
+         "<bsdf type=\"roughconductor\"><string name=\"material\" value=\"Cu\"/><float name=\"alpha\" "
+         "value=\"0.25\"/></bsdf></shape>"
+         "<shape type=\"sphere\"><point name=\"center\" x=\"0.5\" y=\"-0.7\" z=\"0.1\"/><float "
+         "name=\"radius\" value=\"0.3\"/>"
          "<bsdf type=\"plastic\"/></shape>";
 }
 

@@ -23,11 +23,21 @@ class AdversarialModel : public DirectionModel {
     for (int t = 0; t < kMapTexels; ++t) {
       result.perCosine[t] = 1;
       switch (m_kind) {
-        case Kind::random: result.probability[t] = float(engine() % 1000) / 1000; break;
-        case Kind::oneHot: result.probability[t] = uint32_t(t) == hot ? 1 : 0; break;
-        case Kind::zero: result.probability[t] = 0; break;
-        case Kind::notANumber: result.probability[t] = engine() % 4 ? 1 : NAN; break;
-        case Kind::inverted: result.probability[t] = most - cell.histogram[t]; break;
+        case Kind::random:
+          result.probability[t] = float(engine() % 1000) / 1000;
+          break;
+        case Kind::oneHot:
+          result.probability[t] = uint32_t(t) == hot ? 1 : 0;
+          break;
+        case Kind::zero:
+          result.probability[t] = 0;
+          break;
+        case Kind::notANumber:
+          result.probability[t] = engine() % 4 ? 1 : NAN;
+          break;
+        case Kind::inverted:
+          result.probability[t] = most - cell.histogram[t];
+          break;
       }
     }
     return result;
@@ -65,8 +75,8 @@ PixelStatistics renderSeeds(const Scene& scene, RenderOptions options, int seeds
   return result;
 }
 
-// Per-pixel z-scores must look standard normal: none beyond the Šidák-corrected bound, their squares a chi-squared
-// variable, and the image's mean within its own standard error.
+// Per-pixel z-scores must look standard normal: none beyond the Šidák-corrected bound, their squares a
+// chi-squared variable, and the image's mean within its own standard error.
 void expectSameExpectation(const PixelStatistics& a, const PixelStatistics& b, int testCount) {
   const size_t pixels = a.sum.size();
   double squares = 0, difference = 0, variance = 0, worst = 0;
@@ -82,8 +92,8 @@ void expectSameExpectation(const PixelStatistics& a, const PixelStatistics& b, i
   }
   ASSERT_GT(used, int(pixels / 2));
   const double significance = 1 - std::pow(0.99, 1.0 / testCount);
-  // Means of 32 and more values have light enough tails for a normal bound with some slack; chi-squared over all pixels
-  // has standard deviation sqrt(2 n), inflated by a quarter for estimated variances.
+  // Means of 32 and more values have light enough tails for a normal bound with some slack; chi-squared over
+  // all pixels has standard deviation sqrt(2 n), inflated by a quarter for estimated variances.
   EXPECT_LT(worst, 6.0);
   EXPECT_LT(squares / used, 1 + 5 * 1.25 * std::sqrt(2.0 / used) + 0.1);
   const double z = std::abs(difference) / std::sqrt(variance);
@@ -118,7 +128,9 @@ PixelStatistics* UnbiasedTest::s_path = nullptr;
 
 constexpr int kTests = 10;
 
-TEST_F(UnbiasedTest, Histogram) { expectSameExpectation(*s_path, renderSeeds(*s_scene, guidedOptions(), 96, 1), kTests); }
+TEST_F(UnbiasedTest, Histogram) {
+  expectSameExpectation(*s_path, renderSeeds(*s_scene, guidedOptions(), 96, 1), kTests);
+}
 
 TEST_F(UnbiasedTest, FirstBounceOnly) {
   RenderOptions options = guidedOptions();

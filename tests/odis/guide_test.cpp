@@ -77,8 +77,10 @@ TEST(Splat, WeightsAddUpAndSeamsWrap) {
       sum += s.weight[k];
       if (s.weight[k] == 0) continue;
       const int t = s.texel[k];
-      const Float3 center = squareToDirection({(t % kMapSize + 0.5f) / kMapSize, (t / kMapSize + 0.5f) / kMapSize});
-      EXPECT_GT(dot(center, w), 0.85f) << "a texel far from the direction";  // no texel is wider than about 25 degrees
+      const Float3 center =
+          squareToDirection({(t % kMapSize + 0.5f) / kMapSize, (t / kMapSize + 0.5f) / kMapSize});
+      EXPECT_GT(dot(center, w), 0.85f)
+          << "a texel far from the direction";  // no texel is wider than about 25 degrees
     }
     EXPECT_NEAR(sum, 1, 1e-4);
   }
@@ -114,7 +116,8 @@ TEST(Guide, FallsBackToCoarserCellsAndThenToNothing) {
   GuideBuilder builder;
   builder.add(vertices);
   const Guide guide = builder.build(vertices);
-  EXPECT_NE(guide.find({0.5f, 0.5f, 0.06f}, {0, 0, 1}), nullptr);  // above the finest cells, inside coarser ones
+  EXPECT_NE(guide.find({0.5f, 0.5f, 0.06f}, {0, 0, 1}),
+            nullptr);  // above the finest cells, inside coarser ones
   EXPECT_EQ(guide.find({50, 50, 50}, {0, 0, 1}), nullptr);
   EXPECT_EQ(Guide().find({0, 0, 0}, {0, 0, 1}), nullptr);
 }
@@ -127,11 +130,22 @@ TEST(Guide, NothingToLearnFromIsNoCrash) {
   for (size_t i = 0; i < vertices.size(); ++i) {
     PilotVertex& v = vertices[i];
     switch (i % 5) {
-      case 0: v.position.x = NAN; break;
-      case 1: v.radiance.y = INFINITY; break;
-      case 2: v.pdf = 0; break;
-      case 3: v.radiance = {0, 0, 0}; v.indirect = 0; break;
-      case 4: v.wi = {NAN, NAN, NAN}; break;
+      case 0:
+        v.position.x = NAN;
+        break;
+      case 1:
+        v.radiance.y = INFINITY;
+        break;
+      case 2:
+        v.pdf = 0;
+        break;
+      case 3:
+        v.radiance = {0, 0, 0};
+        v.indirect = 0;
+        break;
+      case 4:
+        v.wi = {NAN, NAN, NAN};
+        break;
     }
   }
   GuideBuilder broken;
@@ -177,8 +191,8 @@ TEST(Selection, PrefersTheMapWhereItMatchesTheLight) {
 }
 
 TEST(Selection, SecondMomentOfTheMixtureIsPredicted) {
-  // One direction variable with two outcomes, BSDF probabilities (0.9, 0.1), map (0.5, 0.5), contribution only from the
-  // second: f = 1 there. Under a mixture q the second moment is 1 / q.
+  // One direction variable with two outcomes, BSDF probabilities (0.9, 0.1), map (0.5, 0.5), contribution
+  // only from the second: f = 1 there. Under a mixture q the second moment is 1 / q.
   CellSelection sums;
   PilotVertex v;
   v.guidableProbability = 1;

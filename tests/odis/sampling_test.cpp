@@ -10,7 +10,9 @@ namespace {
 
 using render::Vec3;
 
-Vec3 toVec3(const Float3& w) { return {w.x, w.y, w.z}; }
+Vec3 toVec3(const Float3& w) {
+  return {w.x, w.y, w.z};
+}
 
 TEST(Octahedral, InvertsItself) {
   std::mt19937 engine(1);
@@ -26,12 +28,15 @@ TEST(Octahedral, InvertsItself) {
 }
 
 TEST(Octahedral, KeepsAreas) {
-  const auto sample = [](float, float u, float v) { return std::optional(toVec3(squareToDirection({u, v}))); };
+  const auto sample = [](float, float u, float v) {
+    return std::optional(toVec3(squareToDirection({u, v})));
+  };
   EXPECT_TRUE(test::chi2Test(sample, [](const Vec3&) { return 1 / (4 * render::kPi); }));
 }
 
 TEST(Octahedral, PolesAndSeamsAreFinite) {
-  for (const Float3 w : {Float3{0, 0, 1}, Float3{0, 0, -1}, Float3{1, 0, 0}, Float3{0, -1, 0}, Float3{-1, 0, 0}}) {
+  for (const Float3 w :
+       {Float3{0, 0, 1}, Float3{0, 0, -1}, Float3{1, 0, 0}, Float3{0, -1, 0}, Float3{-1, 0, 0}}) {
     const Float3 back = squareToDirection(directionToSquare(w));
     EXPECT_NEAR(dot(back, w), 1, 1e-5);
     EXPECT_LT(texelOf(w), kMapTexels);
@@ -45,10 +50,18 @@ SamplingMap makeMap(Content content) {
   std::mt19937 engine(7);
   for (int t = 0; t < kMapTexels; ++t) {
     switch (content) {
-      case Content::random: map.texels[t] = uint16_t(1 + engine() % 65535); break;
-      case Content::uniform: map.texels[t] = 1000; break;
-      case Content::oneHot: map.texels[t] = t == 137 ? 65535 : 1; break;
-      case Content::gradient: map.texels[t] = uint16_t(1 + 200 * t); break;
+      case Content::random:
+        map.texels[t] = uint16_t(1 + engine() % 65535);
+        break;
+      case Content::uniform:
+        map.texels[t] = 1000;
+        break;
+      case Content::oneHot:
+        map.texels[t] = t == 137 ? 65535 : 1;
+        break;
+      case Content::gradient:
+        map.texels[t] = uint16_t(1 + 200 * t);
+        break;
     }
   }
   return map;
@@ -67,7 +80,8 @@ TEST_P(VertexMapTest, SampleHasTheDensityOfPdf) {
   VertexMap map;
   map.prepare(makeMap(c.content), c.normal, c.sides);
   ASSERT_FALSE(map.empty());
-  // The density is constant within texels of the octahedral square, so the test's cells are those of the square.
+  // The density is constant within texels of the octahedral square, so the test's cells are those of the
+  // square.
   std::vector<double> observed(kMapTexels, 0.0);
   std::mt19937 engine(3);
   std::uniform_real_distribution<float> uniform(0, 1);
@@ -131,7 +145,8 @@ TEST(VertexMap, NothingToSampleIsEmpty) {
 }
 
 TEST(Mixture, IntegratesToOneAndKeepsSharpLobes) {
-  // A BSDF that draws 0.7 of the time from a cosine lobe that may be guided and 0.3 from another that may not.
+  // A BSDF that draws 0.7 of the time from a cosine lobe that may be guided and 0.3 from another that may
+  // not.
   const float guidable = 0.7f, alpha = 0.4f;
   VertexMap map;
   map.prepare(makeMap(Content::random), {0, 0, 1}, Sides::reflection);
@@ -142,7 +157,8 @@ TEST(Mixture, IntegratesToOneAndKeepsSharpLobes) {
       const Float3 w = squareToDirection({(i + 0.5f) / n, (j + 0.5f) / n});
       const float cosine = std::max(w.z, 0.0f) * render::kInvPi;
       const float sharp = w.z > 0.9f ? 1 / (2 * render::kPi * 0.1f) : 0;
-      const float mixed = mixturePdf(0.7f * cosine + 0.3f * sharp, 0.7f * cosine, guidable, alpha, map.pdf(w));
+      const float mixed =
+          mixturePdf(0.7f * cosine + 0.3f * sharp, 0.7f * cosine, guidable, alpha, map.pdf(w));
       EXPECT_GE(mixed, 0.3f * sharp * 0.999f);
       integral += mixed;
     }
@@ -151,7 +167,8 @@ TEST(Mixture, IntegratesToOneAndKeepsSharpLobes) {
 
 TEST(PowerHeuristic, WeightsAddUpToOne) {
   for (const float a : {1e-3f, 0.5f, 1.0f, 1e6f})
-    for (const float b : {1e-3f, 0.7f, 30.0f}) EXPECT_NEAR(powerHeuristic(a, b) + powerHeuristic(b, a), 1, 1e-5);
+    for (const float b : {1e-3f, 0.7f, 30.0f})
+      EXPECT_NEAR(powerHeuristic(a, b) + powerHeuristic(b, a), 1, 1e-5);
   EXPECT_EQ(powerHeuristic(0, 1), 0);
   EXPECT_EQ(powerHeuristic(1, 0), 1);
 }

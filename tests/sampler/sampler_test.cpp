@@ -23,8 +23,8 @@ TEST(Sobol, ButterfliesAreTheRecurrence) {
 }
 
 TEST(Sampler, EveryPowerOfTwoIsStratified) {
-  // Any 16 points of an aligned run, in each elementary interval of area 1/16 one: the net property, for any seed,
-  // pixel and dimension.
+  // Any 16 points of an aligned run, in each elementary interval of area 1/16 one: the net property, for any
+  // seed, pixel and dimension.
   for (uint32_t pixel = 0; pixel < 50; ++pixel)
     for (int shape = 0; shape <= 4; ++shape) {
       std::set<std::pair<int, int>> seen;
@@ -64,7 +64,8 @@ TEST_P(SamplerMoments, UniformAndUncorrelatedAcrossPixelsAndDimensions) {
   for (const double p : product) EXPECT_NEAR(p / n, 0, 5 * (1 / 12.0) / std::sqrt(double(n)));
 }
 
-INSTANTIATE_TEST_SUITE_P(Kinds, SamplerMoments, ::testing::Values(SamplerKind::sobol, SamplerKind::independent));
+INSTANTIATE_TEST_SUITE_P(Kinds, SamplerMoments,
+                         ::testing::Values(SamplerKind::sobol, SamplerKind::independent));
 
 TEST(Sampler, IndependentSamplesOfAPixelDiffer) {
   Sampler a(SamplerKind::independent, 1, 2, 0), b(SamplerKind::independent, 1, 2, 1);

@@ -14,7 +14,8 @@
 
 namespace odis::test {
 
-// Upper regularised incomplete gamma function Q(a, x) by series or continued fraction (Abramowitz and Stegun 6.5).
+// Upper regularised incomplete gamma function Q(a, x) by series or continued fraction (Abramowitz and
+// Stegun 6.5).
 inline double gammaQ(double a, double x) {
   if (x <= 0) return 1;
   const double scale = std::exp(-x + a * std::log(x) - std::lgamma(a));
@@ -40,19 +41,22 @@ inline double gammaQ(double a, double x) {
 }
 
 // The p-value of a chi-squared statistic with so many degrees of freedom.
-inline double chi2PValue(double statistic, int degrees) { return gammaQ(degrees / 2.0, statistic / 2.0); }
+inline double chi2PValue(double statistic, int degrees) {
+  return gammaQ(degrees / 2.0, statistic / 2.0);
+}
 
 struct Chi2Options {
   int thetaCells = 24, phiCells = 48;  // equal in cos(theta) and in phi
   int samples = 200000;
-  int quadrature = 12;     // midpoint samples per cell and axis; raise it for sharp densities
+  int quadrature = 12;  // midpoint samples per cell and axis; raise it for sharp densities
   double significance = 0.01;
-  int testCount = 1;       // for the Šidák correction: how many tests the suite makes
+  int testCount = 1;  // for the Šidák correction: how many tests the suite makes
   uint64_t seed = 1;
 };
 
-// `sample(u)` gives a direction (or nothing, if it fails) from three uniform numbers; `pdf(w)` its solid-angle density.
-// Failed samples count against a total probability of less than one. Pools cells expected to hold fewer than five.
+// `sample(u)` gives a direction (or nothing, if it fails) from three uniform numbers; `pdf(w)` its
+// solid-angle density. Failed samples count against a total probability of less than one. Pools cells
+// expected to hold fewer than five.
 template <class Sample, class Pdf>
 ::testing::AssertionResult chi2Test(Sample&& sample, Pdf&& pdf, const Chi2Options& options = {}) {
   using render::Vec3;
@@ -101,7 +105,8 @@ template <class Sample, class Pdf>
   int degrees = -1;
   for (int i : order) {
     if (expected[i] == 0 && i < cells && observed[i] > options.samples * 1e-5)
-      return ::testing::AssertionFailure() << observed[i] << " samples in cell " << i << " where the density is zero";
+      return ::testing::AssertionFailure()
+             << observed[i] << " samples in cell " << i << " where the density is zero";
     pooledExpected += expected[i];
     pooledObserved += observed[i];
     if (pooledExpected < 5) continue;
@@ -113,9 +118,10 @@ template <class Sample, class Pdf>
   const double p = chi2PValue(statistic, degrees);
   const double threshold = 1 - std::pow(1 - options.significance, 1.0 / options.testCount);
   if (!(p > threshold))
-    return ::testing::AssertionFailure() << "chi2 = " << statistic << " with " << degrees << " degrees of freedom, p = " << p
-                                         << " <= " << threshold << "; the density integrates to " << total
-                                         << ", failed draws " << observed[cells] / options.samples;
+    return ::testing::AssertionFailure()
+           << "chi2 = " << statistic << " with " << degrees << " degrees of freedom, p = " << p
+           << " <= " << threshold << "; the density integrates to " << total << ", failed draws "
+           << observed[cells] / options.samples;
   return ::testing::AssertionSuccess();
 }
 

@@ -7,7 +7,6 @@
 
 namespace odis {
 
-inline constexpr int kCellLevels = 4;  // edges e, 2e, 4e, 8e
 inline constexpr uint32_t kNoCell = 0xffffffffu;
 
 // Where the cells lie: turns a vertex into the key of its cell at a level.
@@ -23,7 +22,8 @@ class CellGrid {
   }
 
  private:
-  // Positions are clamped to 2^18 cells either side of the origin, which only merges what is absurdly far away.
+  // Positions are clamped to 2^18 cells either side of the origin, which only merges what is absurdly far
+  // away.
   static int coordinate(float x) {
     constexpr float kLimit = 1 << 18;
     return int(std::floor(std::fmin(std::fmax(x, -kLimit), kLimit)));
@@ -44,7 +44,8 @@ class CellGrid {
   float m_inverseEdge = 1;
 };
 
-// A hash table from cell keys to indices 0, 1, 2, ... in the order of insertion. Linear probing, at most half full.
+// A hash table from cell keys to indices 0, 1, 2, ... in the order of insertion. Linear probing, at most half
+// full.
 class CellIndex {
  public:
   // The index of a key; kNoCell if it is not there.

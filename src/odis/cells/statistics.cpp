@@ -9,10 +9,12 @@ namespace odis {
 
 namespace {
 
-bool isFinite(const Float3& v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); }
+bool isFinite(const Float3& v) {
+  return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
+}
 
-// The texel at (x, y), which may lie one step outside: the octahedral map continues across an edge mirrored about the
-// edge's middle.
+// The texel at (x, y), which may lie one step outside: the octahedral map continues across an edge mirrored
+// about the edge's middle.
 int wrappedTexel(int x, int y) {
   if (x < 0 || x >= kMapSize) {
     x = x < 0 ? 0 : kMapSize - 1;
@@ -30,15 +32,17 @@ int wrappedTexel(int x, int y) {
 Splat splat(const Float3& wi) {
   const Float2 square = directionToSquare(wi);
   const float x = square.x * kMapSize - 0.5f, y = square.y * kMapSize - 0.5f;
-  const int x0 = std::clamp(int(std::floor(x)), -1, kMapSize - 1), y0 = std::clamp(int(std::floor(y)), -1, kMapSize - 1);
+  const int x0 = std::clamp(int(std::floor(x)), -1, kMapSize - 1),
+            y0 = std::clamp(int(std::floor(y)), -1, kMapSize - 1);
   const float fx = std::clamp(x - x0, 0.0f, 1.0f), fy = std::clamp(y - y0, 0.0f, 1.0f);
-  return {{wrappedTexel(x0, y0), wrappedTexel(x0 + 1, y0), wrappedTexel(x0, y0 + 1), wrappedTexel(x0 + 1, y0 + 1)},
+  return {{wrappedTexel(x0, y0), wrappedTexel(x0 + 1, y0), wrappedTexel(x0, y0 + 1),
+           wrappedTexel(x0 + 1, y0 + 1)},
           {(1 - fx) * (1 - fy), fx * (1 - fy), (1 - fx) * fy, fx * fy}};
 }
 
 bool isUsable(const PilotVertex& v) {
-  return !v.discrete && v.pdf > 0 && v.survival > 0 && std::isfinite(v.pdf) && isFinite(v.position) && isFinite(v.normal) &&
-         isFinite(v.wi) && isFinite(v.radiance) && std::isfinite(v.cosine);
+  return !v.discrete && v.pdf > 0 && v.survival > 0 && std::isfinite(v.pdf) && isFinite(v.position) &&
+         isFinite(v.normal) && isFinite(v.wi) && isFinite(v.radiance) && std::isfinite(v.cosine);
 }
 
 float sampleValue(const PilotVertex& v) {
@@ -66,8 +70,8 @@ CellOrder sortByCell(const std::vector<uint32_t>& cellOfVertex, uint32_t cellCou
   return result;
 }
 
-// The grid spans what the pilot saw, not what the scene holds: a huge ground plane must not make the cells huge. A
-// few vertices far out (0.5 % at either end of each axis) don't count.
+// The grid spans what the pilot saw, not what the scene holds: a huge ground plane must not make the cells
+// huge. A few vertices far out (0.5 % at either end of each axis) don't count.
 void CellStore::place(std::span<const PilotVertex> vertices, int cellsPerDiagonal) {
   std::vector<float> axis[3];
   const size_t step = std::max<size_t>(1, vertices.size() / 20000);
@@ -117,7 +121,8 @@ void CellStore::add(std::span<const PilotVertex> vertices, int cellsPerDiagonal)
     if (isUsable(vertices[i])) cellOfVertex[i] = insert(vertices[i]);
   const CellOrder sorted = sortByCell(cellOfVertex, m_index.size());
 
-  // Values are clamped to a multiple of the mean over the next coarser cell, so that no single path rules a map.
+  // Values are clamped to a multiple of the mean over the next coarser cell, so that no single path rules a
+  // map.
   std::vector<double> parentSum(m_index.size(), 0.0), parentCount(m_index.size(), 0.0);
   for (uint32_t cell = 0; cell < m_index.size(); ++cell)
     for (uint32_t i = sorted.begin[cell]; i < sorted.begin[cell + 1]; ++i) {
@@ -125,29 +130,31 @@ void CellStore::add(std::span<const PilotVertex> vertices, int cellsPerDiagonal)
       parentCount[m_cells[cell].parent] += 1;
     }
 
-  tbb::parallel_for(tbb::blocked_range<uint32_t>(0, m_index.size(), 16), [&](const tbb::blocked_range<uint32_t>& range) {
-    for (uint32_t index = range.begin(); index < range.end(); ++index) {
-      CellStatistics& cell = m_cells[index];
-      const uint32_t begin = sorted.begin[index], end = sorted.begin[index + 1];
-      if (begin == end) continue;
-      if (cell.count == 0) {
-        for (uint32_t i = begin; i < end; ++i) cell.centroid = cell.centroid + vertices[sorted.order[i]].position;
-        cell.centroid = cell.centroid * (1.0f / float(end - begin));
-      }
-      const float limit = m_clamp * float(parentSum[cell.parent] / parentCount[cell.parent]);
-      for (uint32_t i = begin; i < end; ++i) {
-        const PilotVertex& vertex = vertices[sorted.order[i]];
-        const float value = std::min(sampleValue(vertex), limit);
-        cell.count += 1;
-        cell.sum += value;
-        cell.sumSquares += double(value) * value;
-        cell.normal = cell.normal + vertex.normal;
-        if (value <= 0) continue;
-        const Splat place = splat(reaim(vertex, cell.centroid));
-        for (int k = 0; k < 4; ++k) cell.histogram[place.texel[k]] += value * place.weight[k];
-      }
-    }
-  });
+  tbb::parallel_for(
+      tbb::blocked_range<uint32_t>(0, m_index.size(), 16), [&](const tbb::blocked_range<uint32_t>& range) {
+        for (uint32_t index = range.begin(); index < range.end(); ++index) {
+          CellStatistics& cell = m_cells[index];
+          const uint32_t begin = sorted.begin[index], end = sorted.begin[index + 1];
+          if (begin == end) continue;
+          if (cell.count == 0) {
+            for (uint32_t i = begin; i < end; ++i)
+              cell.centroid = cell.centroid + vertices[sorted.order[i]].position;
+            cell.centroid = cell.centroid * (1.0f / float(end - begin));
+          }
+          const float limit = m_clamp * float(parentSum[cell.parent] / parentCount[cell.parent]);
+          for (uint32_t i = begin; i < end; ++i) {
+            const PilotVertex& vertex = vertices[sorted.order[i]];
+            const float value = std::min(sampleValue(vertex), limit);
+            cell.count += 1;
+            cell.sum += value;
+            cell.sumSquares += double(value) * value;
+            cell.normal = cell.normal + vertex.normal;
+            if (value <= 0) continue;
+            const Splat place = splat(reaim(vertex, cell.centroid));
+            for (int k = 0; k < 4; ++k) cell.histogram[place.texel[k]] += value * place.weight[k];
+          }
+        }
+      });
 }
 
 std::vector<CellStatistics> CellStore::rollUp() const {

@@ -1,4 +1,5 @@
-// What the cells have seen: for each, a histogram over directions of the radiance that arrived, and how much there was.
+// What the cells have seen: for each, a histogram over directions of the radiance that arrived, and how much
+// there was.
 #pragma once
 
 #include <array>
@@ -6,6 +7,7 @@
 #include <vector>
 
 #include "odis/cells/grid.h"
+#include "odis/guide.h"
 #include "odis/pilot.h"
 #include "odis/sampling.h"
 
@@ -23,12 +25,12 @@ Splat splat(const Float3& wi);
 struct CellStatistics {
   uint32_t parent = kNoCell;
   int level = 0;
-  double count = 0;        // samples
-  double sum = 0;          // of their values, radiance * cos / pdf as luminance
+  double count = 0;  // samples
+  double sum = 0;    // of their values, radiance * cos / pdf as luminance
   double sumSquares = 0;
-  Float3 centroid;         // of the first batch's positions; directions are re-aimed from here
-  Float3 normal;           // sum of unit normals
-  Histogram histogram{};   // of values by direction
+  Float3 centroid;        // of the first batch's positions; directions are re-aimed from here
+  Float3 normal;          // sum of unit normals
+  Histogram histogram{};  // of values by direction
 };
 
 // The cells at every level. A coarser cell's statistics are the sums of its children's, formed by `rollUp`.
@@ -38,7 +40,8 @@ class CellStore {
 
   // Sorts the vertices into cells and adds them up. The first call places the grid.
   void add(std::span<const PilotVertex> vertices, int cellsPerDiagonal);
-  // The cells with the coarser levels filled in; parents have larger indices than none of their children's order.
+  // The cells with the coarser levels filled in; parents have larger indices than none of their children's
+  // order.
   std::vector<CellStatistics> rollUp() const;
 
   const CellGrid& grid() const { return m_grid; }

@@ -10,13 +10,14 @@ Float3 texelDirection(int texel) {
 
 }  // namespace
 
-DirectionDistribution HistogramModel::predict(const CellStatistics& cell, const DirectionDistribution* parent) const {
+DirectionDistribution HistogramModel::predict(const CellStatistics& cell,
+                                              const DirectionDistribution* parent) const {
   DirectionDistribution result;
   const float length = std::sqrt(dot(cell.normal, cell.normal));
   const Float3 normal = length > 0 ? cell.normal * (1 / length) : Float3{0, 0, 1};
 
-  // What is believed before the cell has seen anything: its parent's map, or a cosine lobe on top of a little of
-  // everything (surfaces that transmit light receive it from both sides).
+  // What is believed before the cell has seen anything: its parent's map, or a cosine lobe on top of a little
+  // of everything (surfaces that transmit light receive it from both sides).
   Histogram prior;
   float priorSum = 0;
   for (int t = 0; t < kMapTexels; ++t) {
@@ -31,7 +32,8 @@ DirectionDistribution HistogramModel::predict(const CellStatistics& cell, const 
   const float perSample = cell.sum > 0 ? own / float(cell.sum) : 0;
   for (int t = 0; t < kMapTexels; ++t) {
     const float cosine = std::max(std::abs(dot(texelDirection(t), normal)), 0.1f);
-    result.probability[t] = (cell.sum > 0 ? 1 - own : 1) * prior[t] / priorSum + perSample * cell.histogram[t];
+    result.probability[t] =
+        (cell.sum > 0 ? 1 - own : 1) * prior[t] / priorSum + perSample * cell.histogram[t];
     result.perCosine[t] = 1 / cosine;
   }
   // A sample stands in its cell's histogram and in its ancestors'.

@@ -22,9 +22,9 @@ void SelectionSums::add(const SelectionSums& other, double scale) {
   }
 }
 
-// With D the direction's contribution at the pilot's density b and q the mixture's density, the second moment of the
-// contribution under q is E_b[D^2 b / q]; next-event estimate N and direction are independent given the vertex, so
-// their cross term is E[N] E[D] whatever q is. MIS weights depend on q and are made anew.
+// With D the direction's contribution at the pilot's density b and q the mixture's density, the second moment
+// of the contribution under q is E_b[D^2 b / q]; next-event estimate N and direction are independent given
+// the vertex, so their cross term is E[N] E[D] whatever q is. MIS weights depend on q and are made anew.
 void addVertex(CellSelection& sums, const PilotVertex& v, float mapPdf, float lightMapPdf) {
   SelectionSums& s = sums[int(materialClass(v.roughness))];
   s.count += 1;
@@ -36,8 +36,8 @@ void addVertex(CellSelection& sums, const PilotVertex& v, float mapPdf, float li
     const float direction = std::min(v.indirect + emission, kContributionLimit);
     const float lightDensity =
         mixturePdf(v.lightBsdfPdf, v.lightGuidablePdf, v.guidableProbability, kAlphas[a], lightMapPdf);
-    const float light =
-        std::min(v.lightPdf > 0 ? v.light * powerHeuristic(v.lightPdf, lightDensity) : v.light, kContributionLimit);
+    const float light = std::min(
+        v.lightPdf > 0 ? v.light * powerHeuristic(v.lightPdf, lightDensity) : v.light, kContributionLimit);
     s.secondMoment[a] += light * light + 2 * light * direction + direction * direction * ratio;
     s.rays[a] += v.raysAfter / std::max(ratio, 0.05f);
   }

@@ -16,7 +16,8 @@ struct TexelDirections {
   alignas(64) float x[kMapTexels], y[kMapTexels], z[kMapTexels];
   TexelDirections() {
     for (int i = 0; i < kMapTexels; ++i) {
-      const Float3 w = squareToDirection({(i % kMapSize + 0.5f) / kMapSize, (i / kMapSize + 0.5f) / kMapSize});
+      const Float3 w =
+          squareToDirection({(i % kMapSize + 0.5f) / kMapSize, (i / kMapSize + 0.5f) / kMapSize});
       x[i] = w.x;
       y[i] = w.y;
       z[i] = w.z;
@@ -26,8 +27,8 @@ struct TexelDirections {
 const TexelDirections kDirections;
 
 // weights[i] = texels[i] * max(cos_i, lowest * cos_i), where `lowest` is 0 (reflection) or -1 (both sides).
-ODIS_MULTIVERSION void multiply(const uint16_t* texels, const TexelDirections& w, float nx, float ny, float nz, float lowest,
-                                float* weights, float* rows) {
+ODIS_MULTIVERSION void multiply(const uint16_t* texels, const TexelDirections& w, float nx, float ny,
+                                float nz, float lowest, float* weights, float* rows) {
   for (int y = 0; y < kMapSize; ++y) {
     float partial[kMapSize];
     for (int x = 0; x < kMapSize; ++x) {

@@ -140,8 +140,9 @@ Rgb sunRadiance(float turbidity, float sunZenith) {
   if (!(sunZenith <= kPi / 2)) return {0, 0, 0};
   const double degrees = sunZenith * 180 / M_PI;
   const double airMass = 1 / (std::cos(double(sunZenith)) + 0.15 * std::pow(93.885 - degrees, -1.253));
-  // Ångström's coefficient for aerosol. The paper's 0.0461 T - 0.0459 dims the sun of hazy skies by up to a half against
-  // the solar radiance of Hošek and Wilkie (2013); this fit stays within a tenth of it for elevations above 20 degrees.
+  // Ångström's coefficient for aerosol. The paper's 0.0461 T - 0.0459 dims the sun of hazy skies by up to a
+  // half against the solar radiance of Hošek and Wilkie (2013); this fit stays within a tenth of it for
+  // elevations above 20 degrees.
   const double beta = 0.014 * (turbidity + 1);
   constexpr double kOzone = 0.35, kWater = 2;  // cm in a column of air
   double x = 0, y = 0, z = 0, wavelength = kFirstWavelength;

@@ -1,4 +1,5 @@
-// The interfaces of light sources. Directions `wi` are unit, in world space, from the lit point towards the light.
+// The interfaces of light sources. Directions `wi` are unit, in world space, from the lit point towards the
+// light.
 #pragma once
 
 #include <memory>
@@ -9,11 +10,11 @@ namespace odis::render {
 
 struct EmitterSample {
   Vec3 wi{0, 0, 1};
-  float distance = 0;    // to the sampled point; kInfinity for the environment
-  Rgb radiance{0, 0, 0};  // arriving from there, unoccluded; for delta lights the irradiance that the light gives
-                          // a surface facing it (W/m^2)
-  float pdf = 0;         // solid angle; 1 for delta lights; 0 if nothing could be sampled
-  bool delta = false;    // point, spot, directional: cannot be hit, so the MIS weight is one
+  float distance = 0;     // to the sampled point; kInfinity for the environment
+  Rgb radiance{0, 0, 0};  // arriving from there, unoccluded; for delta lights the irradiance that the light
+                          // gives a surface facing it (W/m^2)
+  float pdf = 0;          // solid angle; 1 for delta lights; 0 if nothing could be sampled
+  bool delta = false;     // point, spot, directional: cannot be hit, so the MIS weight is one
 };
 
 // The axis-aligned box and the sphere around everything that a ray can hit.

@@ -1,6 +1,7 @@
-// Reconstruction filters, sampled by importance: a sample belongs to one pixel, its position is drawn from |filter|
-// and its weight is the sign and scale that keep the estimate unbiased (Ernst et al. 2006, "Filter Importance
-// Sampling"). Pixels are thus independent of each other, and threads never write to a neighbour's pixel.
+// Reconstruction filters, sampled by importance: a sample belongs to one pixel, its position is drawn from
+// |filter| and its weight is the sign and scale that keep the estimate unbiased (Ernst et al. 2006, "Filter
+// Importance Sampling"). Pixels are thus independent of each other, and threads never write to a neighbour's
+// pixel.
 #pragma once
 
 #include <memory>

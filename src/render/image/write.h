@@ -9,7 +9,8 @@
 
 namespace odis::render {
 
-// One channel of an EXR file: "R", "albedo.R", "depth.Z", ... `data` has width * height floats, row 0 at the top.
+// One channel of an EXR file: "R", "albedo.R", "depth.Z", ... `data` has width * height floats, row 0 at the
+// top.
 struct ImageChannel {
   std::string name;
   const float* data;
@@ -22,12 +23,12 @@ struct ImageWindow {
   int x = 0, y = 0, width = 0, height = 0;
 };
 
-// Writes one single-part EXR (zip) under a temporary name and renames it, so nothing half-written is left behind.
-// Throws std::runtime_error with path and reason.
+// Writes one single-part EXR (zip) under a temporary name and renames it, so nothing half-written is left
+// behind. Throws std::runtime_error with path and reason.
 void writeExr(const std::string& path, const ImageWindow& window, const std::vector<ImageChannel>& channels,
               const std::map<std::string, std::string>& metadata);
-// Writes an 8-bit sRGB PNG of linear `pixels` (width * height) scaled by 2^exposure, highlights rolled off by a
-// filmic curve or clamped. Same guarantees.
+// Writes an 8-bit sRGB PNG of linear `pixels` (width * height) scaled by 2^exposure, highlights rolled off by
+// a filmic curve or clamped. Same guarantees.
 enum class ToneMap { clamp, filmic };
 void writePng(const std::string& path, int width, int height, const Rgb* pixels, float exposure = 0.0f,
               ToneMap toneMap = ToneMap::filmic);

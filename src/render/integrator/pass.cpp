@@ -11,7 +11,9 @@ namespace {
 constexpr int kTileSize = 16;
 
 // Denormal numbers are slow and mean nothing here: flushed to zero (bit 15) and taken as zero (bit 6).
-void flushDenormals() { _mm_setcsr(_mm_getcsr() | 0x8040u); }
+void flushDenormals() {
+  _mm_setcsr(_mm_getcsr() | 0x8040u);
+}
 
 void accumulate(FeatureSums& sums, const FirstHit& first) {
   if (!first.valid) return;
@@ -33,7 +35,8 @@ struct TileResult {
 void renderPixel(const Pass& pass, uint32_t index, TileResult& tile) {
   const Crop& crop = pass.path.scene->film().crop;
   const Vec2i pixel(crop.x + int(index) % crop.width, crop.y + int(index) / crop.width);
-  const uint32_t pixelOfFullImage = uint32_t(pixel.y) * uint32_t(pass.path.scene->film().width) + uint32_t(pixel.x);
+  const uint32_t pixelOfFullImage =
+      uint32_t(pixel.y) * uint32_t(pass.path.scene->film().width) + uint32_t(pixel.x);
   const auto [first, count] = pass.samples(index);
   for (uint32_t sample = first; sample < first + count; ++sample) {
     Sampler sampler(pass.sampler, pass.seed, pixelOfFullImage, sample);
@@ -41,13 +44,15 @@ void renderPixel(const Pass& pass, uint32_t index, TileResult& tile) {
     const Ray ray = cameraRay(*pass.path.scene, pixel, sampler, filterWeight);
     FirstHit firstHit;
     const size_t begin = tile.records.size();
-    const PathResult path = tracePath(pass.path, ray, sampler, tile.counts, pass.records ? &tile.records : nullptr,
-                                      pass.features ? &firstHit : nullptr);
+    const PathResult path =
+        tracePath(pass.path, ray, sampler, tile.counts, pass.records ? &tile.records : nullptr,
+                  pass.features ? &firstHit : nullptr);
     for (size_t i = begin; i < tile.records.size(); ++i) {
       tile.records[i].pixel = index;
       tile.records[i].sampleWeight = filterWeight;
     }
-    // A path that is not a number (a broken normal, an overflow) would spoil its pixel for good: it counts as black.
+    // A path that is not a number (a broken normal, an overflow) would spoil its pixel for good: it counts as
+    // black.
     const Rgb value = isFinite(path.radiance) ? path.radiance * filterWeight : Rgb(0, 0, 0);
     if (pass.image) {
       PixelSums& sums = (*pass.image)[index];
@@ -71,7 +76,8 @@ Ray cameraRay(const Scene& scene, Vec2i pixel, Sampler& sampler, float& filterWe
 
 RayCounts runPass(const Pass& pass, Progress& progress, const std::function<bool()>& stop) {
   const Crop& crop = pass.path.scene->film().crop;
-  const int tilesX = (crop.width + kTileSize - 1) / kTileSize, tilesY = (crop.height + kTileSize - 1) / kTileSize;
+  const int tilesX = (crop.width + kTileSize - 1) / kTileSize,
+            tilesY = (crop.height + kTileSize - 1) / kTileSize;
   std::vector<TileResult> tiles(size_t(tilesX) * tilesY);
   tbb::parallel_for(
       tbb::blocked_range<size_t>(0, tiles.size(), 1),

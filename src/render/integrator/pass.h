@@ -28,7 +28,8 @@ struct Pass {
   PathSettings path;
   SamplerKind sampler = SamplerKind::sobol;
   uint64_t seed = 0;
-  // The samples [first, first + count) of a pixel, given its index; must not depend on anything that was rendered.
+  // The samples [first, first + count) of a pixel, given its index; must not depend on anything that was
+  // rendered.
   std::function<std::pair<uint32_t, uint32_t>(uint32_t pixel)> samples;
 
   // Where results go; images have one entry a pixel of the crop. Null: not wanted.
@@ -38,10 +39,12 @@ struct Pass {
   std::vector<Rgb>* emitted = nullptr;
 };
 
-// Runs the pass; tiles that had not begun when `stop` first answered true are left out. Returns the rays traced.
+// Runs the pass; tiles that had not begun when `stop` first answered true are left out. Returns the rays
+// traced.
 RayCounts runPass(const Pass& pass, Progress& progress, const std::function<bool()>& stop);
 
-// The camera ray of a sample: its position in the pixel drawn from the reconstruction filter, whose weight is returned.
+// The camera ray of a sample: its position in the pixel drawn from the reconstruction filter, whose weight is
+// returned.
 Ray cameraRay(const Scene& scene, Vec2i pixel, Sampler& sampler, float& filterWeight);
 
 }  // namespace odis::render

@@ -8,12 +8,12 @@ namespace {
 struct LightEstimate {
   Rgb radiance{0, 0, 0};  // outgoing, without MIS weight: f |cos| Le / pdf
   Vec3 wiWorld{0, 0, 1};
-  float lightPdf = 0;     // 0 where MIS does not apply
+  float lightPdf = 0;  // 0 where MIS does not apply
   BsdfValue bsdf;
 };
 
-LightEstimate sampleLight(const PathSettings& settings, const SurfacePoint& at, const Vec3& wo, Sampler& sampler,
-                          RayCounts& counts) {
+LightEstimate sampleLight(const PathSettings& settings, const SurfacePoint& at, const Vec3& wo,
+                          Sampler& sampler, RayCounts& counts) {
   LightEstimate result;
   float uChoice = sampler.get1D();
   const Vec2 u = sampler.get2D();
@@ -55,8 +55,8 @@ class VertexGuide {
     return mixturePdf(bsdfPdf, guidablePdf, m_guidable, m_alpha, m_map.pdf(toOdis(wiWorld)));
   }
 
-  // Samples the mixture: draws from smooth lobes are replaced by draws from the map with probability 1 - alpha, all
-  // others stay as they are.
+  // Samples the mixture: draws from smooth lobes are replaced by draws from the map with probability 1 -
+  // alpha, all others stay as they are.
   BsdfSample sample(const SurfacePoint& at, const Vec3& wo, Sampler& sampler) const {
     const Bsdf& bsdf = at.shape->bsdf();
     const float uLobe = sampler.get1D();
@@ -100,15 +100,15 @@ void describe(FirstHit& first, const SurfacePoint& at, const Vec3& wo, float dis
 
 // What each vertex must remember until the path is complete.
 struct Pending {
-  Rgb weight;      // of the vertex: f |cos| / pdf / survival
-  Rgb throughput;  // up to the vertex, it excluded
+  Rgb weight;             // of the vertex: f |cos| / pdf / survival
+  Rgb throughput;         // up to the vertex, it excluded
   Rgb emission{0, 0, 0};  // met by the vertex's direction, without MIS weight
   float emissionWeight = 0;
   uint64_t rays = 0;  // traced when the direction was sampled
 };
 
-// Fills what only the complete path knows: radiance from there on and the contributions to the pixel, from the last
-// vertex back to the first.
+// Fills what only the complete path knows: radiance from there on and the contributions to the pixel, from
+// the last vertex back to the first.
 void completeRecords(std::vector<PilotVertex>& vertices, size_t begin, const std::vector<Pending>& pending,
                      uint64_t raysTotal) {
   Rgb beyond(0, 0, 0);  // scattered towards this vertex by the next one
@@ -132,11 +132,11 @@ PathResult tracePath(const PathSettings& settings, Ray ray, Sampler& sampler, Ra
   const Scene& scene = *settings.scene;
   PathResult result;
   Rgb throughput(1, 1, 1);
-  float eta = 1;                // product of the relative indices passed
-  bool bySampling = false;      // whether the ray's direction competes with next-event estimation
-  float directionPdf = 0;       // its density, if so
-  Vec3 previous;                // where it started
-  float distance = 0;           // from the camera
+  float eta = 1;            // product of the relative indices passed
+  bool bySampling = false;  // whether the ray's direction competes with next-event estimation
+  float directionPdf = 0;   // its density, if so
+  Vec3 previous;            // where it started
+  float distance = 0;       // from the camera
   const size_t begin = vertices ? vertices->size() : 0;
   thread_local std::vector<Pending> pending;
   pending.clear();
@@ -150,7 +150,8 @@ PathResult tracePath(const PathSettings& settings, Ray ray, Sampler& sampler, Ra
     const bool hit = scene.intersect(ray, at);
     if (vertices && depth > 1) vertices->back().distance = hit ? length(at.p - ray.origin) : kInfinity;
 
-    // Add the emission that the ray met, weighted against next-event estimation where that could have found it too.
+    // Add the emission that the ray met, weighted against next-event estimation where that could have found
+    // it too.
     const auto addEmission = [&](const Rgb& emission, const Emitter& emitter, float emitterPdf) {
       if (isBlack(emission)) return;
       const float lightPdf = bySampling ? emitterPdf * settings.lights->probability(emitter) : 0;
@@ -160,7 +161,8 @@ PathResult tracePath(const PathSettings& settings, Ray ray, Sampler& sampler, Ra
       if (vertices && depth > 1) {
         PilotVertex& v = vertices->back();
         Pending& p = pending.back();
-        // Several environments may be met at once; the brightest decides what the selection probability is told.
+        // Several environments may be met at once; the brightest decides what the selection probability is
+        // told.
         if (luminance(emission) > luminance(p.emission)) v.emissionLightPdf = lightPdf;
         p.emissionWeight = (luminance(p.emission) * p.emissionWeight + luminance(emission) * weight) /
                            (luminance(p.emission) + luminance(emission));
@@ -169,11 +171,13 @@ PathResult tracePath(const PathSettings& settings, Ray ray, Sampler& sampler, Ra
     };
     if (!hit) {
       for (const EnvironmentEmitter* environment : scene.environments())
-        addEmission(environment->radiance(ray.direction), *environment, bySampling ? environment->pdf(previous, ray.direction) : 0);
+        addEmission(environment->radiance(ray.direction), *environment,
+                    bySampling ? environment->pdf(previous, ray.direction) : 0);
       break;
     }
     if (const SurfaceEmitter* emitter = at.shape->emitter())
-      addEmission(emitter->radiance(at, -ray.direction), *emitter, bySampling ? emitter->pdf(previous, at) : 0);
+      addEmission(emitter->radiance(at, -ray.direction), *emitter,
+                  bySampling ? emitter->pdf(previous, at) : 0);
     if (settings.maxDepth >= 0 && depth >= settings.maxDepth) break;
 
     const Bsdf& bsdf = at.shape->bsdf();
@@ -187,7 +191,8 @@ PathResult tracePath(const PathSettings& settings, Ray ray, Sampler& sampler, Ra
     if (bsdf.traits().evaluable) {
       light = sampleLight(settings, at, wo, sampler, counts);
       if (!isBlack(light.radiance)) {
-        const float mixed = light.lightPdf > 0 ? guide.pdf(light.bsdf.pdf, light.bsdf.guidablePdf, light.wiWorld) : 0;
+        const float mixed =
+            light.lightPdf > 0 ? guide.pdf(light.bsdf.pdf, light.bsdf.guidablePdf, light.wiWorld) : 0;
         direct = light.radiance * (light.lightPdf > 0 ? powerHeuristic(light.lightPdf, mixed) : 1.0f);
         result.radiance += throughput * direct;
       }
@@ -234,7 +239,8 @@ PathResult tracePath(const PathSettings& settings, Ray ray, Sampler& sampler, Ra
       v.depth = uint16_t(std::min(depth, 0xffff));
       v.discrete = isDiscrete(next.lobe);
       v.both = bsdf.traits().transmissive;
-      pending.push_back({survives ? weight : Rgb(0, 0, 0), throughput, {0, 0, 0}, 0, counts.rays + counts.shadowRays});
+      pending.push_back(
+          {survives ? weight : Rgb(0, 0, 0), throughput, {0, 0, 0}, 0, counts.rays + counts.shadowRays});
     }
     if (!survives) break;
 

@@ -16,7 +16,7 @@ namespace odis::render {
 struct PathSettings {
   const Scene* scene = nullptr;
   const LightSampler* lights = nullptr;
-  int maxDepth = -1;             // -1: unlimited
+  int maxDepth = -1;  // -1: unlimited
   int rrDepth = 5;
   const Guide* guide = nullptr;  // null: BSDF sampling only
   int guideBounces = -1;         // -1: all
@@ -40,13 +40,17 @@ struct PathResult {
   Rgb emitted{0, 0, 0};  // the part of it that the camera ray met directly
 };
 
-// Traces the path that starts with `ray`. If `vertices` is given, appends a record for each vertex (fields for the
-// selection probability in units of radiance: whoever knows the pixel divides by its value). If `first` is given,
-// fills the features.
+// Traces the path that starts with `ray`. If `vertices` is given, appends a record for each vertex (fields
+// for the selection probability in units of radiance: whoever knows the pixel divides by its value). If
+// `first` is given, fills the features.
 PathResult tracePath(const PathSettings& settings, Ray ray, Sampler& sampler, RayCounts& counts,
                      std::vector<PilotVertex>* vertices = nullptr, FirstHit* first = nullptr);
 
-inline Float3 toOdis(const Vec3& v) { return {v.x, v.y, v.z}; }
-inline Vec3 fromOdis(const Float3& v) { return {v.x, v.y, v.z}; }
+inline Float3 toOdis(const Vec3& v) {
+  return {v.x, v.y, v.z};
+}
+inline Vec3 fromOdis(const Float3& v) {
+  return {v.x, v.y, v.z};
+}
 
 }  // namespace odis::render

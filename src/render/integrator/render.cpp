@@ -13,7 +13,9 @@ namespace odis::render {
 namespace {
 
 using Clock = std::chrono::steady_clock;
-double secondsSince(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
+double secondsSince(Clock::time_point start) {
+  return std::chrono::duration<double>(Clock::now() - start).count();
+}
 
 // Seeds of passes that are no part of the image.
 constexpr uint64_t kOracleSeed = 0x6f7261636c65ull;
@@ -64,8 +66,8 @@ class Renderer {
       buildGuide();
       settings.guide = &m_guide;
     }
-    Sampler sampler(m_options.sampler, m_options.seed, uint32_t(pixel.y) * uint32_t(m_scene.film().width) + uint32_t(pixel.x),
-                    sample);
+    Sampler sampler(m_options.sampler, m_options.seed,
+                    uint32_t(pixel.y) * uint32_t(m_scene.film().width) + uint32_t(pixel.x), sample);
     float filterWeight;
     const Ray ray = cameraRay(m_scene, pixel, sampler, filterWeight);
     std::vector<PilotVertex> vertices;
@@ -93,7 +95,8 @@ class Renderer {
     return pass;
   }
   bool stop() {
-    if (m_progress.cancelled() || (m_options.timeLimit > 0 && secondsSince(m_start) > m_options.timeLimit)) m_stopped = true;
+    if (m_progress.cancelled() || (m_options.timeLimit > 0 && secondsSince(m_start) > m_options.timeLimit))
+      m_stopped = true;
     return m_stopped;
   }
   void run(const Pass& pass) {
@@ -102,7 +105,8 @@ class Renderer {
     m_stats.shadowRays += counts.shadowRays;
   }
 
-  // How many of the pixel's samples belong to the pilot: n for every pixel, or one pixel of each block, chosen by hash.
+  // How many of the pixel's samples belong to the pilot: n for every pixel, or one pixel of each block,
+  // chosen by hash.
   uint32_t pilotCount(uint32_t pixel) const {
     if (m_options.integrator == IntegratorKind::path) return 0;
     const uint32_t spp = uint32_t(m_options.spp);
@@ -120,7 +124,8 @@ class Renderer {
     pass.image = &m_pilot;
     pass.records = &m_records;
     pass.emitted = m_options.records ? &m_emitted : nullptr;
-    m_progress.begin("pilot", uint64_t(double(m_pixels) * std::min(double(m_options.spp), m_options.pilotSpp)));
+    m_progress.begin("pilot",
+                     uint64_t(double(m_pixels) * std::min(double(m_options.spp), m_options.pilotSpp)));
     run(pass);
     m_progress.end();
     m_stats.secondsPilot = secondsSince(start);
@@ -128,8 +133,8 @@ class Renderer {
     m_stats.bytesRecords = m_records.size() * sizeof(PilotVertex);
   }
 
-  // An estimate of each pixel's luminance, to measure contributions by: the mean over its block of the pilot, with a
-  // little of the image's mean so that nothing is divided by almost nothing.
+  // An estimate of each pixel's luminance, to measure contributions by: the mean over its block of the pilot,
+  // with a little of the image's mean so that nothing is divided by almost nothing.
   std::vector<float> pixelEstimates() const {
     constexpr int kBlock = 8;
     const int width = m_scene.film().crop.width, height = m_scene.film().crop.height;
@@ -221,8 +226,8 @@ class Renderer {
     m_stats.secondsGuided = secondsSince(start);
   }
 
-  // The best constant weights of pilot and guided samples in expectation: by the inverse of their variances, whose
-  // ratio the pilot predicts. They don't look at the pixel's own values, so the mean stays unbiased.
+  // The best constant weights of pilot and guided samples in expectation: by the inverse of their variances,
+  // whose ratio the pilot predicts. They don't look at the pixel's own values, so the mean stays unbiased.
   Frame2D combine() {
     const Crop& crop = m_scene.film().crop;
     Frame2D frame;
@@ -262,8 +267,8 @@ class Renderer {
   }
 
   // With s2 the variance of a guided sample, a pilot sample has s2 / ratio, and the mean's variance is
-  // s2 (ratio n_p + n_g) / (ratio n_p + n_g)^2. s2 is pooled from deviations within either set and, weighted alike,
-  // between the two.
+  // s2 (ratio n_p + n_g) / (ratio n_p + n_g)^2. s2 is pooled from deviations within either set and, weighted
+  // alike, between the two.
   static Rgb varianceOfMean(const PixelSums& pilot, const PixelSums& guided, double ratio) {
     const double weight = ratio * pilot.count + guided.count;
     const uint32_t samples = pilot.count + guided.count;
@@ -271,7 +276,8 @@ class Renderer {
     const Rgbd mean = (pilot.sum * ratio + guided.sum) / weight;
     const Rgbd squares = pilot.sumSquares * ratio + guided.sumSquares - mean * mean * weight;
     const Rgbd variance = squares / double(samples - 1) / weight;
-    return Rgb(float(std::max(variance.x, 0.0)), float(std::max(variance.y, 0.0)), float(std::max(variance.z, 0.0)));
+    return Rgb(float(std::max(variance.x, 0.0)), float(std::max(variance.y, 0.0)),
+               float(std::max(variance.z, 0.0)));
   }
 
   void writeFeatures(Frame2D& frame) const {
@@ -318,17 +324,20 @@ std::string replay(const Scene& scene, const RenderOptions& options, Vec2i pixel
   const tbb::global_control limit = limitThreads(options.threads);
   Progress quiet;
   PathResult path;
-  const std::vector<PilotVertex> vertices = Renderer(scene, options, quiet).trace(pixel, uint32_t(sample), path);
-  std::string text = fmt::format("pixel {},{} sample {}: radiance {:.6g} {:.6g} {:.6g}\n", pixel.x, pixel.y, sample,
-                                 path.radiance.x, path.radiance.y, path.radiance.z);
+  const std::vector<PilotVertex> vertices =
+      Renderer(scene, options, quiet).trace(pixel, uint32_t(sample), path);
+  std::string text = fmt::format("pixel {},{} sample {}: radiance {:.6g} {:.6g} {:.6g}\n", pixel.x, pixel.y,
+                                 sample, path.radiance.x, path.radiance.y, path.radiance.z);
   for (const PilotVertex& v : vertices)
     text += fmt::format(
-        "  vertex {}: p ({:.5g} {:.5g} {:.5g}) n ({:.3f} {:.3f} {:.3f}) wi ({:.3f} {:.3f} {:.3f}){} pdf {:.4g} weight "
-        "({:.4g} {:.4g} {:.4g}) direct ({:.4g} {:.4g} {:.4g}) arriving ({:.4g} {:.4g} {:.4g}) roughness {:.3g} next at "
+        "  vertex {}: p ({:.5g} {:.5g} {:.5g}) n ({:.3f} {:.3f} {:.3f}) wi ({:.3f} {:.3f} {:.3f}){} pdf "
+        "{:.4g} weight "
+        "({:.4g} {:.4g} {:.4g}) direct ({:.4g} {:.4g} {:.4g}) arriving ({:.4g} {:.4g} {:.4g}) roughness "
+        "{:.3g} next at "
         "{:.5g}\n",
-        v.depth, v.position.x, v.position.y, v.position.z, v.normal.x, v.normal.y, v.normal.z, v.wi.x, v.wi.y, v.wi.z,
-        v.discrete ? " (delta)" : "", v.pdf, v.weight.x, v.weight.y, v.weight.z, v.direct.x, v.direct.y, v.direct.z,
-        v.radiance.x, v.radiance.y, v.radiance.z, v.roughness, v.distance);
+        v.depth, v.position.x, v.position.y, v.position.z, v.normal.x, v.normal.y, v.normal.z, v.wi.x, v.wi.y,
+        v.wi.z, v.discrete ? " (delta)" : "", v.pdf, v.weight.x, v.weight.y, v.weight.z, v.direct.x,
+        v.direct.y, v.direct.z, v.radiance.x, v.radiance.y, v.radiance.z, v.roughness, v.distance);
   return text;
 }
 

@@ -22,10 +22,10 @@ struct RenderOptions {
   SamplerKind sampler = SamplerKind::sobol;
   int spp = 4;
   uint64_t seed = 0;
-  int threads = 0;       // 0: one a core
-  int maxDepth = -1;     // -1: unlimited; 1 is directly visible emission, as Mitsuba counts
-  int rrDepth = 5;       // Russian roulette from this depth on
-  double timeLimit = 0;  // seconds; 0: none. The image then has as many whole passes as fitted in.
+  int threads = 0;        // 0: one a core
+  int maxDepth = -1;      // -1: unlimited; 1 is directly visible emission, as Mitsuba counts
+  int rrDepth = 5;        // Russian roulette from this depth on
+  double timeLimit = 0;   // seconds; 0: none. The image then has as many whole passes as fitted in.
   bool variance = false;  // also estimate the variance of each pixel
   bool features = false;  // also write albedo, normals, position, depth, roughness
 
@@ -36,11 +36,11 @@ struct RenderOptions {
   int oracleSpp = 64;     // samples per pixel that the oracle's maps are made from
   GuideOptions guideOptions;
   double pilotWeight = -1;  // of a pilot sample relative to a guided one; -1: by predicted variance
-  bool records = false;   // keep the pilot's vertices in the result, for those who want to learn from them
+  bool records = false;     // keep the pilot's vertices in the result, for those who want to learn from them
 };
 
-// Told of progress from the rendering threads; asked whether to stop. Stopping ends after the current pass of tiles,
-// with what there is.
+// Told of progress from the rendering threads; asked whether to stop. Stopping ends after the current pass of
+// tiles, with what there is.
 class Progress {
  public:
   virtual ~Progress() = default;
@@ -65,24 +65,24 @@ struct RenderStats {
   uint64_t samples = 0, rays = 0, shadowRays = 0;
   uint64_t pilotVertices = 0, cells = 0;
   uint64_t bytesRecords = 0, bytesMaps = 0;
-  double pilotWeight = 0;   // of the pilot's mean in the image
-  double spp = 0;           // samples per pixel really taken
+  double pilotWeight = 0;  // of the pilot's mean in the image
+  double spp = 0;          // samples per pixel really taken
   bool interrupted = false;
 };
 
 struct RenderResult {
   Frame2D frame;
   RenderStats stats;
-  // If asked for: the pilot's vertices, in the order of the tiles, and the emission that its camera rays met (summed
-  // over a pixel's samples).
+  // If asked for: the pilot's vertices, in the order of the tiles, and the emission that its camera rays met
+  // (summed over a pixel's samples).
   std::vector<PilotVertex> records;
   std::vector<Rgb> pilotEmitted;
 };
 
 RenderResult render(const Scene& scene, const RenderOptions& options, Progress& progress);
 
-// Traces the one path of `render` with these options that belongs to a pixel of the full image and a sample, and
-// describes each of its vertices, a line each.
+// Traces the one path of `render` with these options that belongs to a pixel of the full image and a sample,
+// and describes each of its vertices, a line each.
 std::string replay(const Scene& scene, const RenderOptions& options, Vec2i pixel, int sample);
 
 }  // namespace odis::render

@@ -26,32 +26,67 @@ inline constexpr float kInfinity = std::numeric_limits<float>::infinity();
 // The largest float below one: random numbers live in [0, kOneMinusEpsilon].
 inline constexpr float kOneMinusEpsilon = 0x1.fffffep-1f;
 
-inline float dot(const Vec3& a, const Vec3& b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
-inline float absDot(const Vec3& a, const Vec3& b) { return std::abs(dot(a, b)); }
-inline Vec3 cross(const Vec3& a, const Vec3& b) { return a.cross(b); }
-inline float lengthSquared(const Vec3& v) { return dot(v, v); }
-inline float length(const Vec3& v) { return std::sqrt(dot(v, v)); }
-inline Vec3 normalize(const Vec3& v) { return v * (1.0f / length(v)); }
-inline float sqr(float x) { return x * x; }
-inline float safeSqrt(float x) { return std::sqrt(std::max(x, 0.0f)); }
-inline float lerp(float t, float a, float b) { return a + t * (b - a); }
+inline float dot(const Vec3& a, const Vec3& b) {
+  return a.x * b.x + a.y * b.y + a.z * b.z;
+}
+inline float absDot(const Vec3& a, const Vec3& b) {
+  return std::abs(dot(a, b));
+}
+inline Vec3 cross(const Vec3& a, const Vec3& b) {
+  return a.cross(b);
+}
+inline float lengthSquared(const Vec3& v) {
+  return dot(v, v);
+}
+inline float length(const Vec3& v) {
+  return std::sqrt(dot(v, v));
+}
+inline Vec3 normalize(const Vec3& v) {
+  return v * (1.0f / length(v));
+}
+inline float sqr(float x) {
+  return x * x;
+}
+inline float safeSqrt(float x) {
+  return std::sqrt(std::max(x, 0.0f));
+}
+inline float lerp(float t, float a, float b) {
+  return a + t * (b - a);
+}
 
 // Relative luminance of linear Rec. 709 / sRGB primaries.
-inline float luminance(const Rgb& c) { return 0.212671f * c.x + 0.715160f * c.y + 0.072169f * c.z; }
-inline float maxComponent(const Rgb& c) { return std::max({c.x, c.y, c.z}); }
-inline float average(const Rgb& c) { return (c.x + c.y + c.z) * (1.0f / 3.0f); }
-inline bool isBlack(const Rgb& c) { return c.x == 0.0f && c.y == 0.0f && c.z == 0.0f; }
-inline bool isFinite(const Rgb& c) { return std::isfinite(c.x) && std::isfinite(c.y) && std::isfinite(c.z); }
-inline bool isFinite(const Vec3& v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); }
-inline Rgb lerp(float t, const Rgb& a, const Rgb& b) { return a + (b - a) * t; }
+inline float luminance(const Rgb& c) {
+  return 0.212671f * c.x + 0.715160f * c.y + 0.072169f * c.z;
+}
+inline float maxComponent(const Rgb& c) {
+  return std::max({c.x, c.y, c.z});
+}
+inline float average(const Rgb& c) {
+  return (c.x + c.y + c.z) * (1.0f / 3.0f);
+}
+inline bool isBlack(const Rgb& c) {
+  return c.x == 0.0f && c.y == 0.0f && c.z == 0.0f;
+}
+inline bool isFinite(const Rgb& c) {
+  return std::isfinite(c.x) && std::isfinite(c.y) && std::isfinite(c.z);
+}
+inline bool isFinite(const Vec3& v) {
+  return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
+}
+inline Rgb lerp(float t, const Rgb& a, const Rgb& b) {
+  return a + (b - a) * t;
+}
 
-inline Vec3 transformPoint(const Matrix4& m, const Vec3& p) { return p * m; }
+inline Vec3 transformPoint(const Matrix4& m, const Vec3& p) {
+  return p * m;
+}
 inline Vec3 transformVector(const Matrix4& m, const Vec3& v) {
   Vec3 result;
   m.multDirMatrix(v, result);
   return result;
 }
-// Transforms a normal by the inverse transpose; takes the inverse of the matrix that points are transformed by.
+// Transforms a normal by the inverse transpose; takes the inverse of the matrix that points are transformed
+// by.
 inline Vec3 transformNormal(const Matrix4& inverse, const Vec3& n) {
   return {n.x * inverse[0][0] + n.y * inverse[0][1] + n.z * inverse[0][2],
           n.x * inverse[1][0] + n.y * inverse[1][1] + n.z * inverse[1][2],

@@ -1,4 +1,5 @@
-// Warps of the unit square to the domains that rendering needs. Every density is with respect to the measure named.
+// Warps of the unit square to the domains that rendering needs. Every density is with respect to the measure
+// named.
 #pragma once
 
 #include "render/math/vec.h"
@@ -25,7 +26,9 @@ inline Vec3 squareToCosineHemisphere(const Vec2& u) {
   const Vec2 d = squareToDisk(u);
   return {d.x, d.y, safeSqrt(1.0f - d.x * d.x - d.y * d.y)};
 }
-inline float cosineHemispherePdf(float cosTheta) { return std::max(cosTheta, 0.0f) * kInvPi; }
+inline float cosineHemispherePdf(float cosTheta) {
+  return std::max(cosTheta, 0.0f) * kInvPi;
+}
 
 // Uniform on the unit sphere; solid-angle density 1/(4 pi).
 inline Vec3 squareToSphere(const Vec2& u) {

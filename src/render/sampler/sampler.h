@@ -1,4 +1,5 @@
-// Random numbers for paths: the same ones for every integrator, a function of (seed, pixel, sample, dimension) alone.
+// Random numbers for paths: the same ones for every integrator, a function of (seed, pixel, sample,
+// dimension) alone.
 #pragma once
 
 #include <cstdint>
@@ -8,8 +9,8 @@
 
 namespace odis::render {
 
-// The first two dimensions of Sobol's sequence as 32-bit fractions. The second is the Pascal triangle modulo two,
-// applied as a product of five butterflies.
+// The first two dimensions of Sobol's sequence as 32-bit fractions. The second is the Pascal triangle modulo
+// two, applied as a product of five butterflies.
 inline uint32_t reverseBits(uint32_t x) {
   x = (x >> 16) | (x << 16);
   x = ((x & 0xff00ff00u) >> 8) | ((x & 0x00ff00ffu) << 8);
@@ -42,8 +43,8 @@ inline uint64_t mixBits(uint64_t x) {
   return x ^ (x >> 33);
 }
 
-// Owen-scrambled Sobol' points padded by dimension: each pair of dimensions is the two-dimensional sequence, shuffled
-// and scrambled anew (Burley 2020, "Practical Hash-based Owen Scrambling"); or independent numbers.
+// Owen-scrambled Sobol' points padded by dimension: each pair of dimensions is the two-dimensional sequence,
+// shuffled and scrambled anew (Burley 2020, "Practical Hash-based Owen Scrambling"); or independent numbers.
 class Sampler {
  public:
   Sampler(SamplerKind kind, uint64_t seed, uint32_t pixel, uint32_t sample)
@@ -56,7 +57,8 @@ class Sampler {
     const uint64_t hash = nextHash();
     if (m_kind == SamplerKind::independent) return toUnit(uint32_t(hash >> 32));
     const uint32_t index = shuffledIndex(uint32_t(hash));
-    // reversed: the first dimension is the bit-reversed index, so scrambling its reversal scrambles the index.
+    // reversed: the first dimension is the bit-reversed index, so scrambling its reversal scrambles the
+    // index.
     return toUnit(reverseBits(owenScrambleReversed(index, uint32_t(hash >> 32))));
   }
   Vec2 get2D() {
@@ -71,7 +73,8 @@ class Sampler {
 
  private:
   uint64_t nextHash() {
-    // Independent numbers differ by sample; Sobol' points share their scrambling among the samples of a pixel.
+    // Independent numbers differ by sample; Sobol' points share their scrambling among the samples of a
+    // pixel.
     const uint64_t stream = m_kind == SamplerKind::independent ? (uint64_t(m_sample) + 1) << 32 : 0;
     return mixBits(m_base ^ mixBits(stream + ++m_dimension));
   }

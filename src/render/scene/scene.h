@@ -30,14 +30,14 @@ struct FilmSettings {
 // What the file asks for and the command line may override.
 struct IntegratorSettings {
   std::string type = "odis";  // as named by the file, "" if it names none
-  int maxDepth = -1;          // -1: unlimited; 1 is directly visible emission, 2 direct light, as Mitsuba counts
+  int maxDepth = -1;  // -1: unlimited; 1 is directly visible emission, 2 direct light, as Mitsuba counts
   int rrDepth = 5;
-  int samplesPerPixel = 0;    // 0: the file names none
+  int samplesPerPixel = 0;  // 0: the file names none
 };
 
 struct LoadOptions {
   std::map<std::string, std::string> defines;  // -D key=value
-  std::optional<Vec2i> resolution;             // replaces the film's size; keeps the file's crop only if absent
+  std::optional<Vec2i> resolution;  // replaces the film's size; keeps the file's crop only if absent
   std::optional<Crop> crop;
 };
 

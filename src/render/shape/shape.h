@@ -15,7 +15,7 @@ struct ShapeSample {
   SurfacePoint at;  // p, ng, shading, uv, shape and primitive are set
   Vec3 wi;          // unit, from the reference point to at.p
   float distance = 0;
-  float pdf = 0;    // solid angle at the reference point; 0 if nothing could be sampled
+  float pdf = 0;  // solid angle at the reference point; 0 if nothing could be sampled
 };
 
 // A hit as Embree reports it, with the object-to-world matrix of the instance it is in (null: no instance).
@@ -37,7 +37,8 @@ class Shape {
   virtual SurfacePoint surfacePoint(const Ray& ray, const RawHit& hit) const = 0;
 
   virtual float area() const = 0;
-  // Samples a point as seen from `ref`, by solid angle where the shape knows how (spheres by their cone), else by area.
+  // Samples a point as seen from `ref`, by solid angle where the shape knows how (spheres by their cone),
+  // else by area.
   virtual ShapeSample sample(const Vec3& ref, const Vec2& u) const = 0;
   // Density with respect to solid angle with which sample(ref, .) gives the direction to `at`.
   virtual float pdf(const Vec3& ref, const SurfacePoint& at) const = 0;
