@@ -37,7 +37,7 @@ struct SceneArguments {
 
 // The whole of `odis render`.
 struct RenderArguments {
-  std::string scene, output, png, aov, statsFile, tev, replay;
+  std::string scene, output, png, aov, statsFile, recordsFile, tev, replay;
   std::optional<int> spp, maxDepth, rrDepth;
   uint64_t seed = 0;
   int threads = 0;

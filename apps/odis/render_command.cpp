@@ -9,6 +9,7 @@
 #include "command.h"
 #include "console.h"
 #include "output.h"
+#include "records.h"
 #include "render/image/tev.h"
 #include "render_arguments.h"
 #include "stats.h"
@@ -29,6 +30,7 @@ static RenderOptions renderOptions(const RenderArguments& a, const Scene& scene,
   options.timeLimit = a.timeLimit;
   options.variance = a.variance;
   options.features = layers.any();
+  options.records = !a.recordsFile.empty();
   return options;
 }
 
@@ -62,10 +64,13 @@ static int run(RenderArguments& a) {
   if (a.output.empty()) a.output = std::filesystem::path(a.scene).stem().string() + ".exr";
   const Layers layers = parseLayers(a.aov);
   const LoadOptions load = a.part.loadOptions();
+  if (!a.recordsFile.empty() && a.method.integrator == "path")
+    throw UsageError("--records: plain path tracing has no pilot to record; use --integrator odis");
   if (a.replay.empty()) {
     checkWritable(a.output, {".exr", ".png"});
     if (!a.png.empty()) checkWritable(a.png, {".png"});
     if (!a.statsFile.empty()) checkWritable(a.statsFile, {});
+    if (!a.recordsFile.empty()) checkWritable(a.recordsFile, {".npy"});
   }
 
   const auto start = std::chrono::steady_clock::now();
@@ -102,6 +107,7 @@ static int run(RenderArguments& a) {
   else
     writeLayers(a.output, result.frame, scene->film(), layers, statsMetadata(stats));
   if (!a.png.empty()) writePreview(a.png, result.frame, a.exposure);
+  if (!a.recordsFile.empty()) writeRecords(a.recordsFile, result.records);
   stats.secondsWrite = secondsSince(writeStart);
   if (!a.tev.empty()) sendToTev(a, result.frame);
   if (!a.statsFile.empty()) writeText(a.statsFile, statsJson(stats));

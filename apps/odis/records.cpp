@@ -1,0 +1,78 @@
+#include "records.h"
+
+#include <fmt/format.h>
+
+#include <cstddef>
+#include <filesystem>
+#include <fstream>
+#include <stdexcept>
+
+namespace odis::app {
+
+namespace {
+
+struct Field {
+  const char* name;
+  const char* format;  // of NumPy
+  size_t offset, bytes;
+  bool triple = false;
+};
+
+#define ODIS_FIELD(name, format) \
+  { #name, format, offsetof(PilotVertex, name), sizeof(PilotVertex::name) }
+#define ODIS_TRIPLE(name) \
+  { #name, "<f4", offsetof(PilotVertex, name), sizeof(PilotVertex::name), true }
+constexpr Field kFields[] = {
+    ODIS_TRIPLE(position), ODIS_TRIPLE(normal), ODIS_TRIPLE(wo), ODIS_TRIPLE(wi), ODIS_TRIPLE(radiance),
+    ODIS_TRIPLE(weight), ODIS_TRIPLE(direct), ODIS_FIELD(pdf, "<f4"), ODIS_FIELD(survival, "<f4"),
+    ODIS_FIELD(guidablePdf, "<f4"), ODIS_FIELD(guidableProbability, "<f4"), ODIS_FIELD(distance, "<f4"),
+    ODIS_FIELD(roughness, "<f4"), ODIS_FIELD(cosine, "<f4"), ODIS_FIELD(indirect, "<f4"), ODIS_FIELD(emission, "<f4"),
+    ODIS_FIELD(emissionLightPdf, "<f4"), ODIS_FIELD(light, "<f4"), ODIS_TRIPLE(lightDirection),
+    ODIS_FIELD(lightPdf, "<f4"), ODIS_FIELD(lightBsdfPdf, "<f4"), ODIS_FIELD(lightGuidablePdf, "<f4"),
+    ODIS_FIELD(raysAfter, "<f4"), ODIS_FIELD(sampleWeight, "<f4"), ODIS_FIELD(pixel, "<u4"), ODIS_FIELD(depth, "<u2"),
+    ODIS_FIELD(discrete, "|b1"), ODIS_FIELD(both, "|b1"),
+};
+#undef ODIS_FIELD
+#undef ODIS_TRIPLE
+
+// Whether the fields, in this order, are all that a PilotVertex holds.
+constexpr bool fieldsFillTheRecord() {
+  size_t end = 0;
+  for (const Field& field : kFields) {
+    if (field.offset != end) return false;
+    end += field.bytes;
+  }
+  return end == sizeof(PilotVertex);
+}
+static_assert(fieldsFillTheRecord());
+
+// The header's dictionary, padded so that the data starts at a multiple of 64 bytes.
+std::string header(size_t count) {
+  std::string fields;
+  for (const Field& field : kFields)
+    fields += fmt::format("('{}', '{}'{}), ", field.name, field.format, field.triple ? ", (3,)" : "");
+  std::string text =
+      fmt::format("{{'descr': [{}], 'fortran_order': False, 'shape': ({},), }}", fields, count);
+  while ((10 + text.size() + 1) % 64 != 0) text += ' ';
+  return text + '\n';
+}
+
+}  // namespace
+
+void writeRecords(const std::string& path, const std::vector<PilotVertex>& vertices) {
+  const std::string temporary = path + ".part";
+  std::ofstream file(temporary, std::ios::binary);
+  const std::string text = header(vertices.size());
+  const char size[2] = {char(text.size() & 0xff), char(text.size() >> 8)};
+  file.write("\x93NUMPY\x01\x00", 8).write(size, 2) << text;
+  file.write(reinterpret_cast<const char*>(vertices.data()), std::streamsize(vertices.size() * sizeof(PilotVertex)));
+  file.close();
+  std::error_code failure;
+  if (file) std::filesystem::rename(temporary, path, failure);
+  if (!file || failure) {
+    std::filesystem::remove(temporary, failure);
+    throw std::runtime_error(fmt::format("{}: can't be written", path));
+  }
+}
+
+}  // namespace odis::app
