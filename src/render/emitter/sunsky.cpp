@@ -108,20 +108,21 @@ EmitterPtr skyLight(const Properties& node, const Daylight& daylight, float scal
   if (width < 4 || width > 16384)
     throw SceneError(node.location, "the resolution of \"" + node.type + "\" is " + std::to_string(width) +
                                         "; expected 4 to 16384");
-  const int rows = int(width) / 2 + 1;  // one of them is the horizon
+  const int rows = int(width) / 4 * 2 + 1;  // one of them is the horizon if nothing is stretched
+  const float horizon = daylight.stretch / 2;
+  const int lit = int(std::ceil(horizon * float(rows - 1))) + 1;
   const Sky sky(daylight.turbidity, daylight.sunZenith, daylight.albedo);
   std::vector<Rgb> pixels(size_t(width) * size_t(rows));
-  for (int y = 0; y < rows; ++y)
+  for (int y = 0; y < lit; ++y)
     for (int x = 0; x < width; ++x) {
       const float theta = kPi * float(y) / float(rows - 1) / daylight.stretch;
       const float phi = 2 * kPi * (float(x) + 0.5f) / float(width), sinTheta = std::sin(theta);
       const Vec3 direction(std::sin(phi) * sinTheta, std::cos(theta), -std::cos(phi) * sinTheta);
       const float gamma = std::acos(std::clamp(dot(direction, daylight.sunDirection), -1.0f, 1.0f));
-      // The row of the horizon belongs to the sky although its cosine may round to less than zero.
-      const float cosTheta = std::abs(direction.y) < 1e-6f ? 0.0f : direction.y;
-      pixels[size_t(y) * size_t(width) + size_t(x)] = sky.radiance(cosTheta, gamma) * scale;
+      pixels[size_t(y) * size_t(width) + size_t(x)] =
+          sky.radiance(std::max(0.0f, direction.y), gamma) * scale;
     }
-  return std::make_shared<EnvironmentMap>(std::move(pixels), int(width), rows, daylight.toWorld);
+  return std::make_shared<EnvironmentMap>(std::move(pixels), int(width), rows, daylight.toWorld, horizon);
 }
 
 EmitterPtr sunLight(const Properties& node, const Daylight& daylight, float scale) {
