@@ -1,35 +1,32 @@
-// The colours of sun and clear sky: Preetham, Shirley, Smits, "A Practical Analytic Model for Daylight",
-// SIGGRAPH 1999. Radiance is spectral, W/(m^2 sr nm), weighed by the CIE 1931 observer to linear RGB (a flat
-// spectrum of 1 is white 1), the units of Mitsuba's sun and sky.
+// The colours of sun and clear sky. Radiance is spectral, W/(m^2 sr nm), weighed by the CIE 1931 observer to
+// linear RGB, the units of Mitsuba's sun and sky.
+//
+// The values follow the models of Hošek and Wilkie, "An Analytic Model for Full Spectral Sky-Dome Radiance",
+// 2012, and "Adding a Solar-Radiance Function to the Hošek-Wilkie Skylight Model", 2013, as Mitsuba 3.9
+// evaluates them. They come from formulas of our own in their stead, whose few coefficients are fitted to
+// them; how near, says daylight.cpp.
 #pragma once
 
 #include "render/math/vec.h"
 
 namespace odis::render {
 
-// The sky for the sun at an angle from the zenith (radians, at most pi / 2) and a turbidity of 2 (very clear)
-// to 10 (hazy); outside of these both are clamped.
+// The sky for the sun at an angle from the zenith (radians, at most pi / 2), a turbidity of 2 (very clear) to
+// 10 (hazy) and an albedo of the ground of 0 to 1; outside of these all are clamped.
 class Sky {
  public:
-  Sky(float turbidity, float sunZenith);
+  Sky(float turbidity, float sunZenith, const Rgb& albedo);
 
   // The sky at `cosTheta` above the horizon, `gamma` radians from the sun; black below the horizon.
   Rgb radiance(float cosTheta, float gamma) const;
 
  private:
-  struct Perez {
-    float a, b, c, d, e;
-    float operator()(float cosTheta, float gamma) const {
-      const float cosGamma = std::cos(gamma);
-      return (1 + a * std::exp(b / cosTheta)) * (1 + c * std::exp(d * gamma) + e * cosGamma * cosGamma);
-    }
-  };
-
-  Perez m_luminance, m_x, m_y;
-  float m_scaleLuminance, m_scaleX, m_scaleY;  // values at the zenith over those of the Perez function
+  static constexpr int kTerms = 9;
+  Rgb m_terms[kTerms];  // factors of functions of the direction that add up to the radiance's logarithm
+  Rgb m_ground;         // and of the ground's
 };
 
-// Radiance of the sun's disc, 0.5358 degrees wide, after the atmosphere; black below the horizon.
+// Mean radiance of the sun's disc, 0.5358 degrees wide, after the atmosphere; black below the horizon.
 Rgb sunRadiance(float turbidity, float sunZenith);
 
 }  // namespace odis::render

@@ -49,9 +49,11 @@ void liftToFloor(std::span<float> weights) {
 
 }  // namespace
 
-EnvironmentMap::EnvironmentMap(std::vector<Rgb> pixels, int width, int height, const Matrix4& toWorld)
+EnvironmentMap::EnvironmentMap(std::vector<Rgb> pixels, int width, int height, const Matrix4& toWorld,
+                               float horizon)
     : m_width(width),
       m_height(std::max(height, 2)),
+      m_horizon(horizon),
       m_pixels(std::move(pixels)),
       m_toWorld(toWorld),
       m_toLocal(toWorld.inverse()),
@@ -66,6 +68,10 @@ std::vector<float> EnvironmentMap::patchWeights() {
   const int rows = m_height - 1;
   std::vector<float> weights(width * size_t(rows)), sums;
   for (int y = 0; y < rows; ++y) {
+    if (float(y) >= m_horizon * float(rows)) {
+      sums.push_back(0);
+      continue;
+    }
     // The integral of the sine over the row, times the width of a patch, is the patch's solid angle.
     const double cosTop = std::cos(M_PI * y / rows), cosBottom = std::cos(M_PI * (y + 1) / rows);
     const float solidAngle = float((cosTop - cosBottom) * 2 * M_PI / m_width);
@@ -91,6 +97,7 @@ std::vector<float> EnvironmentMap::patchWeights() {
 }
 
 Rgb EnvironmentMap::lookUp(const Vec2& uv) const {
+  if (uv.y > m_horizon) return {0, 0, 0};
   const float s = uv.x * float(m_width) - 0.5f, t = uv.y * float(m_height - 1);
   const int column = int(std::floor(s));
   const int x0 = column < 0 ? m_width - 1 : std::min(column, m_width - 1), x1 = x0 + 1 < m_width ? x0 + 1 : 0;

@@ -10,8 +10,9 @@ namespace odis::render {
 
 class EnvironmentMap final : public EnvironmentEmitter {
  public:
-  // width * height pixels, row 0 at the top; the linear part of toWorld must have an inverse.
-  EnvironmentMap(std::vector<Rgb> pixels, int width, int height, const Matrix4& toWorld);
+  // width * height pixels, row 0 at the top; the linear part of toWorld must have an inverse. What is more
+  // than `horizon` of the way from the upper pole to the lower one is black, with a sharp edge.
+  EnvironmentMap(std::vector<Rgb> pixels, int width, int height, const Matrix4& toWorld, float horizon = 1);
 
   EmitterSample sample(const Vec3& ref, const Vec2& u) const override;
   float power() const override;
@@ -26,6 +27,7 @@ class EnvironmentMap final : public EnvironmentEmitter {
   std::vector<float> patchWeights();
 
   int m_width, m_height;
+  float m_horizon;
   std::vector<Rgb> m_pixels;
   Matrix4 m_toWorld, m_toLocal;
   float m_determinant;          // of m_toWorld's linear part, absolute

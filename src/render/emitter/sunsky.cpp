@@ -7,11 +7,11 @@
 //   latitude, longitude, timezone   numbers   degrees north, degrees east, hours ahead of universal time;
 //                                     default 35.6894, 139.6917, 9: Tokyo
 //   to_world           transform      turns sky and sun; default identity
-//   albedo             rgb or number  of the ground. The sky model here has no such parameter; it is read and
-//   ignored. scale              number         multiplies sun and sky; default 1 sun_scale, sky_scale numbers
-//   of sunsky: each replaces scale for its part sun_radius_scale   number         widens the sun without
-//   changing its power; default 1; 0 makes it a directional
-//                                     light
+//   albedo             rgb or number  of the ground, which brightens the sky; default 0.3
+//   scale              number         multiplies sun and sky; default 1
+//   sun_scale, sky_scale   numbers    of sunsky: each replaces scale for its part
+//   sun_radius_scale   number         widens the sun without changing its power; default 1; 0 makes it a
+//                                     directional light
 //   stretch            number         1 to 2; pulls the sky below the horizon; default 1
 //   resolution         integer        width of the image that the sky is tabulated in; default 512
 //   sun_aperture       number         of Mitsuba 3: the sun's apparent diameter in degrees, in place of
@@ -44,6 +44,7 @@ struct Daylight {
   float sunZenith = 0;  // radians, before the stretch
   float turbidity = 3;
   float stretch = 1;
+  Rgb albedo;
 };
 
 // The axes of Mitsuba 3's sky in those of the image.
@@ -75,8 +76,7 @@ Daylight readDaylight(const Properties& node) {
   if (zUp) result.toWorld = kZUp * result.toWorld;
   if (!std::isnormal(result.toWorld.minorOf(3, 3)))
     throw SceneError(node.location, "the to_world of \"" + node.type + "\" has no inverse");
-  if (node.has("albedo")) node.color("albedo");
-
+  result.albedo = node.color("albedo", Rgb(0.3f));
   result.turbidity = node.number("turbidity", 3.0f);
   if (!(result.turbidity >= 1 && result.turbidity <= 10))
     throw SceneError(node.location, "the turbidity of \"" + node.type + "\" is " +
@@ -108,20 +108,21 @@ EmitterPtr skyLight(const Properties& node, const Daylight& daylight, float scal
   if (width < 4 || width > 16384)
     throw SceneError(node.location, "the resolution of \"" + node.type + "\" is " + std::to_string(width) +
                                         "; expected 4 to 16384");
-  const int rows = int(width) / 2 + 1;  // one of them is the horizon
-  const Sky sky(daylight.turbidity, daylight.sunZenith);
+  const int rows = int(width) / 4 * 2 + 1;  // one of them is the horizon if nothing is stretched
+  const float horizon = daylight.stretch / 2;
+  const int lit = int(std::ceil(horizon * float(rows - 1))) + 1;
+  const Sky sky(daylight.turbidity, daylight.sunZenith, daylight.albedo);
   std::vector<Rgb> pixels(size_t(width) * size_t(rows));
-  for (int y = 0; y < rows; ++y)
+  for (int y = 0; y < lit; ++y)
     for (int x = 0; x < width; ++x) {
       const float theta = kPi * float(y) / float(rows - 1) / daylight.stretch;
       const float phi = 2 * kPi * (float(x) + 0.5f) / float(width), sinTheta = std::sin(theta);
       const Vec3 direction(std::sin(phi) * sinTheta, std::cos(theta), -std::cos(phi) * sinTheta);
       const float gamma = std::acos(std::clamp(dot(direction, daylight.sunDirection), -1.0f, 1.0f));
-      // The row of the horizon belongs to the sky although its cosine may round to less than zero.
-      const float cosTheta = std::abs(direction.y) < 1e-6f ? 0.0f : direction.y;
-      pixels[size_t(y) * size_t(width) + size_t(x)] = sky.radiance(cosTheta, gamma) * scale;
+      pixels[size_t(y) * size_t(width) + size_t(x)] =
+          sky.radiance(std::max(0.0f, direction.y), gamma) * scale;
     }
-  return std::make_shared<EnvironmentMap>(std::move(pixels), int(width), rows, daylight.toWorld);
+  return std::make_shared<EnvironmentMap>(std::move(pixels), int(width), rows, daylight.toWorld, horizon);
 }
 
 EmitterPtr sunLight(const Properties& node, const Daylight& daylight, float scale) {
