@@ -23,12 +23,6 @@ class UsageError : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-// An input file, other than a scene, that cannot be read.
-class InputError : public std::runtime_error {
- public:
-  using std::runtime_error::runtime_error;
-};
-
 // An output that cannot be written.
 class WriteError : public std::runtime_error {
  public:

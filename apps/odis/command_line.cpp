@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "command.h"
+#include "eval/image_file.h"
 #include "odis_version.h"
 #include "render/scene/error.h"
 #include "suggest.h"
@@ -57,9 +58,11 @@ int runCommandLine(int argc, char** argv) {
     return reportUsage(app, error);
   } catch (const UsageError& error) {
     return fail(kUsageError, error.what());
+  } catch (const render::OptionError& error) {
+    return fail(kUsageError, error.what());
   } catch (const render::SceneError& error) {
     return fail(kSceneError, error.what());
-  } catch (const InputError& error) {
+  } catch (const eval::ImageError& error) {
     return fail(kSceneError, error.what());
   } catch (const WriteError& error) {
     return fail(kWriteError, error.what());

@@ -12,6 +12,7 @@
 #include "eval/comparison_table.h"
 #include "output.h"
 #include "render_arguments.h"
+#include "validators.h"
 
 namespace odis::app {
 
@@ -75,8 +76,7 @@ static int run(Arguments& a) {
   for (const std::string& scene : settings.scenes)
     if (!names.insert(eval::sceneName(scene)).second)
       throw UsageError(fmt::format("{}: two scenes are named \"{}\"", scene, eval::sceneName(scene)));
-  if (!settings.reference.empty() && !std::filesystem::is_regular_file(settings.reference))
-    throw InputError(settings.reference + ": there is no such file");
+  if (!settings.reference.empty()) eval::readColor(settings.reference);  // before time is spent
   std::error_code failed;
   std::filesystem::create_directories(settings.folder, failed);
   if (failed) throw WriteError(fmt::format("{}: {}", settings.folder, failed.message()));
@@ -123,7 +123,9 @@ Command addCompareCommand(CLI::App& parent) {
   app->add_option("-o,--output", settings.folder, "Folder for results, references and images")->required();
   app->add_flag("--images", settings.images,
                 "Write seed 0 as EXR and PNG, and a PNG of all methods side by side");
-  app->add_option("--exposure", settings.exposure, "Of the PNGs, in stops")->capture_default_str();
+  app->add_option("--exposure", settings.exposure, "Of the PNGs, in stops")
+      ->check(stops())
+      ->capture_default_str();
   app->add_flag("--fresh", settings.fresh, "Forget earlier results; references are kept");
   app->add_option("--threads", a->threads, "0: one a core")
       ->check(CLI::Range(0, 4096))

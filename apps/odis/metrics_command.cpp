@@ -19,25 +19,18 @@ struct Arguments {
 
 }  // namespace
 
-static eval::ColorImage read(const std::string& path) {
-  try {
-    return eval::readColor(path);
-  } catch (const std::runtime_error& error) {
-    throw InputError(error.what());
-  }
-}
-
 static int run(const Arguments& arguments) {
-  const eval::ColorImage image = read(arguments.image), reference = read(arguments.reference);
+  const eval::ColorImage image = eval::readColor(arguments.image),
+                         reference = eval::readColor(arguments.reference);
   if (image.width != reference.width || image.height != reference.height)
-    throw InputError(fmt::format("{} is {} x {}, {} is {} x {}: they must be of one size", arguments.image,
-                                 image.width, image.height, arguments.reference, reference.width,
-                                 reference.height));
+    throw eval::ImageError(fmt::format("{} is {} x {}, {} is {} x {}: they must be of one size",
+                                       arguments.image, image.width, image.height, arguments.reference,
+                                       reference.width, reference.height));
   eval::ErrorMetrics m;
   try {
     m = eval::compareImages(image.pixels, reference.pixels);
   } catch (const std::invalid_argument& error) {
-    throw InputError(fmt::format("{}: {}", arguments.reference, error.what()));
+    throw eval::ImageError(fmt::format("{}: {}", arguments.reference, error.what()));
   }
   if (arguments.json) {
     const nlohmann::ordered_json json = {{"relMse", m.relMse},

@@ -5,6 +5,7 @@
 #include "command.h"
 #include "eval/montage.h"
 #include "output.h"
+#include "validators.h"
 
 namespace odis::app {
 
@@ -18,15 +19,11 @@ Command addMontageCommand(CLI::App& parent) {
   const auto arguments = std::make_shared<Arguments>();
   app->add_option("IMAGES", arguments->images, "EXR files, left to right")->required();
   app->add_option("-o,--output", arguments->output, "PNG to write")->required();
-  app->add_option("--exposure", arguments->exposure, "In stops")->capture_default_str();
+  app->add_option("--exposure", arguments->exposure, "In stops")->check(stops())->capture_default_str();
   return {app, [arguments] {
             checkWritable(arguments->output, {".png"});
             std::vector<eval::ColorImage> images;
-            try {
-              for (const std::string& path : arguments->images) images.push_back(eval::readColor(path));
-            } catch (const std::runtime_error& error) {
-              throw InputError(error.what());
-            }
+            for (const std::string& path : arguments->images) images.push_back(eval::readColor(path));
             eval::ColorImage all = eval::montage(images);
             render::Frame2D frame;
             frame.width = all.width;

@@ -3,12 +3,15 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <cerrno>
+#include <cstring>
 #include <filesystem>
 #include <fstream>
 #include <list>
 #include <sstream>
 
 #include "command.h"
+#include "render/image/replace_file.h"
 #include "render/image/write.h"
 
 namespace odis::app {
@@ -52,8 +55,10 @@ void checkWritable(const std::string& path, std::initializer_list<const char*> e
   if (!fs::is_directory(folder, ignored))
     throw WriteError(fmt::format("{}: there is no such folder", folder.string()));
   if (fs::is_directory(path, ignored)) throw WriteError(fmt::format("{}: is a folder", path));
-  if (access(folder.c_str(), W_OK) != 0)
-    throw WriteError(fmt::format("{}: is not writable", folder.string()));
+  // Permissions don't tell everything: try.
+  const std::string probe = fmt::format("{}.part-{}", path, getpid());
+  if (!std::ofstream(probe)) throw WriteError(fmt::format("{}: {}", path, std::strerror(errno)));
+  fs::remove(probe, ignored);
 }
 
 namespace {
@@ -109,13 +114,16 @@ void writePreview(const std::string& path, const Frame2D& frame, float exposure)
 }
 
 void writeText(const std::string& path, const std::string& text) {
-  const std::string temporary = path + ".part";
-  std::ofstream stream(temporary, std::ios::binary);
-  stream << text;
-  stream.close();
-  std::error_code failed;
-  if (stream) fs::rename(temporary, path, failed);
-  if (!stream || failed) throw WriteError(path + ": cannot be written");
+  try {
+    replaceFile(path, [&](const std::string& temporary) {
+      std::ofstream stream(temporary, std::ios::binary);
+      stream << text;
+      stream.close();
+      if (!stream) throw std::runtime_error(std::strerror(errno));
+    });
+  } catch (const std::runtime_error& error) {
+    throw WriteError(error.what());
+  }
 }
 
 }  // namespace odis::app

@@ -2,10 +2,13 @@
 
 #include <fmt/format.h>
 
+#include <limits>
 #include <sstream>
 
 #include "command.h"
+#include "render/image/limits.h"
 #include "suggest.h"
+#include "validators.h"
 
 namespace odis::app {
 
@@ -27,7 +30,7 @@ void MethodArguments::addTo(CLI::App& app) {
       ->capture_default_str()
       ->group(group);
   app.add_option("--pilot-spp", pilotSpp, "Samples per pixel of the pilot; below 1: one in so many pixels")
-      ->check(CLI::Range(1e-3, 1e6))
+      ->check(numberBetween(1e-3, 1e6))
       ->capture_default_str()
       ->group(group);
   app.add_option("--oracle-spp", oracleSpp, "Samples per pixel that the oracle is made from")
@@ -49,22 +52,22 @@ void MethodArguments::addCellsTo(CLI::App& app) {
       ->group(group);
   app.add_option("--trust", trust, "Samples' worth of the coarser level in each finer one, finest first")
       ->expected(kCellLevels)
-      ->check(CLI::Range(0.0, 1e9))
+      ->check(numberBetween(0, 1e9))
       ->capture_default_str()
       ->group(group);
   app.add_option("--map-floor", cells.floor, "Share of the uniform distribution in every map")
-      ->check(CLI::Range(0.0, 1.0))
+      ->check(numberBetween(0, 1))
       ->capture_default_str()
       ->group(group);
   app.add_option(
          "--alpha", cells.fixedAlpha,
          "Share of the samples that stays with the BSDF, everywhere; 0: by predicted variance and cost")
-      ->check(CLI::Range(0.0, 1.0))
+      ->check(numberBetween(0, 1))
       ->capture_default_str()
       ->group(group);
   app.add_option("--pilot-weight", pilotWeight,
                  "Of a pilot sample relative to a guided one; -1: by predicted variance")
-      ->check(CLI::Range(-1.0, 1e6))
+      ->check(numberBetween(-1, 1e6))
       ->capture_default_str()
       ->group(group);
 }
@@ -104,10 +107,12 @@ void RenderArguments::addTo(CLI::App& app) {
   app.add_option("-o,--output", output,
                  "Image to write, .exr or .png; default: the scene's name, in this folder");
   app.add_option("--png", png, "Write a PNG for a look as well");
-  app.add_option("--exposure", exposure, "Of the PNG, in stops")->capture_default_str();
+  app.add_option("--exposure", exposure, "Of the PNG, in stops")->check(stops())->capture_default_str();
   app.add_option("--spp", spp, "Samples per pixel, pilot included; default: what the scene asks for, else 4")
       ->check(CLI::Range(1, 1 << 24));
-  app.add_option("--seed", seed, "Another seed, another noise")->capture_default_str();
+  app.add_option("--seed", seed, "Another seed, another noise")
+      ->check(numberBetween(0, double(std::numeric_limits<uint64_t>::max())))
+      ->capture_default_str();
   app.add_option("--threads", threads, "0: one a core")->check(CLI::Range(0, 4096))->capture_default_str();
   app.add_option("--max-depth", maxDepth,
                  "Bounces; -1: no limit, 1: lights only, 2: direct light; default: scene's")
@@ -115,7 +120,7 @@ void RenderArguments::addTo(CLI::App& app) {
   app.add_option("--rr-depth", rrDepth, "Russian roulette starts here; default: scene's")
       ->check(CLI::Range(1, 1 << 20));
   app.add_option("--time-limit", timeLimit, "Stop after so many seconds; 0: no limit")
-      ->check(CLI::Range(0.0, 1e9))
+      ->check(numberBetween(0, 1e9))
       ->capture_default_str();
   app.add_option("--aov", aov, "Further layers: albedo,normal,position,depth,roughness or all");
   app.add_flag("--variance", variance, "Write each pixel's estimated variance as a layer");
@@ -137,6 +142,9 @@ Vec2i parseResolution(const std::string& text) {
   stream >> size.x >> times >> size.y;
   if (!stream || !stream.eof() || times != 'x' || size.x < 1 || size.y < 1)
     throw UsageError(fmt::format("--resolution: found \"{}\", expected WIDTHxHEIGHT, as in 640x360", text));
+  if (size.x > kMaxImageSide || size.y > kMaxImageSide)
+    throw UsageError(
+        fmt::format("--resolution: found {}, expected at most {} pixels a side", text, kMaxImageSide));
   return size;
 }
 

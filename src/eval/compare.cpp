@@ -62,9 +62,8 @@ class SceneRun {
     if (m_reference.pixels.empty()) return;
     const Crop& crop = m_scene->film().crop;
     if (m_reference.width != crop.width || m_reference.height != crop.height)
-      throw std::runtime_error(fmt::format("{}: is {} x {}, the image of {} is {} x {}", settings.reference,
-                                           m_reference.width, m_reference.height, m_name, crop.width,
-                                           crop.height));
+      throw ImageError(fmt::format("{}: is {} x {}, the image of {} is {} x {}", settings.reference,
+                                   m_reference.width, m_reference.height, m_name, crop.width, crop.height));
   }
 
   Measurement measure(const Method& method, uint64_t seed) {

@@ -1,21 +1,26 @@
 #include "eval/image_file.h"
 
 #include <array>
-#include <stdexcept>
 
 #include "render/image/write.h"
 
 namespace odis::eval {
 
 ColorImage readColor(const std::string& path) {
-  const render::ExrFile file = render::readExr(path);
+  const render::ExrFile file = [&] {
+    try {
+      return render::readExr(path);
+    } catch (const std::runtime_error& error) {
+      throw ImageError(error.what());
+    }
+  }();
   std::array<const std::vector<float>*, 3> channels{};
   const std::array<std::string, 3> names{"R", "G", "B"};
   for (size_t i = 0; i < names.size(); ++i) {
     auto found = file.channels.find(names[i]);
     if (found == file.channels.end()) found = file.channels.find("Y");
     if (found == file.channels.end())
-      throw std::runtime_error(path + ": no colour; expected channels R, G and B, or Y");
+      throw ImageError(path + ": no colour; expected channels R, G and B, or Y");
     channels[i] = &found->second;
   }
   ColorImage image{file.window.width, file.window.height, {}};

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <map>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -9,12 +10,18 @@
 
 namespace odis::eval {
 
+// An image that cannot be read, or not be used for what it was given for. what() says path and reason.
+class ImageError : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
 struct ColorImage {
   int width = 0, height = 0;
   std::vector<render::Rgb> pixels;
 };
 
-// Channels R, G and B of the layer without a name, else Y. Throws std::runtime_error with path and reason.
+// Channels R, G and B of the layer without a name, else Y. Throws ImageError.
 ColorImage readColor(const std::string& path);
 // Writes the colour alone. Throws std::runtime_error with path and reason.
 void writeColor(const std::string& path, const render::Frame2D& frame, int fullWidth, int fullHeight,

@@ -86,6 +86,11 @@ TEST_F(Odis, WrongUsageIsTwo) {
   expectFailure("render room.xml -o image.jpg", 2, "expected a name that ends in .exr or .png");
   expectFailure("render room.xml --replay 1,2", 2, "expected x,y,sample");
   expectFailure("render room.xml --replay 99,2,0", 2, "outside");
+  expectFailure("render room.xml --crop 10,0,4,4", 2, "expected one within the 12x8 pixels");
+  expectFailure("render room.xml --resolution 65537x2", 2, "at most 65536");
+  expectFailure("render room.xml --seed -1", 2, "--seed");
+  for (const char* option : {"--exposure", "--time-limit", "--alpha", "--map-floor", "--pilot-weight"})
+    expectFailure(std::string("render room.xml ") + option + " nan", 2, option);
   expectFailure("scene", 2, "subcommand");
   expectFailure("compare room.xml -o out --methods path", 2, "expected name=options");
   expectFailure("compare room.xml -o out --methods 'a=--guide-bounce 1'", 2, "Did you mean --guide-bounces?");
@@ -111,6 +116,10 @@ TEST_F(Odis, OutputThatCannotBeWrittenIsFour) {
   expectFailure("render room.xml -o nowhere/image.exr", 4, "no such folder");
   fs::create_directory(file("folder.exr"));
   expectFailure("render room.xml -o folder.exr", 4, "is a folder");
+  // Where nobody can write, root included; found out before rendering.
+  expectFailure("render room.xml -o /proc/image.exr", 4, "/proc/image.exr");
+  expectFailure("render room.xml --stats-json /proc/stats.json", 4, "/proc/stats.json");
+  EXPECT_FALSE(exists("room.exr"));
 }
 
 TEST_F(Odis, RendersWithMetadataAndStats) {
@@ -148,6 +157,10 @@ TEST_F(Odis, MetricsAndMontage) {
   EXPECT_EQ(nlohmann::json::parse(same.text).at("relMse"), 0.0);
   expectFailure("metrics a.exr b.exr", 3, "one size");
   expectFailure("metrics a.exr missing.exr", 3, "missing.exr");
+  expectFailure("metrics a.exr room.xml", 3, "room.xml");
+  expectFailure("montage room.xml -o both.png", 3, "room.xml");
+  expectFailure("compare room.xml -o out --reference room.xml", 3, "room.xml");
+  expectFailure("compare room.xml -o out --reference b.exr -q", 3, "is 6 x 4");
   EXPECT_EQ(run("montage a.exr b.exr -o both.png").code, 0);
   EXPECT_TRUE(exists("both.png"));
 }

@@ -211,6 +211,20 @@ TEST(EnvironmentMap, BlackAndSmallMapsAreSafe) {
   EXPECT_TRUE(samplesItsDensity(grey, options));
 }
 
+// Half of a white map is cut off sharply; what is left is sampled exactly and gives pi.
+TEST(EnvironmentMap, EndsAtItsHorizon) {
+  std::vector<Rgb> pixels(16 * 9, Rgb(0, 0, 0));
+  std::fill_n(pixels.begin(), 16 * 5, Rgb(1, 1, 1));  // row 4 of 0 to 8 is the horizon
+  const EnvironmentMap map(pixels, 16, 9, Matrix4(), 0.5f);
+  EXPECT_NEAR(map.radiance(normalize(Vec3(1, 1e-3f, 0))).x, 1, 1e-5f);
+  EXPECT_TRUE(isBlack(map.radiance(normalize(Vec3(1, -1e-3f, 0)))));
+  EXPECT_EQ(map.pdf(kOrigin, normalize(Vec3(1, -1e-3f, 0))), 0);
+  EXPECT_TRUE(samplesItsDensity(map));
+  expectConsistent(map);
+  const Estimate found = sampledIrradiance(map, {0, 1, 0}, 100000);
+  EXPECT_NEAR(found.mean, M_PI, 4 * found.deviation);
+}
+
 // A white map of radiance 1 in a scene of radius 2 sends pi 2^2 * 4 pi watts through it.
 TEST(EnvironmentMap, PowerIsThatOfTheConstantEnvironment) {
   EnvironmentMap map(std::vector<Rgb>(32 * 16, Rgb(1, 1, 1)), 32, 16, Matrix4());

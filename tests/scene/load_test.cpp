@@ -31,6 +31,8 @@ Loaded load(const std::string& body, const LoadOptions& options = {}) {
     result.error = error.what();
     const size_t place = result.error.find("scene.xml:");
     if (place != std::string::npos) result.error.erase(0, place);
+  } catch (const OptionError& error) {
+    result.error = error.what();
   }
   return result;
 }

@@ -32,6 +32,12 @@ class SceneError : public std::runtime_error {
       : std::runtime_error(at.file.empty() ? message : at.text() + ": " + message) {}
 };
 
+// A size or crop that the caller asks for and no image of the scene can have.
+class OptionError : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
 // Input that can still be drawn. Kept in the order of the file, each text once.
 class Warnings {
  public:

@@ -51,7 +51,8 @@ int loadSampleCount(const Properties* sampler, Warnings& warnings) {
   const int64_t count = sampler->integer("sample_count");
   if (count < 1 || count > std::numeric_limits<int>::max())
     throw SceneError(sampler->parameters.at("sample_count").location,
-                     "found " + std::to_string(count) + " for 'sample_count', expected 1 or more");
+                     "found " + std::to_string(count) + " for 'sample_count', expected 1 to " +
+                         std::to_string(std::numeric_limits<int>::max()));
   return int(count);
 }
 

@@ -21,15 +21,14 @@ int dimension(const Properties& node, const std::string& name, int fallback) {
   return int(value);
 }
 
-void checkCrop(const FilmSettings& film, int64_t x, int64_t y, int64_t width, int64_t height,
-               const SourceLocation& at) {
+// What is wrong with a crop; "" if nothing is.
+std::string cropFault(const FilmSettings& film, int64_t x, int64_t y, int64_t width, int64_t height) {
   if (x >= 0 && y >= 0 && width >= 1 && height >= 1 && width <= film.width && height <= film.height &&
       x <= film.width - width && y <= film.height - height)
-    return;
-  throw SceneError(at, "found a crop of " + std::to_string(width) + "x" + std::to_string(height) +
-                           " pixels at (" + std::to_string(x) + ", " + std::to_string(y) +
-                           "), expected one within the " + std::to_string(film.width) + "x" +
-                           std::to_string(film.height) + " pixels of the film");
+    return "";
+  return "found a crop of " + std::to_string(width) + "x" + std::to_string(height) + " pixels at (" +
+         std::to_string(x) + ", " + std::to_string(y) + "), expected one within the " +
+         std::to_string(film.width) + "x" + std::to_string(film.height) + " pixels of the film";
 }
 
 float positive(const Properties& node, const std::string& name, float fallback) {
@@ -74,21 +73,23 @@ FilmSettings loadFilm(const Properties* node, const LoadOptions& options, Warnin
   if (options.resolution) {
     const Vec2i size = *options.resolution;
     if (size.x < 1 || size.y < 1 || size.x > kMaxSize || size.y > kMaxSize)
-      throw SceneError({}, "found the resolution " + std::to_string(size.x) + "x" + std::to_string(size.y) +
-                               ", expected 1 to " + std::to_string(kMaxSize) + " pixels a side");
+      throw OptionError("found the resolution " + std::to_string(size.x) + "x" + std::to_string(size.y) +
+                        ", expected 1 to " + std::to_string(kMaxSize) + " pixels a side");
     result.width = size.x;
     result.height = size.y;
   }
   result.crop = {0, 0, result.width, result.height};
   if (options.crop) {
     const Crop& crop = *options.crop;
-    checkCrop(result, crop.x, crop.y, crop.width, crop.height, {});
+    const std::string fault = cropFault(result, crop.x, crop.y, crop.width, crop.height);
+    if (!fault.empty()) throw OptionError(fault);
     result.crop = crop;
   } else if (!options.resolution) {
     const int64_t x = film.integer("crop_offset_x", 0), y = film.integer("crop_offset_y", 0);
     const int64_t width = film.integer("crop_width", result.width),
                   height = film.integer("crop_height", result.height);
-    checkCrop(result, x, y, width, height, film.location);
+    const std::string fault = cropFault(result, x, y, width, height);
+    if (!fault.empty()) throw SceneError(film.location, fault);
     result.crop = {int(x), int(y), int(width), int(height)};
   }
   return result;

@@ -49,7 +49,7 @@ struct Instance {
 
 class Scene {
  public:
-  // Loads a Mitsuba XML file; throws SceneError.
+  // Loads a Mitsuba XML file; throws SceneError, and OptionError for options that do not suit it.
   static std::unique_ptr<Scene> load(const std::string& path, const LoadOptions& options, Warnings& warnings);
   Scene();
   ~Scene();
