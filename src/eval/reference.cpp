@@ -17,12 +17,20 @@ static constexpr uint64_t kReferenceSeed = 0x9e3779b97f4a7c15u;
 ColorImage cachedReference(const Scene& scene, const std::string& name, uint64_t sceneHash,
                            RenderOptions options, int spp, const std::string& folder, Progress& progress) {
   const FilmSettings& film = scene.film();
-  const std::string settings = fmt::format(
-      "scene {} size {}x{} crop {},{},{},{} depth {} roulette {} filter {} {} spp {}", hexText(sceneHash),
-      film.width, film.height, film.crop.x, film.crop.y, film.crop.width, film.crop.height, options.maxDepth,
-      options.rrDepth, film.filter->name(), film.filter->radius(), spp);
-  const std::string path = fmt::format("{}/{}-{}.exr", folder, name, hexText(hashText(settings)));
-  if (std::filesystem::exists(path)) return readColor(path);
+  const auto settingsAt = [&](int samples) {
+    return fmt::format("scene {} size {}x{} crop {},{},{},{} depth {} roulette {} filter {} {} spp {}",
+                       hexText(sceneHash), film.width, film.height, film.crop.x, film.crop.y, film.crop.width,
+                       film.crop.height, options.maxDepth, options.rrDepth, film.filter->name(),
+                       film.filter->radius(), samples);
+  };
+  const auto pathOf = [&](const std::string& settings) {
+    return fmt::format("{}/{}-{}.exr", folder, name, hexText(hashText(settings)));
+  };
+  // One with twice, four times, ... as many samples is as good.
+  for (int samples = spp; samples <= spp << 6 && samples > 0; samples *= 2)
+    if (const std::string path = pathOf(settingsAt(samples)); std::filesystem::exists(path))
+      return readColor(path);
+  const std::string settings = settingsAt(spp), path = pathOf(settings);
 
   options.integrator = IntegratorKind::path;
   options.sampler = SamplerKind::independent;

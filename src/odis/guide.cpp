@@ -84,6 +84,12 @@ void forEachCell(size_t count, const Body& body) {
   });
 }
 
+// Selection probabilities are made from about so many vertices: one pixel of `stride`, all of its path.
+constexpr size_t kSelectionVertices = 400000;
+bool isChosen(const PilotVertex& vertex, size_t stride) {
+  return ((vertex.pixel * 0x9e3779b9u) >> 8) % stride == 0;
+}
+
 // The sums of a cell's vertices, each judged by the map without its own sample.
 void sumCell(CellSelection& sums, std::span<const PilotVertex> vertices, std::span<const uint32_t> order,
              const CellStatistics& cell, const DirectionDistribution& distribution, const SamplingMap& map,
@@ -133,10 +139,12 @@ Guide GuideBuilder::build(std::span<const PilotVertex> vertices) const {
     return guide;
   }
 
-  // Predicted second moments and rays of each cell, then of the coarser levels.
+  // Predicted second moments and rays of each cell, then of the coarser levels. A part of the vertices is
+  // enough.
+  const size_t stride = std::max<size_t>(1, vertices.size() / kSelectionVertices);
   std::vector<uint32_t> cellOfVertex(vertices.size(), kNoCell);
   tbb::parallel_for(size_t(0), vertices.size(), [&](size_t i) {
-    if (vertices[i].discrete || isUsable(vertices[i]))
+    if (isChosen(vertices[i], stride) && (vertices[i].discrete || isUsable(vertices[i])))
       cellOfVertex[i] =
           guide.m_data->index.find(guide.m_data->grid.key(vertices[i].position, vertices[i].normal, 0));
   });
@@ -163,7 +171,7 @@ Guide GuideBuilder::build(std::span<const PilotVertex> vertices) const {
   // The image's variance and rays are those of the first vertices.
   SelectionTotals totals;
   for (const PilotVertex& v : vertices)
-    if (v.depth == 1) {
+    if (v.depth == 1 && isChosen(v, stride)) {
       const float emission = v.emission * (v.discrete ? 1.0f : powerHeuristic(v.pdf, v.emissionLightPdf));
       const float light = v.lightPdf > 0 ? v.light * powerHeuristic(v.lightPdf, v.lightBsdfPdf) : v.light;
       const double value = v.indirect + emission + light;
@@ -171,21 +179,25 @@ Guide GuideBuilder::build(std::span<const PilotVertex> vertices) const {
       totals.rays += v.raysAfter;
     }
 
+  // A cell's sums are backed by its parent's, those by the parent's parent's, and so on up to the whole
+  // image.
+  std::vector<CellSelection> backed(cells.size());
+  for (int level = kCellLevels - 1; level >= 0; --level)
+    for (size_t c = 0; c < cells.size(); ++c)
+      if (cells[c].level == level)
+        for (int m = 0; m < kMaterialClasses; ++m)
+          backed[c][m] = back(sums[c][m], cells[c].parent == kNoCell ? image[m] : backed[cells[c].parent][m]);
+
   // Choices, and the variance that they predict.
-  std::vector<double> saved(cells.size(), 0.0);
-  forEachCell(cells.size(), [&](size_t c) {
+  double saved = 0;
+  for (size_t c = 0; c < cells.size(); ++c)
     for (int m = 0; m < kMaterialClasses; ++m) {
-      const SelectionSums& prior = cells[c].parent == kNoCell ? image[m] : sums[cells[c].parent][m];
-      const float alpha = chooseAlpha(sums[c][m], prior, totals);
-      result[c].alpha[m] = alpha;
-      const size_t choice = size_t(std::find(kAlphas.begin(), kAlphas.end(), alpha) - kAlphas.begin());
-      if (cells[c].level == 0) saved[c] += sums[c][m].secondMoment[0] - sums[c][m].secondMoment[choice];
+      const size_t choice = chooseAlpha(backed[c][m], totals);
+      result[c].alpha[m] = kAlphas[choice];
+      if (cells[c].level == 0) saved += sums[c][m].secondMoment[0] - sums[c][m].secondMoment[choice];
     }
-  });
-  double total = 0;
-  for (const double s : saved) total += s;
   if (totals.variance > 0)
-    guide.m_data->predictedVarianceRatio = std::clamp(float(1 - total / totals.variance), 0.1f, 1.5f);
+    guide.m_data->predictedVarianceRatio = std::clamp(float(1 - saved / totals.variance), 0.1f, 1.5f);
   return guide;
 }
 

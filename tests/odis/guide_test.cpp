@@ -186,8 +186,8 @@ TEST(Selection, PrefersTheMapWhereItMatchesTheLight) {
   for (int i = 0; i < 100; ++i) addVertex(sums, v, 0.001f, 0);
   opposed = sums[0];
   const SelectionTotals totals{100 * 25, 1e9};  // rays don't matter here
-  EXPECT_LT(chooseAlpha(matched, {}, totals), 0.3f);
-  EXPECT_EQ(chooseAlpha(opposed, {}, totals), 1.0f);
+  EXPECT_LT(kAlphas[chooseAlpha(matched, totals)], 0.3f);
+  EXPECT_EQ(kAlphas[chooseAlpha(opposed, totals)], 1.0f);
 }
 
 TEST(Selection, SecondMomentOfTheMixtureIsPredicted) {

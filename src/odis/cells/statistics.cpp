@@ -115,20 +115,26 @@ uint32_t CellStore::insert(const PilotVertex& vertex) {
 void CellStore::add(std::span<const PilotVertex> vertices, int cellsPerDiagonal) {
   if (!m_placed) place(vertices, cellsPerDiagonal);
 
-  // Sort the vertices into cells. One thread numbers the cells, so their order is that of the vertices.
+  // Sort the vertices into cells. One thread numbers the new ones, so their order is that of the vertices.
   std::vector<uint32_t> cellOfVertex(vertices.size(), kNoCell);
+  std::vector<float> values(vertices.size(), 0.0f);
+  tbb::parallel_for(tbb::blocked_range<size_t>(0, vertices.size(), 4096), [&](const auto& range) {
+    for (size_t i = range.begin(); i < range.end(); ++i)
+      values[i] = isUsable(vertices[i]) ? sampleValue(vertices[i]) : -1;
+  });
   for (size_t i = 0; i < vertices.size(); ++i)
-    if (isUsable(vertices[i])) cellOfVertex[i] = insert(vertices[i]);
+    if (values[i] >= 0) cellOfVertex[i] = insert(vertices[i]);
   const CellOrder sorted = sortByCell(cellOfVertex, m_index.size());
 
   // Values are clamped to a multiple of the mean over the next coarser cell, so that no single path rules a
   // map.
   std::vector<double> parentSum(m_index.size(), 0.0), parentCount(m_index.size(), 0.0);
-  for (uint32_t cell = 0; cell < m_index.size(); ++cell)
-    for (uint32_t i = sorted.begin[cell]; i < sorted.begin[cell + 1]; ++i) {
-      parentSum[m_cells[cell].parent] += sampleValue(vertices[sorted.order[i]]);
-      parentCount[m_cells[cell].parent] += 1;
-    }
+  for (size_t i = 0; i < vertices.size(); ++i) {
+    if (cellOfVertex[i] == kNoCell) continue;
+    const uint32_t parent = m_cells[cellOfVertex[i]].parent;
+    parentSum[parent] += values[i];
+    parentCount[parent] += 1;
+  }
 
   tbb::parallel_for(
       tbb::blocked_range<uint32_t>(0, m_index.size(), 16), [&](const tbb::blocked_range<uint32_t>& range) {
@@ -144,7 +150,7 @@ void CellStore::add(std::span<const PilotVertex> vertices, int cellsPerDiagonal)
           const float limit = m_clamp * float(parentSum[cell.parent] / parentCount[cell.parent]);
           for (uint32_t i = begin; i < end; ++i) {
             const PilotVertex& vertex = vertices[sorted.order[i]];
-            const float value = std::min(sampleValue(vertex), limit);
+            const float value = std::min(values[sorted.order[i]], limit);
             cell.count += 1;
             cell.sum += value;
             cell.sumSquares += double(value) * value;

@@ -4,13 +4,17 @@ namespace odis {
 
 namespace {
 
-// How many samples' worth of the coarser level's sums stand behind a cell's own.
-constexpr double kPriorSamples = 200;
+// How many samples' worth of the coarser level's sums stand behind a cell's own. Second moments have heavy
+// tails: with fewer, cells take the extremes by chance.
+constexpr double kPriorSamples = 2000;
+// What a share of the image's rays is worth in shares of its variance. 1 is error times rays; less, because
+// the rays that are saved by steering paths out of the scene are those that would have carried something.
+constexpr double kCostWeight = 0.3;
 // A contribution counts at most this many times the pixel's value.
 constexpr float kContributionLimit = 50;
-// The default, kept unless another candidate is better by the margin (in units of the cell's own share).
-constexpr size_t kDefault = 4;
-constexpr double kMargin = 0.05;
+// A candidate must be predicted to save this share of what the cell costs without guiding: predictions are
+// made from few samples, and the best of several looks better than it is.
+constexpr double kMargin = 0.02;
 
 }  // namespace
 
@@ -43,15 +47,19 @@ void addVertex(CellSelection& sums, const PilotVertex& v, float mapPdf, float li
   }
 }
 
-float chooseAlpha(const SelectionSums& own, const SelectionSums& prior, const SelectionTotals& totals) {
+SelectionSums back(const SelectionSums& own, const SelectionSums& prior) {
   SelectionSums sums = own;
   if (prior.count > 0) sums.add(prior, std::min(1.0, kPriorSamples / prior.count));
-  if (!(sums.count > 0) || !(totals.variance > 0) || !(totals.rays > 0)) return kAlphas[kDefault];
+  return sums;
+}
+
+size_t chooseAlpha(const SelectionSums& sums, const SelectionTotals& totals) {
+  if (!(sums.count > 0) || !(totals.variance > 0) || !(totals.rays > 0)) return 0;
   std::array<double, kAlphas.size()> score;
   for (size_t a = 0; a < kAlphas.size(); ++a)
-    score[a] = sums.secondMoment[a] / totals.variance + sums.rays[a] / totals.rays;
+    score[a] = sums.secondMoment[a] / totals.variance + kCostWeight * sums.rays[a] / totals.rays;
   const size_t best = size_t(std::min_element(score.begin(), score.end()) - score.begin());
-  return kAlphas[score[best] < (1 - kMargin) * score[kDefault] ? best : kDefault];
+  return score[best] < (1 - kMargin) * score[0] ? best : 0;
 }
 
 }  // namespace odis

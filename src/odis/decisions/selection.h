@@ -12,7 +12,7 @@
 namespace odis {
 
 // The candidates; 1 means not to guide.
-inline constexpr std::array<float, 8> kAlphas = {1.0f, 0.9f, 0.75f, 0.6f, 0.5f, 0.35f, 0.25f, 0.15f};
+inline constexpr std::array<float, 6> kAlphas = {1.0f, 0.8f, 0.6f, 0.4f, 0.25f, 0.15f};
 
 // Sums over a cell's vertices of one class, for each candidate: the second moment of next-event estimate plus
 // direction, relative to the pixel, and the rays of what follows.
@@ -35,7 +35,10 @@ struct SelectionTotals {
   double rays = 0;
 };
 
-// The candidate with the least predicted variance + cost, for a cell whose own sums are backed by a prior's.
-float chooseAlpha(const SelectionSums& own, const SelectionSums& prior, const SelectionTotals& totals);
+// A cell's sums with those of a coarser one behind them, scaled to a fixed number of samples.
+SelectionSums back(const SelectionSums& own, const SelectionSums& prior);
+
+// The index of the candidate with the least predicted variance + cost.
+size_t chooseAlpha(const SelectionSums& sums, const SelectionTotals& totals);
 
 }  // namespace odis
