@@ -1,10 +1,13 @@
 // What the sub-commands share: how they are made, and how they end.
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <functional>
 #include <stdexcept>
 #include <string>
+
+namespace CLI {
+class App;
+}
 
 namespace odis::app {
 

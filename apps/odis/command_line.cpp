@@ -1,5 +1,6 @@
 // From the command line to a sub-command, from exceptions to exit codes.
 #include <fmt/format.h>
+#include <CLI/CLI.hpp>
 
 #include <cstdio>
 #include <new>

@@ -1,4 +1,5 @@
 // odis montage
+#include <CLI/CLI.hpp>
 #include <memory>
 #include <vector>
 

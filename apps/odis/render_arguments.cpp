@@ -1,6 +1,7 @@
 #include "render_arguments.h"
 
 #include <fmt/format.h>
+#include <CLI/CLI.hpp>
 
 #include <limits>
 #include <sstream>

@@ -1,12 +1,15 @@
 // The options of `odis render` that say how to render; `odis compare` takes them for each of its methods.
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "render/integrator/render.h"
+
+namespace CLI {
+class App;
+}
 
 namespace odis::app {
 

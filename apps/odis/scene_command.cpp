@@ -1,5 +1,6 @@
 // odis scene info
 #include <fmt/format.h>
+#include <CLI/CLI.hpp>
 
 #include <memory>
 

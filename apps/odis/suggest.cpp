@@ -1,5 +1,6 @@
 #include "suggest.h"
 
+#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <numeric>
 

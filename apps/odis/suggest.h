@@ -1,9 +1,12 @@
 // "Did you mean ...?" for what was mistyped.
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <string>
 #include <vector>
+
+namespace CLI {
+class App;
+}
 
 namespace odis::app {
 
