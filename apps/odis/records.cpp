@@ -23,14 +23,34 @@ struct Field {
 #define ODIS_TRIPLE(name) \
   { #name, "<f4", offsetof(PilotVertex, name), sizeof(PilotVertex::name), true }
 constexpr Field kFields[] = {
-    ODIS_TRIPLE(position), ODIS_TRIPLE(normal), ODIS_TRIPLE(wo), ODIS_TRIPLE(wi), ODIS_TRIPLE(radiance),
-    ODIS_TRIPLE(weight), ODIS_TRIPLE(direct), ODIS_FIELD(pdf, "<f4"), ODIS_FIELD(survival, "<f4"),
-    ODIS_FIELD(guidablePdf, "<f4"), ODIS_FIELD(guidableProbability, "<f4"), ODIS_FIELD(distance, "<f4"),
-    ODIS_FIELD(roughness, "<f4"), ODIS_FIELD(cosine, "<f4"), ODIS_FIELD(indirect, "<f4"), ODIS_FIELD(emission, "<f4"),
-    ODIS_FIELD(emissionLightPdf, "<f4"), ODIS_FIELD(light, "<f4"), ODIS_TRIPLE(lightDirection),
-    ODIS_FIELD(lightPdf, "<f4"), ODIS_FIELD(lightBsdfPdf, "<f4"), ODIS_FIELD(lightGuidablePdf, "<f4"),
-    ODIS_FIELD(raysAfter, "<f4"), ODIS_FIELD(sampleWeight, "<f4"), ODIS_FIELD(pixel, "<u4"), ODIS_FIELD(depth, "<u2"),
-    ODIS_FIELD(discrete, "|b1"), ODIS_FIELD(both, "|b1"),
+    ODIS_TRIPLE(position),
+    ODIS_TRIPLE(normal),
+    ODIS_TRIPLE(wo),
+    ODIS_TRIPLE(wi),
+    ODIS_TRIPLE(radiance),
+    ODIS_TRIPLE(weight),
+    ODIS_TRIPLE(direct),
+    ODIS_FIELD(pdf, "<f4"),
+    ODIS_FIELD(survival, "<f4"),
+    ODIS_FIELD(guidablePdf, "<f4"),
+    ODIS_FIELD(guidableProbability, "<f4"),
+    ODIS_FIELD(distance, "<f4"),
+    ODIS_FIELD(roughness, "<f4"),
+    ODIS_FIELD(cosine, "<f4"),
+    ODIS_FIELD(indirect, "<f4"),
+    ODIS_FIELD(emission, "<f4"),
+    ODIS_FIELD(emissionLightPdf, "<f4"),
+    ODIS_FIELD(light, "<f4"),
+    ODIS_TRIPLE(lightDirection),
+    ODIS_FIELD(lightPdf, "<f4"),
+    ODIS_FIELD(lightBsdfPdf, "<f4"),
+    ODIS_FIELD(lightGuidablePdf, "<f4"),
+    ODIS_FIELD(raysAfter, "<f4"),
+    ODIS_FIELD(sampleWeight, "<f4"),
+    ODIS_FIELD(pixel, "<u4"),
+    ODIS_FIELD(depth, "<u2"),
+    ODIS_FIELD(discrete, "|b1"),
+    ODIS_FIELD(both, "|b1"),
 };
 #undef ODIS_FIELD
 #undef ODIS_TRIPLE
@@ -65,7 +85,8 @@ void writeRecords(const std::string& path, const std::vector<PilotVertex>& verti
   const std::string text = header(vertices.size());
   const char size[2] = {char(text.size() & 0xff), char(text.size() >> 8)};
   file.write("\x93NUMPY\x01\x00", 8).write(size, 2) << text;
-  file.write(reinterpret_cast<const char*>(vertices.data()), std::streamsize(vertices.size() * sizeof(PilotVertex)));
+  file.write(reinterpret_cast<const char*>(vertices.data()),
+             std::streamsize(vertices.size() * sizeof(PilotVertex)));
   file.close();
   std::error_code failure;
   if (file) std::filesystem::rename(temporary, path, failure);

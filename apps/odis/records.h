@@ -8,8 +8,9 @@
 
 namespace odis::app {
 
-// Writes a NumPy structured array (.npy, version 1.0), one element a vertex with the fields of PilotVertex by name;
-// `numpy.load` opens it. Under a temporary name first, then renamed. Throws std::runtime_error with path and reason.
+// Writes a NumPy structured array (.npy, version 1.0), one element a vertex with the fields of PilotVertex by
+// name; `numpy.load` opens it. Under a temporary name first, then renamed. Throws std::runtime_error with
+// path and reason.
 void writeRecords(const std::string& path, const std::vector<PilotVertex>& vertices);
 
 }  // namespace odis::app

@@ -13,6 +13,11 @@ struct Kind {
   float fixedAlpha;
 };
 
+// What a failure prints.
+void PrintTo(const Kind& kind, std::ostream* out) {
+  *out << kind.name;
+}
+
 class AnalyticTest : public ::testing::TestWithParam<Kind> {
  protected:
   RenderOptions options(int spp) const {

@@ -54,6 +54,20 @@ TEST(ShapeSampling, SphereFromNearby) {
 TEST(ShapeSampling, SphereFromInside) {
   expectMatch(sphereOf({0, 0, 0}, 1), {0.3f, 0.2f, -0.4f});
 }
+TEST(ShapeSampling, SphereFromItself) {
+  // Points of a sphere, rounded to either side of it, see all of its inside: the squared distance to a
+  // uniform point is uniform in (0, 4 r^2).
+  const auto sphere = sphereOf({1, 2, 3}, 2);
+  Random random(7);
+  double sum = 0;
+  for (int i = 0; i < 10000; ++i) {
+    const Vec3 ref = sphere->sample({1, 2, 3}, random.pair()).at.p;
+    const ShapeSample sample = sphere->sample(ref, random.pair());
+    sum += double(sample.distance) * double(sample.distance);
+    EXPECT_NEAR(sample.pdf, sphere->pdf(ref, sample.at), 1e-3 * sample.pdf);
+  }
+  EXPECT_NEAR(sum / 10000, 8, 0.2);
+}
 TEST(ShapeSampling, Rectangle) {
   expectMatch(meshOf(rectangleMesh()), {0.5f, -0.2f, 0.7f});
 }

@@ -73,19 +73,22 @@ float Sphere::area() const {
   return float(4 * M_PI * m_radius * m_radius);
 }
 
-double Sphere::coneHeight(const Vec3d& toCenter) const {
+double Sphere::coneHeight(const Vec3& ref) const {
+  const Vec3d toCenter = m_center - Vec3d(ref);
+  // A point of the sphere itself, rounded to either side, must see all of the inside.
+  const double outside = m_radius + positionError(maxAbs(ref));
+  if (!(toCenter.dot(toCenter) > outside * outside)) return -1;
   const double sinSquared = m_radius * m_radius / toCenter.dot(toCenter);
-  if (!(sinSquared < 1)) return -1;
   return sinSquared / (1 + std::sqrt(1 - sinSquared));  // 1 - cos, without its cancellation
 }
 
 ShapeSample Sphere::sample(const Vec3& ref, const Vec2& u) const {
-  const Vec3d toCenter = m_center - Vec3d(ref);
-  const double height = coneHeight(toCenter);
+  const double height = coneHeight(ref);
   if (height < 0) return uniformAreaSample(ref, pointToward(Vec3d(squareToSphere(u))), area());
 
   // Draw a direction in the cone, and find where it enters the sphere: the angle at the centre follows from
   // the two sides of the triangle and the angle at the reference point.
+  const Vec3d toCenter = m_center - Vec3d(ref);
   const double distance = std::sqrt(toCenter.dot(toCenter));
   const double oneMinusCos = u.x * height, cosTheta = 1 - oneMinusCos;
   const double sinSquared = oneMinusCos * (2 - oneMinusCos);
@@ -106,7 +109,7 @@ ShapeSample Sphere::sample(const Vec3& ref, const Vec2& u) const {
 }
 
 float Sphere::pdf(const Vec3& ref, const SurfacePoint& at) const {
-  const double height = coneHeight(m_center - Vec3d(ref));
+  const double height = coneHeight(ref);
   return height < 0 ? uniformAreaPdf(ref, at, area()) : float(1 / (2 * M_PI * height));
 }
 

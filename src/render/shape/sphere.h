@@ -27,7 +27,7 @@ class Sphere final : public Shape {
 
  private:
   // 1 - cos of half the cone's angle; negative inside the sphere.
-  double coneHeight(const Vec3d& toCenter) const;
+  double coneHeight(const Vec3& ref) const;
   SurfacePoint pointToward(const Vec3d& unit) const;  // at center + radius * unit
 
   Vec3d m_center;
