@@ -11,6 +11,7 @@
 #include "command.h"
 #include "console.h"
 #include "eval/comparison_table.h"
+#include "eval/image_file.h"
 #include "output.h"
 #include "render_arguments.h"
 #include "validators.h"

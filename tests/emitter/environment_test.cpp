@@ -219,7 +219,9 @@ TEST(EnvironmentMap, EndsAtItsHorizon) {
   EXPECT_NEAR(map.radiance(normalize(Vec3(1, 1e-3f, 0))).x, 1, 1e-5f);
   EXPECT_TRUE(isBlack(map.radiance(normalize(Vec3(1, -1e-3f, 0)))));
   EXPECT_EQ(map.pdf(kOrigin, normalize(Vec3(1, -1e-3f, 0))), 0);
-  EXPECT_TRUE(samplesItsDensity(map));
+  Chi2Options options;
+  options.quadrature = 60;  // the density jumps within cells, and a cell's probability must be right all the same
+  EXPECT_TRUE(samplesItsDensity(map, options));
   expectConsistent(map);
   const Estimate found = sampledIrradiance(map, {0, 1, 0}, 100000);
   EXPECT_NEAR(found.mean, M_PI, 4 * found.deviation);
