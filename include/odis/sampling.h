@@ -20,6 +20,12 @@ inline int texelOf(const Float3& w) {
   return y * kMapSize + x;
 }
 
+// The direction of a texel's centre.
+inline Float3 texelDirection(int texel) {
+  const int x = texel % kMapSize, y = texel / kMapSize;
+  return squareToDirection({(float(x) + 0.5f) / kMapSize, (float(y) + 0.5f) / kMapSize});
+}
+
 // A cell's map: relative incident radiance in 16 bits, at least 1 so that no direction is impossible. 512
 // bytes.
 struct SamplingMap {

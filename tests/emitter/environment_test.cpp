@@ -220,7 +220,8 @@ TEST(EnvironmentMap, EndsAtItsHorizon) {
   EXPECT_TRUE(isBlack(map.radiance(normalize(Vec3(1, -1e-3f, 0)))));
   EXPECT_EQ(map.pdf(kOrigin, normalize(Vec3(1, -1e-3f, 0))), 0);
   Chi2Options options;
-  options.quadrature = 60;  // the density jumps within cells, and a cell's probability must be right all the same
+  options.quadrature =
+      60;  // the density jumps within cells, and a cell's probability must be right all the same
   EXPECT_TRUE(samplesItsDensity(map, options));
   expectConsistent(map);
   const Estimate found = sampledIrradiance(map, {0, 1, 0}, 100000);

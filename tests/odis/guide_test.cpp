@@ -76,9 +76,7 @@ TEST(Splat, WeightsAddUpAndSeamsWrap) {
     for (int k = 0; k < 4; ++k) {
       sum += s.weight[k];
       if (s.weight[k] == 0) continue;
-      const int t = s.texel[k];
-      const Float3 center =
-          squareToDirection({(t % kMapSize + 0.5f) / kMapSize, (t / kMapSize + 0.5f) / kMapSize});
+      const Float3 center = texelDirection(s.texel[k]);
       EXPECT_GT(dot(center, w), 0.85f)
           << "a texel far from the direction";  // no texel is wider than about 25 degrees
     }

@@ -2,14 +2,6 @@
 
 namespace odis {
 
-namespace {
-
-Float3 texelDirection(int texel) {
-  return squareToDirection({(texel % kMapSize + 0.5f) / kMapSize, (texel / kMapSize + 0.5f) / kMapSize});
-}
-
-}  // namespace
-
 DirectionDistribution HistogramModel::predict(const CellStatistics& cell,
                                               const DirectionDistribution* parent) const {
   DirectionDistribution result;

@@ -16,8 +16,7 @@ struct TexelDirections {
   alignas(64) float x[kMapTexels], y[kMapTexels], z[kMapTexels];
   TexelDirections() {
     for (int i = 0; i < kMapTexels; ++i) {
-      const Float3 w =
-          squareToDirection({(i % kMapSize + 0.5f) / kMapSize, (i / kMapSize + 0.5f) / kMapSize});
+      const Float3 w = texelDirection(i);
       x[i] = w.x;
       y[i] = w.y;
       z[i] = w.z;
