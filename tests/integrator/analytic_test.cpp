@@ -29,7 +29,7 @@ class AnalyticTest : public ::testing::TestWithParam<Kind> {
     o.spp = spp;
     return o;
   }
-  // The mean over the image within `sigmas` standard errors of what it must be.
+  // The mean over the image is what it must be, within a relative tolerance.
   static void expectMean(const RenderResult& result, double expected, double relativeTolerance) {
     double sum = 0;
     for (const Rgb& c : result.frame.color) sum += average(c);

@@ -162,7 +162,7 @@ TEST_F(UnbiasedTest, AdversarialMaps) {
   }
 }
 
-// The test itself must be able to fail: a third of a per cent of energy lost is found.
+// The test itself must be able to fail: three per cent of energy too much are found.
 TEST_F(UnbiasedTest, ABiasIsFound) {
   PixelStatistics biased = renderSeeds(*s_scene, guidedOptions(), 96, 1);
   for (Rgbd& c : biased.sum) c *= 1.03;

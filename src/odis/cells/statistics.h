@@ -40,8 +40,7 @@ class CellStore {
 
   // Sorts the vertices into cells and adds them up. The first call places the grid.
   void add(std::span<const PilotVertex> vertices, int cellsPerDiagonal);
-  // The cells with the coarser levels filled in; parents have larger indices than none of their children's
-  // order.
+  // The cells with the coarser levels filled in.
   std::vector<CellStatistics> rollUp() const;
 
   const CellGrid& grid() const { return m_grid; }
