@@ -12,8 +12,7 @@ class Blend final : public Bsdf {
  public:
   Blend(BsdfPtr first, BsdfPtr second, ScalarParameter weight)
       : m_nested{std::move(first), std::move(second)}, m_weight(std::move(weight)) {
-    const BsdfTraits &a = m_nested[0]->traits(), &b = m_nested[1]->traits();
-    m_traits = {a.evaluable || b.evaluable, a.transmissive || b.transmissive};
+    m_traits = m_nested[0]->traits() | m_nested[1]->traits();
   }
 
   BsdfSample sample(const SurfacePoint& at, const Vec3& wo, float uLobe, const Vec2& u) const override {

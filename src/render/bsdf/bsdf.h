@@ -53,7 +53,13 @@ struct BsdfFeatures {
 struct BsdfTraits {
   bool evaluable = true;      // has smooth or nearDelta lobes somewhere, so next-event estimation makes sense
   bool transmissive = false;  // may scatter to the other side (null included)
+  bool tangents = false;      // needs dpdu, dpdv and a shading frame along them; others take any frame
 };
+
+// Of a BSDF that passes its directions on to either of two.
+inline BsdfTraits operator|(const BsdfTraits& a, const BsdfTraits& b) {
+  return {a.evaluable || b.evaluable, a.transmissive || b.transmissive, a.tangents || b.tangents};
+}
 
 class Bsdf {
  public:

@@ -11,7 +11,8 @@ namespace {
 class Mask final : public Bsdf {
  public:
   Mask(BsdfPtr nested, ScalarParameter opacity) : m_nested(std::move(nested)), m_opacity(std::move(opacity)) {
-    m_traits = {m_nested->traits().evaluable, true};
+    m_traits = m_nested->traits();
+    m_traits.transmissive = true;
   }
 
   BsdfSample sample(const SurfacePoint& at, const Vec3& wo, float uLobe, const Vec2& u) const override {

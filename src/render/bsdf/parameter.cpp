@@ -52,6 +52,7 @@ RoughnessParameters readRoughness(const Properties& properties, Builder& builder
   if (alphaU) {
     result.alphaU = ScalarParameter(alphaU);
     result.alphaV = ScalarParameter(alphaV);
+    result.anisotropic = true;
   } else {
     result.alphaU = result.alphaV = alpha ? ScalarParameter(alpha) : ScalarParameter(0.1f);
   }

@@ -67,10 +67,12 @@ ComplexIor readComplexIor(const Properties& properties, Builder& builder);
 struct RoughnessParameters {
   Microfacet::Type type = Microfacet::Type::beckmann;
   ScalarParameter alphaU, alphaV;
+  bool anisotropic = false;
   bool sampleVisible = true;
 
   Microfacet operator()(const SurfacePoint& at) const {
-    return {type, alphaU(at), alphaV(at), sampleVisible};
+    const float alpha = alphaU(at);
+    return {type, alpha, anisotropic ? alphaV(at) : alpha, sampleVisible};
   }
 };
 RoughnessParameters readRoughness(const Properties& properties, Builder& builder);

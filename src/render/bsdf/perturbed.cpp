@@ -10,6 +10,7 @@ PerturbationOptions readPerturbation(const Properties& properties) {
 Perturbed::Perturbed(BsdfPtr nested, const PerturbationOptions& options)
     : m_nested(std::move(nested)), m_options(options) {
   m_traits = m_nested->traits();
+  m_traits.tangents = true;
 }
 
 Perturbed::Turned Perturbed::turn(const SurfacePoint& at, const Vec3& wo) const {

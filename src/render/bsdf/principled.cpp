@@ -38,6 +38,7 @@ class Principled final : public Bsdf {
  public:
   explicit Principled(PrincipledParameters parameters) : m_parameters(std::move(parameters)) {
     m_traits.transmissive = !m_parameters.specularTransmission.isZero();
+    m_traits.tangents = !m_parameters.anisotropic.isZero();
   }
 
   BsdfSample sample(const SurfacePoint& at, const Vec3& wo, float uLobe, const Vec2& u) const override {

@@ -15,7 +15,9 @@ namespace {
 class RoughConductor final : public Bsdf {
  public:
   RoughConductor(ComplexIor ior, RgbParameter specular, RoughnessParameters roughness)
-      : m_ior(std::move(ior)), m_specular(std::move(specular)), m_roughness(std::move(roughness)) {}
+      : m_ior(std::move(ior)), m_specular(std::move(specular)), m_roughness(std::move(roughness)) {
+    m_traits.tangents = m_roughness.anisotropic;
+  }
 
   BsdfSample sample(const SurfacePoint& at, const Vec3& wo, float, const Vec2& u) const override {
     if (!(wo.z > 0)) return {};

@@ -21,6 +21,7 @@ class RoughDielectric final : public Bsdf {
         m_roughness(std::move(roughness)),
         m_eta(eta) {
     m_traits.transmissive = true;
+    m_traits.tangents = m_roughness.anisotropic;
   }
 
   BsdfSample sample(const SurfacePoint& at, const Vec3& wo, float uLobe, const Vec2& u) const override {

@@ -10,8 +10,7 @@ namespace {
 class TwoSided final : public Bsdf {
  public:
   TwoSided(BsdfPtr front, BsdfPtr back) : m_front(std::move(front)), m_back(std::move(back)) {
-    const BsdfTraits &a = m_front->traits(), &b = m_back->traits();
-    m_traits = {a.evaluable || b.evaluable, a.transmissive || b.transmissive};
+    m_traits = m_front->traits() | m_back->traits();
   }
 
   BsdfSample sample(const SurfacePoint& at, const Vec3& wo, float uLobe, const Vec2& u) const override {

@@ -32,37 +32,69 @@ struct TileResult {
   RayCounts counts;
 };
 
-void renderPixel(const Pass& pass, uint32_t index, TileResult& tile) {
-  const Crop& crop = pass.path.scene->film().crop;
-  const Vec2i pixel(crop.x + int(index) % crop.width, crop.y + int(index) / crop.width);
-  const uint32_t pixelOfFullImage =
-      uint32_t(pixel.y) * uint32_t(pass.path.scene->film().width) + uint32_t(pixel.x);
-  const auto [first, count] = pass.samples(index);
-  for (uint32_t sample = first; sample < first + count; ++sample) {
-    Sampler sampler(pass.sampler, pass.seed, pixelOfFullImage, sample);
-    float filterWeight;
-    const Ray ray = cameraRay(*pass.path.scene, pixel, sampler, filterWeight);
-    FirstHit firstHit;
-    const size_t begin = tile.records.size();
-    const PathResult path =
-        tracePath(pass.path, ray, sampler, tile.counts, pass.records ? &tile.records : nullptr,
-                  pass.features ? &firstHit : nullptr);
-    for (size_t i = begin; i < tile.records.size(); ++i) {
-      tile.records[i].pixel = index;
-      tile.records[i].sampleWeight = filterWeight;
+// The pixels of a tile in blocks of 4 x 4, so that neighbours in the list are neighbours in the image.
+std::vector<uint32_t> pixelsOfTile(const Crop& crop, int x0, int y0) {
+  constexpr int kBlock = 4;
+  std::vector<uint32_t> pixels;
+  for (int i = 0; i < kTileSize * kTileSize; ++i) {
+    const int block = i / (kBlock * kBlock), within = i % (kBlock * kBlock);
+    const int x = x0 + block % (kTileSize / kBlock) * kBlock + within % kBlock;
+    const int y = y0 + block / (kTileSize / kBlock) * kBlock + within / kBlock;
+    if (x < crop.width && y < crop.height) pixels.push_back(uint32_t(y) * uint32_t(crop.width) + uint32_t(x));
+  }
+  return pixels;
+}
+
+// Adds what a path brought to its pixel.
+void deliver(const Pass& pass, Path& path, uint32_t pixel, float filterWeight, TileResult& tile) {
+  // A path that is not a number (a broken normal, an overflow) would spoil its pixel for good: it counts as
+  // black.
+  const Rgb value = isFinite(path.radiance) ? path.radiance * filterWeight : Rgb(0, 0, 0);
+  if (pass.image) {
+    PixelSums& sums = (*pass.image)[pixel];
+    const Rgbd v(value.x, value.y, value.z);
+    sums.sum += v;
+    sums.sumSquares += v * v;
+    ++sums.count;
+  }
+  if (pass.emitted) (*pass.emitted)[pixel] += path.emitted * filterWeight;
+  if (pass.features) accumulate((*pass.features)[pixel], path.first);
+  for (PilotVertex& vertex : path.vertices) {
+    vertex.pixel = pixel;
+    vertex.sampleWeight = filterWeight;
+  }
+  tile.records.insert(tile.records.end(), path.vertices.begin(), path.vertices.end());
+  tile.counts.rays += path.counts.rays;
+  tile.counts.shadowRays += path.counts.shadowRays;
+}
+
+// All samples of a tile, one of each pixel at a time. Returns how many they were.
+uint64_t renderTile(const Pass& pass, const PathSettings& settings, int x0, int y0, TileResult& tile) {
+  const FilmSettings& film = settings.scene->film();
+  const std::vector<uint32_t> pixels = pixelsOfTile(film.crop, x0, y0);
+  uint64_t done = 0;
+  std::vector<Path> paths;
+  std::vector<std::pair<uint32_t, float>> targets;  // pixel and weight of each path
+  for (uint32_t round = 0;; ++round) {
+    paths.clear();
+    targets.clear();
+    for (const uint32_t index : pixels) {
+      const auto [first, count] = pass.samples(index);
+      if (round >= count) continue;
+      const Vec2i pixel(film.crop.x + int(index) % film.crop.width,
+                        film.crop.y + int(index) / film.crop.width);
+      Sampler sampler(pass.sampler, pass.seed, uint32_t(pixel.y) * uint32_t(film.width) + uint32_t(pixel.x),
+                      first + round);
+      float filterWeight;
+      const Ray ray = cameraRay(*settings.scene, pixel, sampler, filterWeight);
+      paths.emplace_back(ray, sampler);
+      targets.emplace_back(index, filterWeight);
     }
-    // A path that is not a number (a broken normal, an overflow) would spoil its pixel for good: it counts as
-    // black.
-    const Rgb value = isFinite(path.radiance) ? path.radiance * filterWeight : Rgb(0, 0, 0);
-    if (pass.image) {
-      PixelSums& sums = (*pass.image)[index];
-      const Rgbd v(value.x, value.y, value.z);
-      sums.sum += v;
-      sums.sumSquares += v * v;
-      ++sums.count;
-    }
-    if (pass.emitted) (*pass.emitted)[index] += path.emitted * filterWeight;
-    if (pass.features) accumulate((*pass.features)[index], firstHit);
+    if (paths.empty()) return done;
+    tracePaths(settings, paths);
+    for (size_t i = 0; i < paths.size(); ++i)
+      deliver(pass, paths[i], targets[i].first, targets[i].second, tile);
+    done += paths.size();
   }
 }
 
@@ -79,21 +111,17 @@ RayCounts runPass(const Pass& pass, Progress& progress, const std::function<bool
   const int tilesX = (crop.width + kTileSize - 1) / kTileSize,
             tilesY = (crop.height + kTileSize - 1) / kTileSize;
   std::vector<TileResult> tiles(size_t(tilesX) * tilesY);
+  PathSettings settings = pass.path;
+  settings.records = pass.records != nullptr;
+  settings.features = pass.features != nullptr;
   tbb::parallel_for(
       tbb::blocked_range<size_t>(0, tiles.size(), 1),
       [&](const tbb::blocked_range<size_t>& range) {
         flushDenormals();
         for (size_t t = range.begin(); t < range.end(); ++t) {
           if (stop()) return;
-          const int x0 = int(t % tilesX) * kTileSize, y0 = int(t / tilesX) * kTileSize;
-          uint64_t done = 0;
-          for (int y = y0; y < std::min(y0 + kTileSize, crop.height); ++y)
-            for (int x = x0; x < std::min(x0 + kTileSize, crop.width); ++x) {
-              const uint32_t index = uint32_t(y) * uint32_t(crop.width) + uint32_t(x);
-              renderPixel(pass, index, tiles[t]);
-              done += pass.samples(index).second;
-            }
-          progress.advance(done);
+          progress.advance(renderTile(pass, settings, int(t % size_t(tilesX)) * kTileSize,
+                                      int(t / size_t(tilesX)) * kTileSize, tiles[t]));
         }
       },
       tbb::simple_partitioner());

@@ -1,19 +1,22 @@
 #include "render/integrator/path.h"
 
+#include <numeric>
+
 namespace odis::render {
 
 namespace {
 
-// Next-event estimation at a vertex.
+// Next-event estimation at a vertex, before it is known whether something hides the light.
 struct LightEstimate {
   Rgb radiance{0, 0, 0};  // outgoing, without MIS weight: f |cos| Le / pdf
-  Vec3 wiWorld{0, 0, 1};
-  float lightPdf = 0;  // 0 where MIS does not apply
+  Vec3 wi{0, 0, 1};       // world space
+  float distance = 0;     // to the light
+  float pdf = 0;          // 0 where MIS does not apply
   BsdfValue bsdf;
 };
 
 LightEstimate sampleLight(const PathSettings& settings, const SurfacePoint& at, const Vec3& wo,
-                          Sampler& sampler, RayCounts& counts) {
+                          Sampler& sampler) {
   LightEstimate result;
   float uChoice = sampler.get1D();
   const Vec2 u = sampler.get2D();
@@ -21,13 +24,12 @@ LightEstimate sampleLight(const PathSettings& settings, const SurfacePoint& at, 
   if (!choice.emitter) return result;
   const EmitterSample light = choice.emitter->sample(at.p, u);
   if (!(light.pdf > 0) || isBlack(light.radiance)) return result;
-  result.wiWorld = light.wi;
+  result.wi = light.wi;
+  result.distance = light.distance;
   result.bsdf = at.shape->bsdf().evaluate(at, wo, at.shading.toLocal(light.wi));
   if (isBlack(result.bsdf.value)) return result;
-  ++counts.shadowRays;
-  if (settings.scene->occluded(Scene::spawn(at, light.wi, light.distance))) return result;
   result.radiance = result.bsdf.value * light.radiance / (light.pdf * choice.probability);
-  result.lightPdf = light.delta ? 0 : light.pdf * choice.probability;
+  result.pdf = light.delta ? 0 : light.pdf * choice.probability;
   return result;
 }
 
@@ -98,161 +100,218 @@ void describe(FirstHit& first, const SurfacePoint& at, const Vec3& wo, float dis
   first = {true, at.p, at.shading.n * side, at.ng * side, features.albedo, distance, features.roughness};
 }
 
-// What each vertex must remember until the path is complete.
+// What each recorded vertex must remember until its path is complete.
 struct Pending {
-  Rgb weight;             // of the vertex: f |cos| / pdf / survival
-  Rgb throughput;         // up to the vertex, it excluded
-  Rgb emission{0, 0, 0};  // met by the vertex's direction, without MIS weight
+  Rgb weight{0, 0, 0};      // of the vertex: f |cos| / pdf / survival
+  Rgb throughput{0, 0, 0};  // up to the vertex, it excluded
+  Rgb emission{0, 0, 0};    // met by the vertex's direction, without MIS weight
   float emissionWeight = 0;
   uint64_t rays = 0;  // traced when the direction was sampled
 };
 
+// A shadow ray's errand: what to add to which path if nothing is in the way.
+struct Errand {
+  uint32_t path;
+  Rgb radiance;
+};
+
+// What the paths of a batch share while they are traced; kept from batch to batch for its memory.
+struct Batch {
+  std::vector<uint32_t> active;  // paths that have a ray to trace
+  std::vector<Ray> rays;         // theirs
+  std::vector<Hit> hits;         // what those met
+  std::vector<Errand> errands;
+  std::vector<Ray> shadowRays;
+  std::vector<uint8_t> hidden;
+  std::vector<std::vector<Pending>> pending;  // for each path
+};
+
+// Adds emission that the path's ray met, weighted against next-event estimation where that could have found
+// it too. `emitterPdf` is the density with which the emitter would have been sampled there.
+void addEmission(const PathSettings& settings, Path& path, std::vector<Pending>& pending, int depth,
+                 const Rgb& emission, const Emitter& emitter, float emitterPdf) {
+  if (isBlack(emission)) return;
+  const float lightPdf = path.bySampling ? emitterPdf * settings.lights->probability(emitter) : 0;
+  const float weight = path.bySampling ? powerHeuristic(path.directionPdf, lightPdf) : 1;
+  path.radiance += path.throughput * emission * weight;
+  if (depth == 1) path.emitted += emission;
+  if (!settings.records || depth == 1) return;
+  PilotVertex& v = path.vertices.back();
+  Pending& p = pending.back();
+  // Several environments may be met at once; the brightest decides what the selection probability is told.
+  if (luminance(emission) > luminance(p.emission)) v.emissionLightPdf = lightPdf;
+  p.emissionWeight = (luminance(p.emission) * p.emissionWeight + luminance(emission) * weight) /
+                     (luminance(p.emission) + luminance(emission));
+  p.emission += emission;
+}
+
+// The vertex as a record, but for what only the complete path knows.
+void record(Path& path, const SurfacePoint& at, const Vec3& wo, const BsdfSample& next, float survival,
+            const LightEstimate& light, const Rgb& direct, int depth) {
+  const Bsdf& bsdf = at.shape->bsdf();
+  PilotVertex& v = path.vertices.emplace_back();
+  v.position = toOdis(at.p);
+  v.normal = toOdis(wo.z < 0 ? -at.shading.n : at.shading.n);
+  v.wo = toOdis(-path.ray.direction);
+  v.wi = toOdis(at.shading.toWorld(next.wi));
+  v.direct = {direct.x, direct.y, direct.z};
+  v.pdf = next.pdf;
+  v.survival = survival;
+  v.guidablePdf = next.guidablePdf;
+  v.guidableProbability = bsdf.guidableProbability(at, wo);
+  v.distance = kInfinity;
+  v.roughness = bsdf.features(at, wo).roughness;
+  v.cosine = std::abs(next.wi.z);
+  v.light = luminance(path.throughput * light.radiance);
+  v.lightDirection = toOdis(light.wi);
+  v.lightPdf = light.pdf;
+  v.lightBsdfPdf = light.bsdf.pdf;
+  v.lightGuidablePdf = light.bsdf.guidablePdf;
+  v.depth = uint16_t(std::min(depth, 0xffff));
+  v.discrete = isDiscrete(next.lobe);
+  v.both = bsdf.traits().transmissive;
+}
+
+// Takes a path to its next vertex: emission, next-event estimation, direction, roulette. Says whether there
+// is a ray to go on with, which is then path.ray; what next-event estimation would add becomes an errand.
+bool extend(const PathSettings& settings, Path& path, uint32_t index, const Hit& hit, int depth,
+            Batch& batch) {
+  std::vector<Pending>& pending = batch.pending[index];
+  Sampler& sampler = path.sampler;
+  sampler.startVertex(depth);
+  ++path.counts.rays;
+
+  // A ray that leaves the scene meets the environment.
+  if (!hit.shape) {
+    for (const EnvironmentEmitter* environment : settings.scene->environments())
+      addEmission(settings, path, pending, depth, environment->radiance(path.ray.direction), *environment,
+                  path.bySampling ? environment->pdf(path.previous, path.ray.direction) : 0);
+    return false;
+  }
+
+  // Others meet a surface, which may emit.
+  const SurfacePoint at = hit.shape->surfacePoint(path.ray, hit.raw);
+  const float length = odis::render::length(at.p - path.ray.origin);
+  if (settings.records && depth > 1) path.vertices.back().distance = length;
+  if (const SurfaceEmitter* emitter = hit.shape->emitter())
+    addEmission(settings, path, pending, depth, emitter->radiance(at, -path.ray.direction), *emitter,
+                path.bySampling ? emitter->pdf(path.previous, at) : 0);
+  if (settings.maxDepth >= 0 && depth >= settings.maxDepth) return false;
+
+  const Bsdf& bsdf = hit.shape->bsdf();
+  const Vec3 wo = at.shading.toLocal(-path.ray.direction);
+  path.distance += length;
+  const VertexGuide guide(settings, depth, at, wo);
+
+  // Next-event estimation, weighted against the mixture that directions are sampled from.
+  LightEstimate light;
+  Rgb direct(0, 0, 0);
+  if (bsdf.traits().evaluable) {
+    light = sampleLight(settings, at, wo, sampler);
+    if (!isBlack(light.radiance)) {
+      const float mixed = light.pdf > 0 ? guide.pdf(light.bsdf.pdf, light.bsdf.guidablePdf, light.wi) : 0;
+      direct = light.radiance * (light.pdf > 0 ? powerHeuristic(light.pdf, mixed) : 1.0f);
+      ++path.counts.shadowRays;
+      batch.errands.push_back({index, path.throughput * direct});
+      batch.shadowRays.push_back(Scene::spawn(at, light.wi, light.distance));
+    }
+  }
+
+  // Sample where the path goes on.
+  BsdfSample next = guide.sample(at, wo, sampler);
+  if (!isFinite(next.weight)) next = {};
+  if (settings.features && !path.first.valid && !isDiscrete(next.lobe))
+    describe(path.first, at, wo, path.distance);
+
+  // Russian roulette by throughput, as Mitsuba plays it.
+  Rgb weight = next.weight;
+  const float eta = path.eta * next.eta;
+  const float uSurvival = sampler.get1D();
+  float survival = 1;
+  bool survives = next.lobe != Lobe::none && !isBlack(weight);
+  if (survives && depth >= settings.rrDepth) {
+    survival = std::min(maxComponent(path.throughput * weight) * sqr(eta), 0.95f);
+    survives = uSurvival < survival;
+    weight = survives ? weight / survival : Rgb(0, 0, 0);
+  }
+
+  if (settings.records) {
+    record(path, at, wo, next, survival, light, direct, depth);
+    pending.push_back({.weight = survives ? weight : Rgb(0, 0, 0),
+                       .throughput = path.throughput,
+                       .rays = path.counts.rays + path.counts.shadowRays});
+  }
+  if (!survives) return false;
+
+  path.throughput *= weight;
+  path.eta = eta;
+  path.bySampling = !isDiscrete(next.lobe);
+  path.directionPdf = next.pdf;
+  path.previous = at.p;
+  path.ray = Scene::spawn(at, at.shading.toWorld(next.wi));
+  return true;
+}
+
+// Runs the errands of this bounce: adds the light that nothing hides, and tells records of what is hidden.
+void addDirectLight(const PathSettings& settings, std::span<Path> paths, Batch& batch) {
+  batch.hidden.resize(batch.errands.size());
+  settings.scene->occluded(batch.shadowRays, batch.hidden);
+  for (size_t i = 0; i < batch.errands.size(); ++i) {
+    Path& path = paths[batch.errands[i].path];
+    if (!batch.hidden[i]) {
+      path.radiance += batch.errands[i].radiance;
+    } else if (settings.records) {
+      PilotVertex& v = path.vertices.back();
+      v.direct = {};
+      v.light = v.lightPdf = 0;
+    }
+  }
+  batch.errands.clear();
+  batch.shadowRays.clear();
+}
+
 // Fills what only the complete path knows: radiance from there on and the contributions to the pixel, from
 // the last vertex back to the first.
-void completeRecords(std::vector<PilotVertex>& vertices, size_t begin, const std::vector<Pending>& pending,
-                     uint64_t raysTotal) {
+void completeRecords(Path& path, const std::vector<Pending>& pending) {
   Rgb beyond(0, 0, 0);  // scattered towards this vertex by the next one
-  for (size_t i = vertices.size(); i-- > begin;) {
-    PilotVertex& v = vertices[i];
-    const Pending& p = pending[i - begin];
+  for (size_t i = path.vertices.size(); i-- > 0;) {
+    PilotVertex& v = path.vertices[i];
+    const Pending& p = pending[i];
     const Rgb arriving = p.emission * p.emissionWeight + beyond;
     v.radiance = {arriving.x, arriving.y, arriving.z};
     v.weight = {p.weight.x, p.weight.y, p.weight.z};
     v.indirect = luminance(p.throughput * p.weight * beyond);
     v.emission = luminance(p.throughput * p.weight * p.emission);
-    v.raysAfter = float(raysTotal - p.rays);
+    v.raysAfter = float(path.counts.rays + path.counts.shadowRays - p.rays);
     beyond = Rgb(v.direct.x, v.direct.y, v.direct.z) + p.weight * arriving;
   }
 }
 
 }  // namespace
 
-PathResult tracePath(const PathSettings& settings, Ray ray, Sampler& sampler, RayCounts& counts,
-                     std::vector<PilotVertex>* vertices, FirstHit* first) {
-  const Scene& scene = *settings.scene;
-  PathResult result;
-  Rgb throughput(1, 1, 1);
-  float eta = 1;            // product of the relative indices passed
-  bool bySampling = false;  // whether the ray's direction competes with next-event estimation
-  float directionPdf = 0;   // its density, if so
-  Vec3 previous;            // where it started
-  float distance = 0;       // from the camera
-  const size_t begin = vertices ? vertices->size() : 0;
-  thread_local std::vector<Pending> pending;
-  pending.clear();
+void tracePaths(const PathSettings& settings, std::span<Path> paths) {
+  thread_local Batch batch;
+  batch.active.resize(paths.size());
+  std::iota(batch.active.begin(), batch.active.end(), 0u);
+  batch.pending.resize(std::max(batch.pending.size(), paths.size()));
+  for (std::vector<Pending>& pending : batch.pending) pending.clear();
 
-  for (int depth = 1;; ++depth) {
-    sampler.startVertex(depth);
+  for (int depth = 1; !batch.active.empty(); ++depth) {
+    batch.rays.clear();
+    for (const uint32_t index : batch.active) batch.rays.push_back(paths[index].ray);
+    batch.hits.resize(batch.rays.size());
+    settings.scene->intersect(batch.rays, batch.hits);
 
-    // Find the next vertex.
-    SurfacePoint at;
-    ++counts.rays;
-    const bool hit = scene.intersect(ray, at);
-    if (vertices && depth > 1) vertices->back().distance = hit ? length(at.p - ray.origin) : kInfinity;
-
-    // Add the emission that the ray met, weighted against next-event estimation where that could have found
-    // it too.
-    const auto addEmission = [&](const Rgb& emission, const Emitter& emitter, float emitterPdf) {
-      if (isBlack(emission)) return;
-      const float lightPdf = bySampling ? emitterPdf * settings.lights->probability(emitter) : 0;
-      const float weight = bySampling ? powerHeuristic(directionPdf, lightPdf) : 1;
-      result.radiance += throughput * emission * weight;
-      if (depth == 1) result.emitted += emission;
-      if (vertices && depth > 1) {
-        PilotVertex& v = vertices->back();
-        Pending& p = pending.back();
-        // Several environments may be met at once; the brightest decides what the selection probability is
-        // told.
-        if (luminance(emission) > luminance(p.emission)) v.emissionLightPdf = lightPdf;
-        p.emissionWeight = (luminance(p.emission) * p.emissionWeight + luminance(emission) * weight) /
-                           (luminance(p.emission) + luminance(emission));
-        p.emission += emission;
-      }
-    };
-    if (!hit) {
-      for (const EnvironmentEmitter* environment : scene.environments())
-        addEmission(environment->radiance(ray.direction), *environment,
-                    bySampling ? environment->pdf(previous, ray.direction) : 0);
-      break;
+    size_t left = 0;
+    for (size_t i = 0; i < batch.active.size(); ++i) {
+      const uint32_t index = batch.active[i];
+      if (extend(settings, paths[index], index, batch.hits[i], depth, batch)) batch.active[left++] = index;
     }
-    if (const SurfaceEmitter* emitter = at.shape->emitter())
-      addEmission(emitter->radiance(at, -ray.direction), *emitter,
-                  bySampling ? emitter->pdf(previous, at) : 0);
-    if (settings.maxDepth >= 0 && depth >= settings.maxDepth) break;
-
-    const Bsdf& bsdf = at.shape->bsdf();
-    const Vec3 wo = at.shading.toLocal(-ray.direction);
-    distance += length(at.p - ray.origin);
-    const VertexGuide guide(settings, depth, at, wo);
-
-    // Next-event estimation, weighted against the mixture that directions are sampled from.
-    LightEstimate light;
-    Rgb direct(0, 0, 0);
-    if (bsdf.traits().evaluable) {
-      light = sampleLight(settings, at, wo, sampler, counts);
-      if (!isBlack(light.radiance)) {
-        const float mixed =
-            light.lightPdf > 0 ? guide.pdf(light.bsdf.pdf, light.bsdf.guidablePdf, light.wiWorld) : 0;
-        direct = light.radiance * (light.lightPdf > 0 ? powerHeuristic(light.lightPdf, mixed) : 1.0f);
-        result.radiance += throughput * direct;
-      }
-    }
-
-    // Sample where the path goes on.
-    BsdfSample next = guide.sample(at, wo, sampler);
-    if (!isFinite(next.weight)) next = {};
-    if (first && !first->valid && !isDiscrete(next.lobe)) describe(*first, at, wo, distance);
-
-    // Russian roulette by throughput, as Mitsuba plays it.
-    Rgb weight = next.weight;
-    const float etaAfter = eta * next.eta;
-    const float uSurvival = sampler.get1D();
-    float survival = 1;
-    bool survives = next.lobe != Lobe::none && !isBlack(weight);
-    if (survives && depth >= settings.rrDepth) {
-      survival = std::min(maxComponent(throughput * weight) * sqr(etaAfter), 0.95f);
-      survives = uSurvival < survival;
-      weight = survives ? weight / survival : Rgb(0, 0, 0);
-    }
-
-    // Record the vertex.
-    if (vertices) {
-      PilotVertex& v = vertices->emplace_back();
-      const Vec3 wiWorld = at.shading.toWorld(next.wi);
-      v.position = toOdis(at.p);
-      v.normal = toOdis(wo.z < 0 ? -at.shading.n : at.shading.n);
-      v.wo = toOdis(-ray.direction);
-      v.wi = toOdis(wiWorld);
-      v.direct = {direct.x, direct.y, direct.z};
-      v.pdf = next.pdf;
-      v.survival = survival;
-      v.guidablePdf = next.guidablePdf;
-      v.guidableProbability = bsdf.guidableProbability(at, wo);
-      v.distance = kInfinity;
-      v.roughness = bsdf.features(at, wo).roughness;
-      v.cosine = std::abs(next.wi.z);
-      v.light = luminance(throughput * light.radiance);
-      v.lightDirection = toOdis(light.wiWorld);
-      v.lightPdf = light.lightPdf;
-      v.lightBsdfPdf = light.bsdf.pdf;
-      v.lightGuidablePdf = light.bsdf.guidablePdf;
-      v.depth = uint16_t(std::min(depth, 0xffff));
-      v.discrete = isDiscrete(next.lobe);
-      v.both = bsdf.traits().transmissive;
-      pending.push_back(
-          {survives ? weight : Rgb(0, 0, 0), throughput, {0, 0, 0}, 0, counts.rays + counts.shadowRays});
-    }
-    if (!survives) break;
-
-    throughput *= weight;
-    eta = etaAfter;
-    bySampling = !isDiscrete(next.lobe);
-    directionPdf = next.pdf;
-    previous = at.p;
-    ray = Scene::spawn(at, at.shading.toWorld(next.wi));
+    batch.active.resize(left);
+    addDirectLight(settings, paths, batch);
   }
-  if (vertices) completeRecords(*vertices, begin, pending, counts.rays + counts.shadowRays);
-  return result;
+  if (settings.records)
+    for (size_t i = 0; i < paths.size(); ++i) completeRecords(paths[i], batch.pending[i]);
 }
 
 }  // namespace odis::render

@@ -1,9 +1,10 @@
-// One path: the same tracer for the reference, the pilot and the guided passes.
+// Paths: the same tracer for the reference, the pilot and the guided passes.
 #pragma once
 
 #include <odis/guide.h>
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "render/emitter/light_sampler.h"
@@ -20,6 +21,8 @@ struct PathSettings {
   int rrDepth = 5;
   const Guide* guide = nullptr;  // null: BSDF sampling only
   int guideBounces = -1;         // -1: all
+  bool records = false;          // fill Path::vertices
+  bool features = false;         // fill Path::first
 };
 
 // Features at the first vertex whose sampled lobe is not discrete.
@@ -35,16 +38,33 @@ struct RayCounts {
   uint64_t rays = 0, shadowRays = 0;
 };
 
-struct PathResult {
+// A path: a ray and random numbers go in, what it gathered comes out.
+struct Path {
+  Path(const Ray& cameraRay, const Sampler& numbers) : ray(cameraRay), sampler(numbers) {}
+
+  Ray ray;
+  Sampler sampler;
+
   Rgb radiance{0, 0, 0};
   Rgb emitted{0, 0, 0};  // the part of it that the camera ray met directly
+  FirstHit first;        // if asked for
+  RayCounts counts;
+  // If asked for, a record of each vertex. Fields for the selection probability are in units of radiance:
+  // whoever knows the pixel divides by its value.
+  std::vector<PilotVertex> vertices;
+
+  // How things stand while it is traced.
+  Rgb throughput{1, 1, 1};
+  float eta = 1;            // product of the relative indices passed
+  bool bySampling = false;  // whether the ray's direction competes with next-event estimation
+  float directionPdf = 0;   // its density, if so
+  Vec3 previous;            // where the ray started
+  float distance = 0;       // from the camera to there
 };
 
-// Traces the path that starts with `ray`. If `vertices` is given, appends a record for each vertex (fields
-// for the selection probability in units of radiance: whoever knows the pixel divides by its value). If
-// `first` is given, fills the features.
-PathResult tracePath(const PathSettings& settings, Ray ray, Sampler& sampler, RayCounts& counts,
-                     std::vector<PilotVertex>* vertices = nullptr, FirstHit* first = nullptr);
+// Traces all paths side by side, a bounce of each before the next bounce of any, so that rays reach the
+// intersector many at once. What a path gathers does not depend on its neighbours.
+void tracePaths(const PathSettings& settings, std::span<Path> paths);
 
 inline Float3 toOdis(const Vec3& v) {
   return {v.x, v.y, v.z};

@@ -57,7 +57,7 @@ class Renderer {
   }
 
   // Everything up to the guided passes, then one path.
-  std::vector<PilotVertex> trace(Vec2i pixel, uint32_t sample, PathResult& result) {
+  Path trace(Vec2i pixel, uint32_t sample) {
     const Crop& crop = m_scene.film().crop;
     const uint32_t index = uint32_t(pixel.y - crop.y) * uint32_t(crop.width) + uint32_t(pixel.x - crop.x);
     PathSettings settings = pathSettings();
@@ -70,10 +70,10 @@ class Renderer {
                     uint32_t(pixel.y) * uint32_t(m_scene.film().width) + uint32_t(pixel.x), sample);
     float filterWeight;
     const Ray ray = cameraRay(m_scene, pixel, sampler, filterWeight);
-    std::vector<PilotVertex> vertices;
-    RayCounts counts;
-    result = tracePath(settings, ray, sampler, counts, &vertices);
-    return vertices;
+    settings.records = true;
+    Path path(ray, sampler);
+    tracePaths(settings, std::span(&path, 1));
+    return path;
   }
 
  private:
@@ -323,12 +323,10 @@ RenderResult render(const Scene& scene, const RenderOptions& options, Progress& 
 std::string replay(const Scene& scene, const RenderOptions& options, Vec2i pixel, int sample) {
   const tbb::global_control limit = limitThreads(options.threads);
   Progress quiet;
-  PathResult path;
-  const std::vector<PilotVertex> vertices =
-      Renderer(scene, options, quiet).trace(pixel, uint32_t(sample), path);
+  const Path path = Renderer(scene, options, quiet).trace(pixel, uint32_t(sample));
   std::string text = fmt::format("pixel {},{} sample {}: radiance {:.6g} {:.6g} {:.6g}\n", pixel.x, pixel.y,
                                  sample, path.radiance.x, path.radiance.y, path.radiance.z);
-  for (const PilotVertex& v : vertices)
+  for (const PilotVertex& v : path.vertices)
     text += fmt::format(
         "  vertex {}: p ({:.5g} {:.5g} {:.5g}) n ({:.3f} {:.3f} {:.3f}) wi ({:.3f} {:.3f} {:.3f}){} pdf "
         "{:.4g} weight "

@@ -29,6 +29,28 @@ RTCRay embreeRay(const Ray& ray) {
   return result;
 }
 
+constexpr size_t kPacket = 16;
+
+// Puts the first rays into a packet and says how many they are.
+size_t fillPacket(RTCRay16& packet, int* valid, std::span<const Ray> rays) {
+  const size_t count = std::min(rays.size(), kPacket);
+  for (size_t i = 0; i < kPacket; ++i) valid[i] = i < count ? -1 : 0;
+  for (size_t i = 0; i < count; ++i) {
+    const Ray& ray = rays[i];
+    packet.org_x[i] = ray.origin.x;
+    packet.org_y[i] = ray.origin.y;
+    packet.org_z[i] = ray.origin.z;
+    packet.dir_x[i] = ray.direction.x;
+    packet.dir_y[i] = ray.direction.y;
+    packet.dir_z[i] = ray.direction.z;
+    packet.tnear[i] = packet.time[i] = 0;
+    packet.tfar[i] = ray.tMax;
+    packet.mask[i] = ~0u;
+    packet.flags[i] = 0;
+  }
+  return count;
+}
+
 }  // namespace
 
 Intersector::Intersector(const std::vector<ShapePtr>& shapes, const std::vector<Instance>& instances) {
@@ -75,7 +97,7 @@ void Intersector::release() {
 
 RTCSceneTy* Intersector::makeScene(const std::vector<ShapePtr>& shapes, ShapeArray& array) {
   RTCScene scene = rtcNewScene(m_device);
-  rtcSetSceneFlags(scene, RTC_SCENE_FLAG_ROBUST);
+  rtcSetSceneBuildQuality(scene, RTC_BUILD_QUALITY_HIGH);
   for (const ShapePtr& shape : shapes) {
     RTCGeometry geometry = shape->makeGeometry(m_device);
     rtcAttachGeometryByID(scene, geometry, unsigned(array.size()));
@@ -91,20 +113,45 @@ bool Intersector::intersect(const Ray& ray, SurfacePoint& at) const {
   rayHit.hit.geomID = rayHit.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
   embreeIntersect(m_scene, rayHit);
   const RTCHit& found = rayHit.hit;
-  if (found.geomID == RTC_INVALID_GEOMETRY_ID) return false;
-
-  RawHit hit{rayHit.ray.tfar, found.u, found.v, found.primID, nullptr, nullptr};
-  const Shape* shape;
-  if (found.instID[0] == RTC_INVALID_GEOMETRY_ID) {
-    shape = m_shapes[found.geomID];
-  } else {
-    const Placement& placement = m_placements[found.instID[0] - m_shapes.size()];
-    shape = (*placement.shapes)[found.geomID];
-    hit.instanceToWorld = &placement.toWorld;
-    hit.worldToInstance = &placement.toInstance;
-  }
-  at = shape->surfacePoint(ray, hit);
+  const Hit hit = resolve(found.geomID, found.instID[0],
+                          {rayHit.ray.tfar, found.u, found.v, found.primID, nullptr, nullptr});
+  if (!hit.shape) return false;
+  at = hit.shape->surfacePoint(ray, hit.raw);
   return true;
+}
+
+Hit Intersector::resolve(unsigned geometry, unsigned instance, const RawHit& raw) const {
+  if (geometry == RTC_INVALID_GEOMETRY_ID) return {};
+  if (instance == RTC_INVALID_GEOMETRY_ID) return {m_shapes[geometry], raw};
+  const Placement& placement = m_placements[instance - m_shapes.size()];
+  Hit hit{(*placement.shapes)[geometry], raw};
+  hit.raw.instanceToWorld = &placement.toWorld;
+  hit.raw.worldToInstance = &placement.toInstance;
+  return hit;
+}
+
+void Intersector::intersect(std::span<const Ray> rays, std::span<Hit> hits) const {
+  alignas(64) int valid[kPacket];
+  RTCRayHit16 packet;
+  for (size_t first = 0; first < rays.size(); first += kPacket) {
+    const size_t count = fillPacket(packet.ray, valid, rays.subspan(first));
+    for (size_t i = 0; i < kPacket; ++i)
+      packet.hit.geomID[i] = packet.hit.instID[0][i] = RTC_INVALID_GEOMETRY_ID;
+    embreeIntersect(m_scene, valid, packet);
+    for (size_t i = 0; i < count; ++i)
+      hits[first + i] = resolve(packet.hit.geomID[i], packet.hit.instID[0][i],
+                                {packet.ray.tfar[i], packet.hit.u[i], packet.hit.v[i], packet.hit.primID[i]});
+  }
+}
+
+void Intersector::occluded(std::span<const Ray> rays, std::span<uint8_t> hidden) const {
+  alignas(64) int valid[kPacket];
+  RTCRay16 packet;
+  for (size_t first = 0; first < rays.size(); first += kPacket) {
+    const size_t count = fillPacket(packet, valid, rays.subspan(first));
+    embreeOccluded(m_scene, valid, packet);
+    for (size_t i = 0; i < count; ++i) hidden[first + i] = packet.tfar[i] < 0;
+  }
 }
 
 bool Intersector::occluded(const Ray& ray) const {

@@ -21,6 +21,9 @@ class Intersector {
 
   bool intersect(const Ray& ray, SurfacePoint& at) const;
   bool occluded(const Ray& ray) const;
+  // Many rays at once, in packets: faster the more neighbours resemble each other, and never slower by much.
+  void intersect(std::span<const Ray> rays, std::span<Hit> hits) const;
+  void occluded(std::span<const Ray> rays, std::span<uint8_t> hidden) const;
   // The box around everything; false if there is nothing.
   bool box(Vec3& min, Vec3& max) const;
   uint64_t bytes() const { return m_bytes.load(); }  // what Embree allocated
@@ -32,6 +35,7 @@ class Intersector {
     const ShapeArray* shapes;
   };
 
+  Hit resolve(unsigned geometry, unsigned instance, const RawHit& hit) const;
   RTCSceneTy* makeScene(const std::vector<ShapePtr>& shapes, ShapeArray& array);
   void release();
 

@@ -43,6 +43,14 @@ bool Scene::occluded(const Ray& ray) const {
   return m_intersector->occluded(ray);
 }
 
+void Scene::intersect(std::span<const Ray> rays, std::span<Hit> hits) const {
+  m_intersector->intersect(rays, hits);
+}
+
+void Scene::occluded(std::span<const Ray> rays, std::span<uint8_t> hidden) const {
+  m_intersector->occluded(rays, hidden);
+}
+
 Ray Scene::spawn(const SurfacePoint& at, const Vec3& direction, float distance) {
   // Leave the surface by more than the position may be wrong, to the side that the direction points to.
   const float error = std::max(at.pError, positionError(maxAbs(at.p)));

@@ -4,6 +4,7 @@
 #include <map>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -58,6 +59,10 @@ class Scene {
   bool intersect(const Ray& ray, SurfacePoint& at) const;
   // Whether anything lies within (0, ray.tMax). Thread-safe.
   bool occluded(const Ray& ray) const;
+  // The same for many rays at once; shape null where a ray met nothing. hit.shape->surfacePoint(ray, hit.raw)
+  // gives the place.
+  void intersect(std::span<const Ray> rays, std::span<Hit> hits) const;
+  void occluded(std::span<const Ray> rays, std::span<uint8_t> hidden) const;
 
   // A ray that leaves `at` and does not meet the surface again at its start.
   static Ray spawn(const SurfacePoint& at, const Vec3& direction, float distance = kInfinity);

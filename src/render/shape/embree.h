@@ -19,6 +19,26 @@ inline void embreeIntersect(RTCScene scene, RTCRayHit& rayHit) {
 #endif
 }
 
+inline void embreeIntersect(RTCScene scene, const int* valid, RTCRayHit16& rayHits) {
+#if ODIS_EMBREE_MAJOR >= 4
+  rtcIntersect16(valid, scene, &rayHits);
+#else
+  RTCIntersectContext context;
+  rtcInitIntersectContext(&context);
+  rtcIntersect16(valid, scene, &context, &rayHits);
+#endif
+}
+
+inline void embreeOccluded(RTCScene scene, const int* valid, RTCRay16& rays) {
+#if ODIS_EMBREE_MAJOR >= 4
+  rtcOccluded16(valid, scene, &rays);
+#else
+  RTCIntersectContext context;
+  rtcInitIntersectContext(&context);
+  rtcOccluded16(valid, scene, &context, &rays);
+#endif
+}
+
 inline void embreeOccluded(RTCScene scene, RTCRay& ray) {
 #if ODIS_EMBREE_MAJOR >= 4
   rtcOccluded1(scene, &ray);

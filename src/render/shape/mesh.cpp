@@ -19,6 +19,16 @@ Vec3d areaVector(const Vec3& a, const Vec3& b, const Vec3& c) {
   return (Vec3d(b) - base).cross(Vec3d(c) - base);
 }
 
+// The unit normal of a triangle: in single precision unless it is a sliver, whose cross product would be
+// lost.
+Vec3 faceNormal(const Vec3& a, const Vec3& b, const Vec3& c) {
+  const Vec3 e1 = b - a, e2 = c - a, normal = cross(e1, e2);
+  const float squared = lengthSquared(normal);
+  if (squared > 1e-4f * lengthSquared(e1) * lengthSquared(e2) && squared > 1e-20f && squared < 1e20f)
+    return normal * (1 / std::sqrt(squared));
+  return normalizeOr(areaVector(a, b, c), {0, 0, 1});
+}
+
 void dropNonFinite(MeshData& data, const SourceLocation& at, Warnings& warnings) {
   const auto broken = [&](const Triangle& t) {
     return !isFinite(data.positions[t[0]]) || !isFinite(data.positions[t[1]]) ||
@@ -81,17 +91,22 @@ Mesh::Mesh(MeshData data, const MeshOptions& options) : m_flipFaceNormals(option
   // A normal that has no direction stays zero: the triangle's own takes its place.
   for (Vec3& n : data.normals) n = normalizeOr(Vec3d(n), {0, 0, 0}) * (options.flipNormals ? -1.0f : 1.0f);
 
-  m_positions = std::move(data.positions);
-  m_positions.emplace_back(0.0f);
-  m_normals = std::move(data.normals);
-  m_uvs = std::move(data.uvs);
+  m_hasNormals = !data.normals.empty();
+  m_hasUvs = !data.uvs.empty();
+  m_vertices.resize(data.positions.size());
+  for (size_t i = 0; i < m_vertices.size(); ++i) {
+    m_vertices[i].position = data.positions[i];
+    if (m_hasNormals) m_vertices[i].normal = data.normals[i];
+    if (m_hasUvs) m_vertices[i].uv = data.uvs[i];
+  }
   m_triangles = std::move(data.triangles);
 
   double sum = 0;
   std::vector<double> sums;
   sums.reserve(m_triangles.size());
   for (const Triangle& t : m_triangles) {
-    const Vec3d normal = areaVector(m_positions[t[0]], m_positions[t[1]], m_positions[t[2]]);
+    const Vec3d normal =
+        areaVector(m_vertices[t[0]].position, m_vertices[t[1]].position, m_vertices[t[2]].position);
     sums.push_back(sum += 0.5 * std::sqrt(normal.dot(normal)));
   }
   m_area = float(sum);
@@ -102,8 +117,8 @@ Mesh::Mesh(MeshData data, const MeshOptions& options) : m_flipFaceNormals(option
 
 RTCGeometryTy* Mesh::makeGeometry(RTCDeviceTy* device) const {
   RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
-  rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, m_positions.data(), 0,
-                             sizeof(Vec3), m_positions.size() - 1);
+  rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, m_vertices.data(),
+                             offsetof(Vertex, position), sizeof(Vertex), m_vertices.size());
   rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, m_triangles.data(), 0,
                              sizeof(Triangle), m_triangles.size());
   rtcCommitGeometry(geometry);
@@ -118,27 +133,37 @@ SurfacePoint Mesh::surfacePoint(const Ray&, const RawHit& hit) const {
 
 SurfacePoint Mesh::pointOn(uint32_t triangle, const Vec2& barycentric) const {
   const Triangle& t = m_triangles[triangle];
-  const Vec3 &p0 = m_positions[t[0]], &p1 = m_positions[t[1]], &p2 = m_positions[t[2]];
+  const Vertex &v0 = m_vertices[t[0]], &v1 = m_vertices[t[1]], &v2 = m_vertices[t[2]];
   const float b1 = barycentric.x, b2 = barycentric.y, b0 = 1 - b1 - b2;
-  const Vec3 e1 = p1 - p0, e2 = p2 - p0;
 
   SurfacePoint at;
   at.shape = this;
   at.primitive = triangle;
   at.barycentric = barycentric;
-  at.p = p0 * b0 + p1 * b1 + p2 * b2;
-  at.pError = positionError(std::max({maxAbs(p0), maxAbs(p1), maxAbs(p2)}));
-  at.ng = normalizeOr(areaVector(p0, p1, p2), {0, 0, 1});
+  const Vec3 p0 = v0.position * b0, p1 = v1.position * b1, p2 = v2.position * b2;
+  at.p = p0 + p1 + p2;
+  at.pError = positionError(maxAbs(p0) + maxAbs(p1) + maxAbs(p2));
+  at.ng = faceNormal(v0.position, v1.position, v2.position);
   if (m_flipFaceNormals) at.ng = -at.ng;
+  at.uv = m_hasUvs ? v0.uv * b0 + v1.uv * b1 + v2.uv * b2 : barycentric;
 
-  if (m_uvs.empty()) {
-    at.uv = barycentric;
-    at.dpdu = e1;
-    at.dpdv = e2;
-  } else {
-    const Vec2 &uv0 = m_uvs[t[0]], &uv1 = m_uvs[t[1]], &uv2 = m_uvs[t[2]];
-    at.uv = uv0 * b0 + uv1 * b1 + uv2 * b2;
-    const Vec2 d1 = uv1 - uv0, d2 = uv2 - uv0;
+  Vec3 n = at.ng;
+  if (m_hasNormals) {
+    n = normalizeOr(v0.normal * b0 + v1.normal * b1 + v2.normal * b2, at.ng);
+    if (dot(n, at.ng) < 0) at.ng = -at.ng;
+  }
+  at.shading = Frame(n);
+  if (tangents()) findTangents(at, t);
+  return at;
+}
+
+void Mesh::findTangents(SurfacePoint& at, const Triangle& t) const {
+  const Vertex &v0 = m_vertices[t[0]], &v1 = m_vertices[t[1]], &v2 = m_vertices[t[2]];
+  const Vec3 e1 = v1.position - v0.position, e2 = v2.position - v0.position;
+  at.dpdu = e1;
+  at.dpdv = e2;
+  if (m_hasUvs) {
+    const Vec2 d1 = v1.uv - v0.uv, d2 = v2.uv - v0.uv;
     // In double precision the products are exact, so coordinates without area are found out.
     const auto inverse = float(1 / (double(d1.x) * d2.y - double(d1.y) * d2.x));
     if (std::isfinite(inverse)) {
@@ -150,14 +175,7 @@ SurfacePoint Mesh::pointOn(uint32_t triangle, const Vec2& barycentric) const {
       at.dpdv = frame.t;
     }
   }
-
-  Vec3 n = at.ng;
-  if (!m_normals.empty()) {
-    n = normalizeOr(Vec3d(m_normals[t[0]] * b0 + m_normals[t[1]] * b1 + m_normals[t[2]] * b2), at.ng);
-    if (dot(n, at.ng) < 0) at.ng = -at.ng;
-  }
-  at.shading = Frame::fromTangent(n, at.dpdu);
-  return at;
+  at.shading = Frame::fromTangent(at.shading.n, at.dpdu);
 }
 
 ShapeSample Mesh::sample(const Vec3& ref, const Vec2& u) const {
@@ -174,8 +192,7 @@ float Mesh::pdf(const Vec3& ref, const SurfacePoint& at) const {
 }
 
 uint64_t Mesh::bytes() const {
-  return m_positions.capacity() * sizeof(Vec3) + m_normals.capacity() * sizeof(Vec3) +
-         m_uvs.capacity() * sizeof(Vec2) + m_triangles.capacity() * sizeof(Triangle) +
+  return m_vertices.capacity() * sizeof(Vertex) + m_triangles.capacity() * sizeof(Triangle) +
          m_cdf.capacity() * sizeof(float);
 }
 

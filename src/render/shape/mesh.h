@@ -41,17 +41,25 @@ class Mesh final : public Shape {
   uint64_t primitiveCount() const override { return m_triangles.size(); }
   uint64_t bytes() const override;
 
-  // The point with barycentric coordinates (b1, b2) on a triangle, in the space of the mesh.
+  // The point with barycentric coordinates (b1, b2) on a triangle, in the space of the mesh. dpdu
+  // and dpdv stay zero, and the shading frame is any about its normal, if the BSDF does not ask for more.
   SurfacePoint pointOn(uint32_t triangle, const Vec2& barycentric) const;
 
  private:
-  Mesh(MeshData data, const MeshOptions& options);
+  // All that is known of a vertex, in one piece: a hit touches three of these and one triangle.
+  struct alignas(32) Vertex {
+    Vec3 position, normal{0, 0, 0};
+    Vec2 uv{0, 0};
+  };
 
-  std::vector<Vec3> m_positions;  // one more than there are vertices: Embree reads 16 bytes at each
-  std::vector<Vec3> m_normals;    // empty: face normals
-  std::vector<Vec2> m_uvs;        // empty: barycentric coordinates stand in for them
+  Mesh(MeshData data, const MeshOptions& options);
+  void findTangents(SurfacePoint& at, const Triangle& t) const;
+
+  std::vector<Vertex> m_vertices;
   std::vector<Triangle> m_triangles;
-  std::vector<float> m_cdf;  // of the triangles by area, size n + 1
+  bool m_hasNormals = false;  // else face normals
+  bool m_hasUvs = false;      // else barycentric coordinates stand in for them
+  std::vector<float> m_cdf;   // of the triangles by area, size n + 1
   float m_area = 0;
   bool m_flipFaceNormals = false;
 };

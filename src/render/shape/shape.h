@@ -27,6 +27,14 @@ struct RawHit {
   const Matrix4* worldToInstance = nullptr;
 };
 
+class Shape;
+
+// What a ray met: null and nothing else if it met nothing.
+struct Hit {
+  const Shape* shape = nullptr;
+  RawHit raw;
+};
+
 class Shape {
  public:
   virtual ~Shape() = default;
@@ -47,6 +55,8 @@ class Shape {
 
   const Bsdf& bsdf() const { return *m_bsdf; }
   const SurfaceEmitter* emitter() const { return m_emitter.get(); }
+  // Whether surface points need dpdu, dpdv and a shading frame along them.
+  bool tangents() const { return !m_bsdf || m_bsdf->traits().tangents; }
   void setBsdf(BsdfPtr bsdf) { m_bsdf = std::move(bsdf); }
   void setEmitter(std::shared_ptr<SurfaceEmitter> emitter) { m_emitter = std::move(emitter); }
 

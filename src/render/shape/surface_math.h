@@ -15,11 +15,17 @@ inline float maxAbs(const Vec3& v) {
   return std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)});
 }
 
-// `v` over its length in double precision, so that tiny vectors have a direction too; `fallback` if it has
+// `v` over its length, in double precision so that tiny vectors have a direction too; `fallback` if it has
 // none.
 inline Vec3 normalizeOr(const Imath::V3d& v, const Vec3& fallback) {
   const double length = std::sqrt(v.dot(v));
-  return length > 0 && std::isfinite(length) ? Vec3(v / length) : fallback;
+  return length > 0 && std::isfinite(length) ? Vec3(v * (1 / length)) : fallback;
+}
+// The same, in single precision where that is enough.
+inline Vec3 normalizeOr(const Vec3& v, const Vec3& fallback) {
+  const float squared = lengthSquared(v);
+  if (squared > 1e-20f && squared < 1e20f) return v * (1 / std::sqrt(squared));
+  return normalizeOr(Imath::V3d(v), fallback);
 }
 
 // The solid-angle density at `ref` of a point that is distributed uniformly over `area`.

@@ -23,8 +23,12 @@ struct PreciseRay {
 
 namespace detail {
 
-inline PreciseRay preciseRay(const RTCRay& ray) {
-  return {{ray.org_x, ray.org_y, ray.org_z}, {ray.dir_x, ray.dir_y, ray.dir_z}, ray.tnear, ray.tfar};
+// Ray i of a packet of n.
+inline PreciseRay preciseRay(RTCRayN* rays, unsigned n, unsigned i) {
+  return {{RTCRayN_org_x(rays, n, i), RTCRayN_org_y(rays, n, i), RTCRayN_org_z(rays, n, i)},
+          {RTCRayN_dir_x(rays, n, i), RTCRayN_dir_y(rays, n, i), RTCRayN_dir_z(rays, n, i)},
+          RTCRayN_tnear(rays, n, i),
+          RTCRayN_tfar(rays, n, i)};
 }
 
 template <class Analytic>
@@ -43,25 +47,32 @@ void boundsCallback(const RTCBoundsFunctionArguments* arguments) {
 
 template <class Analytic>
 void intersectCallback(const RTCIntersectFunctionNArguments* arguments) {
-  if (!arguments->valid[0]) return;
-  auto& rayHit = *reinterpret_cast<RTCRayHit*>(arguments->rayhit);
-  double t;
-  if (!static_cast<const Analytic*>(arguments->geometryUserPtr)->hit(preciseRay(rayHit.ray), t)) return;
-  rayHit.ray.tfar = float(t);
-  rayHit.hit.u = rayHit.hit.v = 0;
-  rayHit.hit.Ng_x = rayHit.hit.Ng_y = rayHit.hit.Ng_z = 0;
-  rayHit.hit.primID = arguments->primID;
-  rayHit.hit.geomID = arguments->geomID;
-  rayHit.hit.instID[0] = arguments->context->instID[0];
+  const unsigned n = arguments->N;
+  RTCRayN* rays = RTCRayHitN_RayN(arguments->rayhit, n);
+  RTCHitN* hits = RTCRayHitN_HitN(arguments->rayhit, n);
+  for (unsigned i = 0; i < n; ++i) {
+    double t;
+    if (!arguments->valid[i] ||
+        !static_cast<const Analytic*>(arguments->geometryUserPtr)->hit(preciseRay(rays, n, i), t))
+      continue;
+    RTCRayN_tfar(rays, n, i) = float(t);
+    RTCHitN_u(hits, n, i) = RTCHitN_v(hits, n, i) = 0;
+    RTCHitN_Ng_x(hits, n, i) = RTCHitN_Ng_y(hits, n, i) = RTCHitN_Ng_z(hits, n, i) = 0;
+    RTCHitN_primID(hits, n, i) = arguments->primID;
+    RTCHitN_geomID(hits, n, i) = arguments->geomID;
+    RTCHitN_instID(hits, n, i, 0) = arguments->context->instID[0];
+  }
 }
 
 template <class Analytic>
 void occludedCallback(const RTCOccludedFunctionNArguments* arguments) {
-  if (!arguments->valid[0]) return;
-  auto& ray = *reinterpret_cast<RTCRay*>(arguments->ray);
-  double t;
-  if (static_cast<const Analytic*>(arguments->geometryUserPtr)->hit(preciseRay(ray), t))
-    ray.tfar = -std::numeric_limits<float>::infinity();
+  const unsigned n = arguments->N;
+  for (unsigned i = 0; i < n; ++i) {
+    double t;
+    if (arguments->valid[i] &&
+        static_cast<const Analytic*>(arguments->geometryUserPtr)->hit(preciseRay(arguments->ray, n, i), t))
+      RTCRayN_tfar(arguments->ray, n, i) = -std::numeric_limits<float>::infinity();
+  }
 }
 
 }  // namespace detail
