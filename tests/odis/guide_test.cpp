@@ -122,8 +122,8 @@ TEST(Guide, FallsBackToCoarserCellsAndThenToNothing) {
 
 TEST(Guide, NothingToLearnFromIsNoCrash) {
   GuideBuilder builder;
-  builder.add({});
-  EXPECT_EQ(builder.build({}).find({0, 0, 0}, {0, 0, 1}), nullptr);
+  builder.add(PilotParts());
+  EXPECT_EQ(builder.build(PilotParts()).find({0, 0, 0}, {0, 0, 1}), nullptr);
   std::vector<PilotVertex> vertices = floorUnderPatch(kBright, 200, 4);
   for (size_t i = 0; i < vertices.size(); ++i) {
     PilotVertex& v = vertices[i];

@@ -64,6 +64,7 @@ SamplingMap makeMap(Content content) {
         break;
     }
   }
+  map.update();
   return map;
 }
 
@@ -77,8 +78,9 @@ class VertexMapTest : public ::testing::TestWithParam<Case> {};
 
 TEST_P(VertexMapTest, SampleHasTheDensityOfPdf) {
   const Case& c = GetParam();
+  const SamplingMap texels = makeMap(c.content);
   VertexMap map;
-  map.prepare(makeMap(c.content), c.normal, c.sides);
+  map.prepare(texels, c.normal, c.sides);
   ASSERT_FALSE(map.empty());
   // The density is constant within texels of the octahedral square, so the test's cells are those of the
   // square.
@@ -117,8 +119,9 @@ TEST_P(VertexMapTest, SampleHasTheDensityOfPdf) {
 
 TEST_P(VertexMapTest, PdfIsTheSampledOne) {
   const Case& c = GetParam();
+  const SamplingMap texels = makeMap(c.content);
   VertexMap map;
-  map.prepare(makeMap(c.content), c.normal, c.sides);
+  map.prepare(texels, c.normal, c.sides);
   int different = 0;
   for (int i = 0; i < 1000; ++i) {
     const VertexMap::Sample s = map.sample((i + 0.5f) / 1000, std::fmod(i * 0.618034f, 1.0f));
@@ -138,8 +141,9 @@ INSTANTIATE_TEST_SUITE_P(Maps, VertexMapTest,
                                            Case{Content::gradient, kTilted, Sides::reflection}));
 
 TEST(VertexMap, NothingToSampleIsEmpty) {
+  const SamplingMap texels = makeMap(Content::random);
   VertexMap map;
-  map.prepare(makeMap(Content::random), {NAN, 0, 1}, Sides::reflection);
+  map.prepare(texels, {NAN, 0, 1}, Sides::reflection);
   EXPECT_TRUE(map.empty());
   EXPECT_EQ(map.pdf({0, 0, 1}), 0);
 }
@@ -148,8 +152,9 @@ TEST(Mixture, IntegratesToOneAndKeepsSharpLobes) {
   // A BSDF that draws 0.7 of the time from a cosine lobe that may be guided and 0.3 from another that may
   // not.
   const float guidable = 0.7f, alpha = 0.4f;
+  const SamplingMap texels = makeMap(Content::random);
   VertexMap map;
-  map.prepare(makeMap(Content::random), {0, 0, 1}, Sides::reflection);
+  map.prepare(texels, {0, 0, 1}, Sides::reflection);
   double integral = 0;
   const int n = 1000;
   for (int i = 0; i < n; ++i)

@@ -21,6 +21,12 @@ class CellGrid {
                 dominantAxis(normal), level);
   }
 
+  // The key of the cell around a cell, one level coarser.
+  static uint64_t parent(uint64_t key) {
+    const auto halved = [&](int shift) { return (int((key >> shift) & 0x7ffff) - (1 << 18)) >> 1; };
+    return pack(halved(0), halved(19), halved(38), uint32_t(key >> 57) & 7, int(key >> 60) + 1);
+  }
+
  private:
   // Positions are clamped to 2^18 cells either side of the origin, which only merges what is absurdly far
   // away.

@@ -26,13 +26,7 @@ void accumulate(FeatureSums& sums, const FirstHit& first) {
   ++sums.hits;
 }
 
-// What one tile adds beside the images.
-struct TileResult {
-  std::vector<PilotVertex> records;
-  RayCounts counts;
-};
-
-void renderPixel(const Pass& pass, uint32_t index, TileResult& tile) {
+void renderPixel(const Pass& pass, uint32_t index, std::vector<PilotVertex>& records, RayCounts& counts) {
   const Crop& crop = pass.path.scene->film().crop;
   const Vec2i pixel(crop.x + int(index) % crop.width, crop.y + int(index) / crop.width);
   const uint32_t pixelOfFullImage =
@@ -43,13 +37,12 @@ void renderPixel(const Pass& pass, uint32_t index, TileResult& tile) {
     float filterWeight;
     const Ray ray = cameraRay(*pass.path.scene, pixel, sampler, filterWeight);
     FirstHit firstHit;
-    const size_t begin = tile.records.size();
-    const PathResult path =
-        tracePath(pass.path, ray, sampler, tile.counts, pass.records ? &tile.records : nullptr,
-                  pass.features ? &firstHit : nullptr);
-    for (size_t i = begin; i < tile.records.size(); ++i) {
-      tile.records[i].pixel = index;
-      tile.records[i].sampleWeight = filterWeight;
+    const size_t begin = records.size();
+    const PathResult path = tracePath(pass.path, ray, sampler, counts, pass.records ? &records : nullptr,
+                                      pass.features ? &firstHit : nullptr);
+    for (size_t i = begin; i < records.size(); ++i) {
+      records[i].pixel = index;
+      records[i].sampleWeight = filterWeight;
     }
     // A path that is not a number (a broken normal, an overflow) would spoil its pixel for good: it counts as
     // black.
@@ -78,39 +71,36 @@ RayCounts runPass(const Pass& pass, Progress& progress, const std::function<bool
   const Crop& crop = pass.path.scene->film().crop;
   const int tilesX = (crop.width + kTileSize - 1) / kTileSize,
             tilesY = (crop.height + kTileSize - 1) / kTileSize;
-  std::vector<TileResult> tiles(size_t(tilesX) * tilesY);
+  std::vector<RayCounts> counts(size_t(tilesX) * tilesY);
+  const size_t firstRecords = pass.records ? pass.records->size() : 0;
+  if (pass.records) pass.records->resize(firstRecords + counts.size());
   tbb::parallel_for(
-      tbb::blocked_range<size_t>(0, tiles.size(), 1),
+      tbb::blocked_range<size_t>(0, counts.size(), 1),
       [&](const tbb::blocked_range<size_t>& range) {
         flushDenormals();
         for (size_t t = range.begin(); t < range.end(); ++t) {
           if (stop()) return;
           const int x0 = int(t % tilesX) * kTileSize, y0 = int(t / tilesX) * kTileSize;
+          // Records are gathered in memory that stays warm, then stored without slack.
+          thread_local std::vector<PilotVertex> records;
+          records.clear();
           uint64_t done = 0;
           for (int y = y0; y < std::min(y0 + kTileSize, crop.height); ++y)
             for (int x = x0; x < std::min(x0 + kTileSize, crop.width); ++x) {
               const uint32_t index = uint32_t(y) * uint32_t(crop.width) + uint32_t(x);
-              renderPixel(pass, index, tiles[t]);
+              renderPixel(pass, index, records, counts[t]);
               done += pass.samples(index).second;
             }
+          if (pass.records) (*pass.records)[firstRecords + t].assign(records.begin(), records.end());
           progress.advance(done);
         }
       },
       tbb::simple_partitioner());
 
   RayCounts total;
-  size_t vertices = 0;
-  for (const TileResult& tile : tiles) {
-    total.rays += tile.counts.rays;
-    total.shadowRays += tile.counts.shadowRays;
-    vertices += tile.records.size();
-  }
-  if (pass.records) {
-    pass.records->reserve(pass.records->size() + vertices);
-    for (TileResult& tile : tiles) {
-      pass.records->insert(pass.records->end(), tile.records.begin(), tile.records.end());
-      tile.records = {};
-    }
+  for (const RayCounts& tile : counts) {
+    total.rays += tile.rays;
+    total.shadowRays += tile.shadowRays;
   }
   return total;
 }

@@ -41,7 +41,7 @@ class VertexGuide {
     if (!(m_guidable > 0)) return;
     const Vec3 normal = wo.z < 0 ? -at.shading.n : at.shading.n;
     const Cell* cell = settings.guide->find(toOdis(at.p), toOdis(normal));
-    if (!cell) return;
+    if (!cell || *std::min_element(cell->alpha, cell->alpha + kMaterialClasses) >= 1) return;
     m_alpha = cell->alpha[int(materialClass(bsdf.features(at, wo).roughness))];
     if (m_alpha >= 1) return;
     m_map.prepare(cell->map, toOdis(normal), bsdf.traits().transmissive ? Sides::both : Sides::reflection);
