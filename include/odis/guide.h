@@ -12,6 +12,7 @@
 //   }
 #pragma once
 
+#include <algorithm>
 #include <memory>
 #include <span>
 
@@ -40,6 +41,9 @@ struct GuideOptions {
 struct Cell {
   SamplingMap map;
   float alpha[kMaterialClasses] = {1, 1, 1};  // share of smooth draws that stay with the BSDF; 1: don't guide
+
+  // Whether there is a class to guide; where there is none, a vertex need not find out which it is of.
+  bool guidesAny() const { return std::min({alpha[0], alpha[1], alpha[2]}) < 1; }
 };
 
 // Pilot vertices as they lie in memory: one array for each part of the image, say.
@@ -77,7 +81,7 @@ class GuideBuilder {
   // least one pass over the image. Vertices with values that are not finite are left out.
   void add(PilotParts parts);
   void add(std::span<const PilotVertex> vertices) { add(PilotParts(&vertices, 1)); }
-  // Builds maps from all that was added, and selection probabilities from vertices which should be (a part
+  // Builds maps from all that was added, and selection probabilities from vertices that should be (a part
   // of) the same. `pixelValues`, indexed by PilotVertex::pixel, are what the vertices' contributions are
   // divided by; without them they are taken as they are.
   Guide build(PilotParts parts, std::span<const float> pixelValues = {}) const;

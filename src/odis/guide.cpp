@@ -6,6 +6,7 @@
 #include "odis/cells/statistics.h"
 #include "odis/decisions/choose_alphas.h"
 #include "odis/decisions/direction_model.h"
+#include "odis/decisions/selection.h"
 
 namespace odis {
 
@@ -55,7 +56,11 @@ void GuideBuilder::add(PilotParts parts) {
   m_data->store.add(parts, m_data->options.cellsPerDiagonal);
 }
 uint64_t GuideBuilder::bytes() const {
-  return m_data->store.bytes();
+  // What `build` makes beside the cells' statistics: a copy of them, distributions, sums for the selection.
+  constexpr uint64_t kPerCell =
+      sizeof(CellStatistics) + sizeof(DirectionDistribution) + 2 * sizeof(CellSelection);
+  const CellStore& store = m_data->store;
+  return store.bytes() + std::max(store.transientBytes(), store.index().size() * kPerCell);
 }
 
 namespace {

@@ -1,7 +1,5 @@
 #include "odis/cells/batches.h"
 
-#include <tbb/parallel_for.h>
-
 #include <algorithm>
 
 namespace odis {
@@ -30,33 +28,6 @@ std::vector<PilotBatch> makeBatches(PilotParts parts) {
       room -= taken;
     }
   return batches;
-}
-
-CellOrder sortByCell(std::span<const std::vector<uint32_t>> cells, uint32_t cellCount) {
-  // A counting sort: how many items each batch has for each cell, then where they begin, then the items.
-  std::vector<std::vector<uint32_t>> next(cells.size());
-  tbb::parallel_for(size_t(0), cells.size(), [&](size_t batch) {
-    next[batch].assign(cellCount, 0);
-    for (const uint32_t cell : cells[batch]) ++next[batch][cell];
-  });
-  CellOrder result;
-  result.begin.resize(size_t(cellCount) + 1);
-  uint32_t total = 0;
-  for (uint32_t cell = 0; cell < cellCount; ++cell) {
-    result.begin[cell] = total;
-    for (std::vector<uint32_t>& counts : next) {
-      const uint32_t count = counts[cell];
-      counts[cell] = total;
-      total += count;
-    }
-  }
-  result.begin[cellCount] = total;
-  result.places.resize(total);
-  tbb::parallel_for(size_t(0), cells.size(), [&](size_t batch) {
-    for (uint32_t item = 0; item < cells[batch].size(); ++item)
-      result.places[next[batch][cells[batch][item]]++] = {uint32_t(batch), item};
-  });
-  return result;
 }
 
 }  // namespace odis

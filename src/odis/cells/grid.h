@@ -28,11 +28,14 @@ class CellGrid {
   }
 
  private:
-  // Positions are clamped to 2^18 cells either side of the origin, which only merges what is absurdly far
-  // away.
+  // Rounded down. Positions are clamped to 2^18 cells either side of the origin, which only merges what is
+  // absurdly far away; what is not a number lies at the lower end.
   static int coordinate(float x) {
-    constexpr float kLimit = 1 << 18;
-    return int(std::floor(std::fmin(std::fmax(x, -kLimit), kLimit)));
+    constexpr float kLimit = (1 << 18) - 1;
+    x = x > -kLimit ? x : -kLimit;
+    x = x < kLimit ? x : kLimit;
+    const int towardsZero = int(x);
+    return towardsZero - int(x < float(towardsZero));
   }
   // 0 to 5: +x, -x, +y, -y, +z, -z.
   static uint32_t dominantAxis(const Float3& n) {

@@ -92,27 +92,27 @@ uint32_t CellStore::insert(uint64_t key) {
   return finest;
 }
 
-void CellStore::accumulate(CellStatistics& cell, float limit, std::span<const BatchSamples> batches,
-                           std::span<const CellOrder::Place> places) const {
-  const auto sampleAt = [&](const CellOrder::Place& place) -> const CellSample& {
-    return batches[place.batch].samples[place.item];
-  };
+namespace {
+
+// Adds a batch's samples to their cell, values clamped.
+void accumulate(CellStatistics& cell, float limit, std::span<const CellSample* const> samples) {
   if (cell.count == 0) {
-    for (const CellOrder::Place& place : places) cell.centroid = cell.centroid + sampleAt(place).position;
-    cell.centroid = cell.centroid * (1.0f / float(places.size()));
+    forEachItem(samples, [&](const CellSample& s) { cell.centroid = cell.centroid + s.position; });
+    cell.centroid = cell.centroid * (1.0f / float(samples.size()));
   }
-  for (const CellOrder::Place& place : places) {
-    const CellSample& sample = sampleAt(place);
+  forEachItem(samples, [&](const CellSample& sample) {
     const float value = std::min(sample.value, limit);
     cell.count += 1;
     cell.sum += value;
     cell.sumSquares += double(value) * value;
     cell.normal = cell.normal + sample.normal;
-    if (value <= 0) continue;
+    if (value <= 0) return;
     const Splat spread = splat(reaim(sample.position, sample.wi, sample.distance, cell.centroid));
     for (int k = 0; k < 4; ++k) cell.histogram[spread.texel[k]] += value * spread.weight[k];
-  }
+  });
 }
+
+}  // namespace
 
 void CellStore::add(PilotParts parts, int cellsPerDiagonal) {
   if (!m_placed) place(parts, cellsPerDiagonal);
@@ -147,17 +147,18 @@ void CellStore::add(PilotParts parts, int cellsPerDiagonal) {
   tbb::parallel_for(size_t(0), pilot.size(), [&](size_t b) {
     for (uint32_t& cell : cellOf[b]) cell = numbers[b][cell];
   });
-  const CellOrder order = sortByCell(cellOf, uint32_t(m_cells.size()));
+  const CellOrder<CellSample> order = sortByCell<CellSample>(
+      cellOf, uint32_t(m_cells.size()),
+      [&](size_t batch, size_t i) -> const CellSample& { return batches[batch].samples[i]; });
   m_transientBytes += order.bytes();
-  tbb::parallel_for(tbb::blocked_range<size_t>(0, m_cells.size(), 16),
-                    [&](const tbb::blocked_range<size_t>& range) {
-                      for (size_t c = range.begin(); c < range.end(); ++c) {
-                        if (order.of(c).empty()) continue;
-                        const uint32_t parent = m_cells[c].parent;
-                        accumulate(m_cells[c], m_clamp * float(parentSum[parent] / parentCount[parent]),
-                                   batches, order.of(c));
-                      }
-                    });
+  tbb::parallel_for(
+      tbb::blocked_range<size_t>(0, m_cells.size(), 16), [&](const tbb::blocked_range<size_t>& range) {
+        for (size_t c = range.begin(); c < range.end(); ++c) {
+          if (order.of(c).empty()) continue;
+          const uint32_t parent = m_cells[c].parent;
+          accumulate(m_cells[c], m_clamp * float(parentSum[parent] / parentCount[parent]), order.of(c));
+        }
+      });
 }
 
 std::vector<CellStatistics> CellStore::rollUp() const {

@@ -42,17 +42,14 @@ class CellStore {
 
   const CellGrid& grid() const { return m_grid; }
   const CellIndex& index() const { return m_index; }
-  // Of the cells, and of what `add` needed on top of them at most.
-  uint64_t bytes() const {
-    return m_cells.capacity() * sizeof(CellStatistics) + m_index.bytes() + m_transientBytes;
-  }
+  uint64_t bytes() const { return m_cells.capacity() * sizeof(CellStatistics) + m_index.bytes(); }
+  // What the last `add` needed on top of the cells.
+  uint64_t transientBytes() const { return m_transientBytes; }
   float clamp() const { return m_clamp; }
 
  private:
   void place(PilotParts parts, int cellsPerDiagonal);
   uint32_t insert(uint64_t key);
-  void accumulate(CellStatistics& cell, float limit, std::span<const BatchSamples> batches,
-                  std::span<const CellOrder::Place> places) const;
 
   float m_clamp;
   bool m_placed = false;

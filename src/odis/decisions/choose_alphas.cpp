@@ -106,7 +106,9 @@ float chooseAlphas(std::vector<Cell>& result, const CellStore& store, std::span<
     batches[b] = select(pilot[b], stride, scale, store);
     cellOf[b] = std::move(batches[b].cellOf);
   });
-  const CellOrder order = sortByCell(cellOf, uint32_t(cells.size()));
+  const CellOrder<PilotVertex> order = sortByCell<PilotVertex>(
+      cellOf, uint32_t(cells.size()),
+      [&](size_t batch, size_t i) -> const PilotVertex& { return *batches[batch].vertices[i]; });
   SelectionTotals totals;
   for (const BatchSelection& batch : batches) {
     totals.variance += batch.totals.variance;
@@ -119,10 +121,9 @@ float chooseAlphas(std::vector<Cell>& result, const CellStore& store, std::span<
     if (order.of(c).empty()) return;
     const CellStatistics& parent = cells[cells[c].parent];
     const float limit = parent.count > 0 ? store.clamp() * float(parent.sum / parent.count) : 0;
-    for (const CellOrder::Place& place : order.of(c)) {
-      const PilotVertex& v = *batches[place.batch].vertices[place.item];
+    forEachItem(order.of(c), [&](const PilotVertex& v) {
       addJudged(sums[c], v, scale(v), result[c].map, cells[c], distributions[c], limit);
-    }
+    });
   });
   CellSelection image;
   for (int level = 0; level < kCellLevels; ++level)

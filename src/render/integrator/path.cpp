@@ -41,7 +41,7 @@ class VertexGuide {
     if (!(m_guidable > 0)) return;
     const Vec3 normal = wo.z < 0 ? -at.shading.n : at.shading.n;
     const Cell* cell = settings.guide->find(toOdis(at.p), toOdis(normal));
-    if (!cell || *std::min_element(cell->alpha, cell->alpha + kMaterialClasses) >= 1) return;
+    if (!cell || !cell->guidesAny()) return;
     m_alpha = cell->alpha[int(materialClass(bsdf.features(at, wo).roughness))];
     if (m_alpha >= 1) return;
     m_map.prepare(cell->map, toOdis(normal), bsdf.traits().transmissive ? Sides::both : Sides::reflection);
@@ -70,10 +70,10 @@ class VertexGuide {
       if (isDiscrete(result.lobe)) return result;
     }
     if (fromMap && (m_guidable >= 1 || result.lobe != Lobe::nearDelta)) {
-      const Float3 wi = m_map.sample(u.x, u.y).wi;
-      result.wi = at.shading.toLocal(fromOdis(wi));
+      const VertexMap::Sample sample = m_map.sample(u.x, u.y);
+      result.wi = at.shading.toLocal(fromOdis(sample.wi));
       const BsdfValue value = bsdf.evaluate(at, wo, result.wi);
-      result.pdf = pdf(value.pdf, value.guidablePdf, fromOdis(wi));
+      result.pdf = mixturePdf(value.pdf, value.guidablePdf, m_guidable, m_alpha, sample.pdf);
       result.guidablePdf = value.guidablePdf;
       result.weight = value.value / result.pdf;
       result.eta = 1;

@@ -132,7 +132,7 @@ class Renderer {
     m_progress.end();
     m_stats.secondsPilot = secondsSince(start);
     m_stats.pilotVertices = countVertices();
-    m_stats.bytesRecords = m_stats.pilotVertices * sizeof(PilotVertex);
+    m_stats.bytesBuild = m_stats.pilotVertices * sizeof(PilotVertex);
   }
 
   uint64_t countVertices() const {
@@ -208,7 +208,7 @@ class Renderer {
       builder.add(partsOf(m_records));
       m_guide = builder.build(partsOf(m_records), estimates);
     }
-    m_stats.bytesRecords += builder.bytes();
+    m_stats.bytesBuild += builder.bytes();
     if (!m_options.records) m_records = {};
     m_stats.secondsBuild = secondsSince(start);
     m_stats.cells = m_guide.cellCount();
@@ -252,6 +252,7 @@ class Renderer {
     for (size_t pixel = 0; pixel < m_pixels; ++pixel) {
       const PixelSums &pilot = m_pilot[pixel], &guided = m_guided[pixel];
       m_stats.samples += pilot.count + guided.count;
+      m_stats.pilotSamples += pilot.count;
       const double weight = pilot.count * ratio + guided.count;
       if (!(weight > 0)) {
         frame.color[pixel] = Rgb(0, 0, 0);
