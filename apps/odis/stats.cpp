@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 #include <sys/resource.h>
 
+#include <algorithm>
+
 #include <nlohmann/json.hpp>
 
 #include "command.h"
@@ -40,8 +42,13 @@ std::string statsTable(const RunStats& stats) {
   if (r.cells > 0) {
     row("pilot vertices", fmt::format("{} in {} cells", r.pilotVertices, r.cells));
     row("pilot weight", fmt::format("{:.3f}", r.pilotWeight));
-    row("memory of guide", fmt::format("{} records, {} maps", bytesText(double(r.bytesRecords)),
-                                       bytesText(double(r.bytesMaps))));
+    row("cost of guiding",
+        fmt::format("{:.1f} % of the time is build, a guided sample takes {:.2f} x a pilot's",
+                    100 * r.secondsBuild / std::max(seconds, 1e-9), r.guidedCost()));
+    row("memory of guide",
+        fmt::format("{} while building, {:.0f} B a pilot vertex; maps {}", bytesText(double(r.bytesBuild)),
+                    double(r.bytesBuild) / double(std::max<uint64_t>(r.pilotVertices, 1)),
+                    bytesText(double(r.bytesMaps))));
   }
   row("memory of scene", bytesText(double(stats.bytesScene)));
   row("memory at most", bytesText(double(stats.bytesPeak)));
@@ -69,10 +76,11 @@ std::string statsJson(const RunStats& stats) {
                                        {"pilotVertices", r.pilotVertices},
                                        {"cells", r.cells},
                                        {"pilotWeight", r.pilotWeight},
+                                       {"guidedCost", r.guidedCost()},
                                        {"bytes",
                                         {{"peak", stats.bytesPeak},
                                          {"scene", stats.bytesScene},
-                                         {"records", r.bytesRecords},
+                                         {"build", r.bytesBuild},
                                          {"maps", r.bytesMaps}}}};
   return json.dump(2) + "\n";
 }

@@ -12,6 +12,7 @@
 //   }
 #pragma once
 
+#include <algorithm>
 #include <memory>
 #include <span>
 
@@ -40,7 +41,13 @@ struct GuideOptions {
 struct Cell {
   SamplingMap map;
   float alpha[kMaterialClasses] = {1, 1, 1};  // share of smooth draws that stay with the BSDF; 1: don't guide
+
+  // Whether there is a class to guide; where there is none, a vertex need not find out which it is of.
+  bool guidesAny() const { return std::min({alpha[0], alpha[1], alpha[2]}) < 1; }
 };
+
+// Pilot vertices as they lie in memory: one array for each part of the image, say.
+using PilotParts = std::span<const std::span<const PilotVertex>>;
 
 // A set of cells, fixed once built. Thread-safe.
 class Guide {
@@ -72,10 +79,16 @@ class GuideBuilder {
 
   // Adds to the statistics of the cells. The first call fixes the extent of the cells, so it should hold at
   // least one pass over the image. Vertices with values that are not finite are left out.
-  void add(std::span<const PilotVertex> vertices);
-  // Builds maps from all that was added, and selection probabilities from `vertices`, which should be (a part
-  // of) the same.
-  Guide build(std::span<const PilotVertex> vertices) const;
+  void add(PilotParts parts);
+  void add(std::span<const PilotVertex> vertices) { add(PilotParts(&vertices, 1)); }
+  // Builds maps from all that was added, and selection probabilities from vertices that should be (a part
+  // of) the same. `pixelValues`, indexed by PilotVertex::pixel, are what the vertices' contributions are
+  // divided by; without them they are taken as they are.
+  Guide build(PilotParts parts, std::span<const float> pixelValues = {}) const;
+  Guide build(std::span<const PilotVertex> vertices, std::span<const float> pixelValues = {}) const {
+    return build(PilotParts(&vertices, 1), pixelValues);
+  }
+  // Held at most, the vertices themselves not included.
   uint64_t bytes() const;
 
  private:

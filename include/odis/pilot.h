@@ -16,7 +16,7 @@ inline MaterialClass materialClass(float roughness) {
 }
 
 // One vertex of a pilot path: a place where a direction was sampled. World space, unit directions, radiance
-// in the renderer's units. 176 bytes.
+// in the renderer's units. 168 bytes.
 struct PilotVertex {
   Float3 position;
   Float3 normal;    // shading normal, on the side of wo
@@ -34,8 +34,8 @@ struct PilotVertex {
   float roughness = 1;
   float cosine = 0;  // |cos| between wi and the normal
 
-  // For the selection probability: luminances of what this vertex adds to its pixel, divided by (an estimate
-  // of) the pixel's value, with the densities that MIS was made from.
+  // For the selection probability: luminances of what this vertex adds to its pixel, with the densities that
+  // MIS was made from. Divided by (an estimate of) the pixel's value, here or by GuideBuilder::build.
   float indirect = 0;          // through wi, without emission hit directly
   float emission = 0;          // emission hit directly, without MIS weight
   float emissionLightPdf = 0;  // density with which next-event estimation gives wi; 0 if it can't
@@ -51,5 +51,7 @@ struct PilotVertex {
   bool discrete = false;   // a delta lobe: nothing to learn from
   bool both = false;       // the BSDF scatters to both sides of the surface
 };
+
+static_assert(sizeof(PilotVertex) == 168);
 
 }  // namespace odis

@@ -9,74 +9,88 @@
 
 namespace odis {
 
+// Texels lie in blocks of 4 x 4: 16 blocks row by row, in each its 16 texels row by row.
 inline constexpr int kMapSize = 16;
 inline constexpr int kMapTexels = kMapSize * kMapSize;
+inline constexpr int kBlockSize = 4;
+inline constexpr int kBlockTexels = kBlockSize * kBlockSize;
+inline constexpr int kMapBlocks = kMapTexels / kBlockTexels;
 
-// The texel (row-major) that a unit direction falls into.
+// The texel in column x and row y.
+inline constexpr int texelAt(int x, int y) {
+  return ((y & ~3) + (x >> 2)) * kBlockTexels + (y & 3) * kBlockSize + (x & 3);
+}
+
+// The texel that a unit direction falls into.
 inline int texelOf(const Float3& w) {
   const Float2 square = directionToSquare(w);
-  const int x = std::clamp(int(square.x * kMapSize), 0, kMapSize - 1);
-  const int y = std::clamp(int(square.y * kMapSize), 0, kMapSize - 1);
-  return y * kMapSize + x;
+  return texelAt(std::clamp(int(square.x * kMapSize), 0, kMapSize - 1),
+                 std::clamp(int(square.y * kMapSize), 0, kMapSize - 1));
+}
+
+// The point of [0, 1]^2 that lies at `within` (each in [0, 1]) of a texel.
+inline Float2 pointOfTexel(int texel, const Float2& within) {
+  const int block = texel / kBlockTexels;
+  const int x = (block & 3) * kBlockSize + (texel & 3), y = (block & ~3) + ((texel >> 2) & 3);
+  return {(float(x) + within.x) / kMapSize, (float(y) + within.y) / kMapSize};
 }
 
 // The direction of a texel's centre.
 inline Float3 texelDirection(int texel) {
-  const int x = texel % kMapSize, y = texel / kMapSize;
-  return squareToDirection({(float(x) + 0.5f) / kMapSize, (float(y) + 0.5f) / kMapSize});
+  return squareToDirection(pointOfTexel(texel, {0.5f, 0.5f}));
 }
 
-// A cell's map: relative incident radiance in 16 bits, at least 1 so that no direction is impossible. 512
+// A cell's map: relative incident radiance in 16 bits, at least 1 so that no direction is impossible. 768
 // bytes.
 struct SamplingMap {
   std::array<uint16_t, kMapTexels> texels;
+  // Of each block: the sum over its texels of texel times direction, and of the texels.
+  std::array<float, kMapBlocks> x, y, z, sum;
+
+  // Makes the sums. To be called when texels were written.
+  void update();
 };
 
 // Which side of the surface a vertex scatters to.
 enum class Sides : uint8_t { reflection, both };
 
 // A map times the cosine at one vertex: a density over directions, constant within each texel, with respect
-// to solid angle. It is zero in texels whose centre is below the horizon of a `reflection` vertex; the
-// mixture with the BSDF's own density covers what the rim of such a texel holds above it.
+// to solid angle, and positive everywhere. Only what a vertex asks for is computed: a block is chosen by its
+// sums, a texel within it by its own value. Where a block lies on one side of the horizon this is exactly the
+// product of the texels with max(cos, 0) + e at their centres, or |cos| + e for `both`, e = 0.02 (kRim).
+// Blocks that the horizon crosses get a little less: what lies below counts negative in their sums.
 class VertexMap {
  public:
-  // Multiplies by max(cos, 0), or |cos| for `both`, at the texels' centres. `normal` is the unit shading
-  // normal on the side of the outgoing direction.
+  // `normal` is the unit shading normal on the side of the outgoing direction. The map must outlive the use
+  // of this object.
   void prepare(const SamplingMap& map, const Float3& normal, Sides sides);
+  void prepare(SamplingMap&& map, const Float3& normal, Sides sides) = delete;
 
   // Whether there is anything to sample (a NaN normal, say, leaves nothing).
-  bool empty() const { return !(m_total > 0); }
+  bool empty() const { return !(m_toPdf > 0); }
 
   struct Sample {
     Float3 wi;
     float pdf = 0;  // solid angle
   };
-  // A direction from u, v uniform in [0, 1).
-  Sample sample(float u, float v) const {
-    float target = v * m_total;
-    int y = 0;
-    while (y < kMapSize - 1 && target >= m_rows[y]) target -= m_rows[y++];
-    while (y > 0 && m_rows[y] <= 0) --y;  // rounding took us past the last row that holds anything
-    const float offsetY = std::clamp(target / m_rows[y], 0.0f, 0x1.fffffep-1f);
-    const float* row = m_weights.data() + y * kMapSize;
-    target = u * m_rows[y];
-    int x = 0;
-    while (x < kMapSize - 1 && target >= row[x]) target -= row[x++];
-    while (x > 0 && row[x] <= 0) --x;
-    const float offsetX = std::clamp(target / row[x], 0.0f, 0x1.fffffep-1f);
-    return {squareToDirection({(x + offsetX) / kMapSize, (y + offsetY) / kMapSize}), row[x] * m_toPdf};
-  }
+  // A direction from u, v uniform in [0, 1). Not to be called when empty.
+  Sample sample(float u, float v) const;
 
-  // The density of `wi`.
-  float pdf(const Float3& wi) const { return m_weights[texelOf(wi)] * m_toPdf; }
+  // The density of `wi`; 0 when empty.
+  float pdf(const Float3& wi) const { return texelPdf(texelOf(wi)); }
   // The density within a texel.
-  float texelPdf(int texel) const { return m_weights[texel] * m_toPdf; }
+  float texelPdf(int texel) const;
 
  private:
-  alignas(64) std::array<float, kMapTexels> m_weights;
-  std::array<float, kMapSize> m_rows;
-  float m_total = 0;
-  float m_toPdf = 0;  // weight -> solid-angle density
+  struct BlockWeights;
+  void weigh(int block, BlockWeights& weights) const;
+
+  const SamplingMap* m_map = nullptr;
+  Float3 m_normal;
+  float m_below = 0;  // what a negative cosine is multiplied by: 0, or -1 for both sides
+  std::array<float, kMapBlocks> m_blocks;
+  std::array<float, kBlockSize> m_rows;  // of blocks
+  float m_toPdf = 0;  // weight of a texel, as a share of its block times the block's -> density
 };
 
 // The power heuristic with exponent two (Veach and Guibas 1995): the weight of a sample drawn with density

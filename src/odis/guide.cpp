@@ -4,6 +4,7 @@
 #include <tbb/parallel_for.h>
 
 #include "odis/cells/statistics.h"
+#include "odis/decisions/choose_alphas.h"
 #include "odis/decisions/direction_model.h"
 #include "odis/decisions/selection.h"
 
@@ -51,11 +52,15 @@ struct GuideBuilder::Data {
 GuideBuilder::GuideBuilder(const GuideOptions& options) : m_data(std::make_unique<Data>(options)) {}
 GuideBuilder::~GuideBuilder() = default;
 
-void GuideBuilder::add(std::span<const PilotVertex> vertices) {
-  m_data->store.add(vertices, m_data->options.cellsPerDiagonal);
+void GuideBuilder::add(PilotParts parts) {
+  m_data->store.add(parts, m_data->options.cellsPerDiagonal);
 }
 uint64_t GuideBuilder::bytes() const {
-  return m_data->store.bytes();
+  // What `build` makes beside the cells' statistics: a copy of them, distributions, sums for the selection.
+  constexpr uint64_t kPerCell =
+      sizeof(CellStatistics) + sizeof(DirectionDistribution) + 2 * sizeof(CellSelection);
+  const CellStore& store = m_data->store;
+  return store.bytes() + std::max(store.transientBytes(), store.index().size() * kPerCell);
 }
 
 namespace {
@@ -73,49 +78,14 @@ SamplingMap pack(const DirectionDistribution& distribution, float floor) {
   }
   SamplingMap map;
   for (int t = 0; t < kMapTexels; ++t)
-    map.texels[t] = uint16_t(std::max(1.0f, std::round(65535 * (radiance[t] / brightest))));
+    map.texels[t] = uint16_t(std::max(1.0f, 65535 * (radiance[t] / brightest) + 0.5f));
+  map.update();
   return map;
-}
-
-template <class Body>
-void forEachCell(size_t count, const Body& body) {
-  tbb::parallel_for(tbb::blocked_range<size_t>(0, count, 16), [&](const tbb::blocked_range<size_t>& range) {
-    for (size_t cell = range.begin(); cell < range.end(); ++cell) body(cell);
-  });
-}
-
-// Selection probabilities are made from about so many vertices: one pixel of `stride`, all of its path.
-constexpr size_t kSelectionVertices = 400000;
-bool isChosen(const PilotVertex& vertex, size_t stride) {
-  return ((vertex.pixel * 0x9e3779b9u) >> 8) % stride == 0;
-}
-
-// The sums of a cell's vertices, each judged by the map without its own sample.
-void sumCell(CellSelection& sums, std::span<const PilotVertex> vertices, std::span<const uint32_t> order,
-             const CellStatistics& cell, const DirectionDistribution& distribution, const SamplingMap& map,
-             float limit) {
-  VertexMap vertexMap;
-  for (const uint32_t i : order) {
-    const PilotVertex& v = vertices[i];
-    vertexMap.prepare(map, v.normal, v.both ? Sides::both : Sides::reflection);
-    float mapPdf = 0;
-    if (!v.discrete) {
-      const int texel = texelOf(v.wi);
-      const float value = std::min(sampleValue(v), limit);
-      const Splat place = splat(reaim(v, cell.centroid));
-      float own = 0;
-      for (int k = 0; k < 4; ++k)
-        if (place.texel[k] == texel) own += place.weight[k] * value;
-      const float kept = 1 - own * distribution.sensitivity / distribution.probability[texel];
-      mapPdf = vertexMap.texelPdf(texel) * std::max(kept, 0.0f);
-    }
-    addVertex(sums, v, mapPdf, v.lightPdf > 0 ? vertexMap.pdf(v.lightDirection) : 0);
-  }
 }
 
 }  // namespace
 
-Guide GuideBuilder::build(std::span<const PilotVertex> vertices) const {
+Guide GuideBuilder::build(PilotParts parts, std::span<const float> pixelValues) const {
   const GuideOptions& options = m_data->options;
   const std::vector<CellStatistics> cells = m_data->store.rollUp();
   Guide guide;
@@ -128,76 +98,23 @@ Guide GuideBuilder::build(std::span<const PilotVertex> vertices) const {
   // Maps, coarse levels first.
   std::vector<DirectionDistribution> distributions(cells.size());
   for (int level = kCellLevels - 1; level >= 0; --level)
-    forEachCell(cells.size(), [&](size_t c) {
-      if (cells[c].level != level) return;
-      distributions[c] = options.model->predict(
-          cells[c], cells[c].parent == kNoCell ? nullptr : &distributions[cells[c].parent]);
-      result[c].map = pack(distributions[c], options.floor);
-    });
-  if (options.fixedAlpha > 0) {
+    tbb::parallel_for(
+        tbb::blocked_range<size_t>(0, cells.size(), 16), [&](const tbb::blocked_range<size_t>& range) {
+          for (size_t c = range.begin(); c < range.end(); ++c) {
+            if (cells[c].level != level) continue;
+            const uint32_t parent = cells[c].parent;
+            distributions[c] =
+                options.model->predict(cells[c], parent == kNoCell ? nullptr : &distributions[parent]);
+            result[c].map = pack(distributions[c], options.floor);
+          }
+        });
+
+  // Selection probabilities.
+  if (options.fixedAlpha > 0)
     for (Cell& cell : result) std::fill(cell.alpha, cell.alpha + kMaterialClasses, options.fixedAlpha);
-    return guide;
-  }
-
-  // Predicted second moments and rays of each cell, then of the coarser levels. A part of the vertices is
-  // enough.
-  const size_t stride = std::max<size_t>(1, vertices.size() / kSelectionVertices);
-  std::vector<uint32_t> cellOfVertex(vertices.size(), kNoCell);
-  tbb::parallel_for(size_t(0), vertices.size(), [&](size_t i) {
-    if (isChosen(vertices[i], stride) && (vertices[i].discrete || isUsable(vertices[i])))
-      cellOfVertex[i] =
-          guide.m_data->index.find(guide.m_data->grid.key(vertices[i].position, vertices[i].normal, 0));
-  });
-  const CellOrder sorted = sortByCell(cellOfVertex, uint32_t(cells.size()));
-  std::vector<CellSelection> sums(cells.size());
-  forEachCell(cells.size(), [&](size_t c) {
-    const CellStatistics& cell = cells[c];
-    if (cell.level != 0) return;
-    const CellStatistics& parent = cells[cell.parent];
-    const float limit = parent.count > 0 ? m_data->store.clamp() * float(parent.sum / parent.count) : 0;
-    sumCell(sums[c], vertices,
-            std::span(sorted.order).subspan(sorted.begin[c], sorted.begin[c + 1] - sorted.begin[c]), cell,
-            distributions[c], result[c].map, limit);
-  });
-  for (int level = 0; level + 1 < kCellLevels; ++level)
-    for (size_t c = 0; c < cells.size(); ++c)
-      if (cells[c].level == level)
-        for (int m = 0; m < kMaterialClasses; ++m) sums[cells[c].parent][m].add(sums[c][m]);
-  CellSelection image;
-  for (size_t c = 0; c < cells.size(); ++c)
-    if (cells[c].level == 0)
-      for (int m = 0; m < kMaterialClasses; ++m) image[m].add(sums[c][m]);
-
-  // The image's variance and rays are those of the first vertices.
-  SelectionTotals totals;
-  for (const PilotVertex& v : vertices)
-    if (v.depth == 1 && isChosen(v, stride)) {
-      const float emission = v.emission * (v.discrete ? 1.0f : powerHeuristic(v.pdf, v.emissionLightPdf));
-      const float light = v.lightPdf > 0 ? v.light * powerHeuristic(v.lightPdf, v.lightBsdfPdf) : v.light;
-      const double value = v.indirect + emission + light;
-      if (std::isfinite(value)) totals.variance += std::min((value - 1) * (value - 1), 2500.0);
-      totals.rays += v.raysAfter;
-    }
-
-  // A cell's sums are backed by its parent's, those by the parent's parent's, and so on up to the whole
-  // image.
-  std::vector<CellSelection> backed(cells.size());
-  for (int level = kCellLevels - 1; level >= 0; --level)
-    for (size_t c = 0; c < cells.size(); ++c)
-      if (cells[c].level == level)
-        for (int m = 0; m < kMaterialClasses; ++m)
-          backed[c][m] = back(sums[c][m], cells[c].parent == kNoCell ? image[m] : backed[cells[c].parent][m]);
-
-  // Choices, and the variance that they predict.
-  double saved = 0;
-  for (size_t c = 0; c < cells.size(); ++c)
-    for (int m = 0; m < kMaterialClasses; ++m) {
-      const size_t choice = chooseAlpha(backed[c][m], totals);
-      result[c].alpha[m] = kAlphas[choice];
-      if (cells[c].level == 0) saved += sums[c][m].secondMoment[0] - sums[c][m].secondMoment[choice];
-    }
-  if (totals.variance > 0)
-    guide.m_data->predictedVarianceRatio = std::clamp(float(1 - saved / totals.variance), 0.1f, 1.5f);
+  else
+    guide.m_data->predictedVarianceRatio =
+        chooseAlphas(result, m_data->store, cells, distributions, parts, pixelValues);
   return guide;
 }
 

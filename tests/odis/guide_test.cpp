@@ -56,6 +56,31 @@ TEST(CellGrid, NeighboursInOneCellShareItsKeyAndFacesDoNot) {
   grid.key({1e30f, -1e30f, NAN}, up, 0);
 }
 
+TEST(CellGrid, ParentIsTheKeyOfTheNextLevel) {
+  const CellGrid grid({0.3f, -0.2f, 1}, 0.125f);
+  std::mt19937 engine(8);
+  std::normal_distribution<float> normal(0, 3);
+  for (int i = 0; i < 10000; ++i) {
+    const Float3 position = {normal(engine), normal(engine), normal(engine)};
+    const Float3 direction = {normal(engine), normal(engine), normal(engine)};
+    uint64_t key = grid.key(position, direction, 0);
+    for (int level = 1; level < kCellLevels; ++level) {
+      key = CellGrid::parent(key);
+      ASSERT_EQ(key, grid.key(position, direction, level));
+    }
+  }
+}
+
+TEST(SortByCell, KeepsTheOrderWithinACell) {
+  const std::vector<std::vector<uint32_t>> cells = {{2, 0, 2}, {}, {0, 3, 2}};
+  const std::vector<std::vector<int>> items = {{10, 11, 12}, {}, {20, 21, 22}};
+  const CellOrder<int> order =
+      sortByCell<int>(cells, 4, [&](size_t batch, size_t i) -> const int& { return items[batch][i]; });
+  std::vector<std::vector<int>> found(4);
+  for (size_t c = 0; c < 4; ++c) forEachItem(order.of(c), [&](int item) { found[c].push_back(item); });
+  EXPECT_EQ(found, (std::vector<std::vector<int>>{{11, 20}, {}, {10, 12, 22}, {21}}));
+}
+
 TEST(CellIndex, FindsWhatWasInserted) {
   CellIndex index;
   EXPECT_EQ(index.find(5), kNoCell);
@@ -122,8 +147,8 @@ TEST(Guide, FallsBackToCoarserCellsAndThenToNothing) {
 
 TEST(Guide, NothingToLearnFromIsNoCrash) {
   GuideBuilder builder;
-  builder.add({});
-  EXPECT_EQ(builder.build({}).find({0, 0, 0}, {0, 0, 1}), nullptr);
+  builder.add(PilotParts());
+  EXPECT_EQ(builder.build(PilotParts()).find({0, 0, 0}, {0, 0, 1}), nullptr);
   std::vector<PilotVertex> vertices = floorUnderPatch(kBright, 200, 4);
   for (size_t i = 0; i < vertices.size(); ++i) {
     PilotVertex& v = vertices[i];
@@ -152,6 +177,16 @@ TEST(Guide, NothingToLearnFromIsNoCrash) {
   EXPECT_TRUE(std::isfinite(guide.predictedVarianceRatio()));
 }
 
+void expectSameGuide(const Guide& a, const Guide& b, std::span<const PilotVertex> vertices) {
+  ASSERT_EQ(a.cellCount(), b.cellCount());
+  EXPECT_EQ(a.predictedVarianceRatio(), b.predictedVarianceRatio());
+  for (const PilotVertex& v : vertices) {
+    const Cell *one = a.find(v.position, v.normal), *other = b.find(v.position, v.normal);
+    ASSERT_EQ(one->map.texels, other->map.texels);
+    ASSERT_EQ(std::memcmp(one->alpha, other->alpha, sizeof(one->alpha)), 0);
+  }
+}
+
 TEST(Guide, IsTheSameForAnyNumberOfThreads) {
   const std::vector<PilotVertex> vertices = floorUnderPatch(kBright, 30000, 5);
   std::vector<Guide> guides;
@@ -161,12 +196,43 @@ TEST(Guide, IsTheSameForAnyNumberOfThreads) {
     builder.add(vertices);
     guides.push_back(builder.build(vertices));
   }
-  ASSERT_EQ(guides[0].cellCount(), guides[1].cellCount());
-  for (const PilotVertex& v : vertices) {
-    const Cell *a = guides[0].find(v.position, v.normal), *b = guides[1].find(v.position, v.normal);
-    ASSERT_EQ(a->map.texels, b->map.texels);
-    ASSERT_EQ(std::memcmp(a->alpha, b->alpha, sizeof(a->alpha)), 0);
-  }
+  expectSameGuide(guides[0], guides[1], vertices);
+}
+
+TEST(Guide, IsTheSameInPieces) {
+  const std::vector<PilotVertex> vertices = floorUnderPatch(kBright, 40000, 6);
+  const std::span<const PilotVertex> all(vertices);
+  const std::vector<std::span<const PilotVertex>> parts = {all.first(1), all.subspan(1, 0),
+                                                           all.subspan(1, 25000), all.subspan(25001)};
+  GuideBuilder whole, pieces;
+  whole.add(vertices);
+  pieces.add(parts);
+  expectSameGuide(whole.build(vertices), pieces.build(parts), vertices);
+}
+
+TEST(Guide, DividesByPixelValues) {
+  std::vector<PilotVertex> vertices = floorUnderPatch(kBright, 20000, 7);
+  GuideBuilder builder;
+  builder.add(vertices);
+  const Guide relative = builder.build(vertices);
+  // Powers of two, so that dividing is exact.
+  const std::vector<float> values = {4, 0.5f, 64};
+  for (size_t i = 0; i < vertices.size(); ++i) vertices[i].indirect *= values[vertices[i].pixel = i % 3];
+  // All pixels belong to the selection, whatever their number.
+  expectSameGuide(relative, builder.build(vertices, values), vertices);
+  EXPECT_NE(relative.predictedVarianceRatio(), builder.build(vertices).predictedVarianceRatio());
+}
+
+TEST(Selection, WhatIsNoNumberCountsAsTheLimit) {
+  CellSelection sums;
+  PilotVertex v;
+  v.pdf = v.guidablePdf = 0.1f;
+  v.guidableProbability = 1;
+  v.indirect = NAN;
+  v.emission = INFINITY;
+  v.light = NAN;
+  addVertex(sums, v, 1, 0);
+  for (const double moment : sums[0].secondMoment) EXPECT_TRUE(std::isfinite(moment));
 }
 
 TEST(Selection, PrefersTheMapWhereItMatchesTheLight) {

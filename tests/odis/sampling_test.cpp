@@ -27,6 +27,28 @@ TEST(Octahedral, InvertsItself) {
   }
 }
 
+TEST(Octahedral, PolynomialsKeepTheirPromise) {
+  std::mt19937 engine(2);
+  std::uniform_real_distribution<float> uniform(0, 1);
+  double direction = 0, square = 0;
+  for (int i = 0; i < 200000; ++i) {
+    const Float2 s{uniform(engine), uniform(engine)};
+    const Float3 w = squareToDirection(s);
+    // The azimuth, in its quadrant, in double precision.
+    const double u = std::abs(2.0 * s.x - 1), v = std::abs(2.0 * s.y - 1);
+    const double r = 1 - std::abs(1 - (u + v));
+    const double phi = ((v - u) / r + 1) * M_PI / 4, sinTheta = r * std::sqrt(2 - r * r);
+    direction = std::max(direction, std::abs(std::abs(w.x) - std::cos(phi) * sinTheta));
+    direction = std::max(direction, std::abs(std::abs(w.y) - std::sin(phi) * sinTheta));
+    // And back, from that very direction.
+    if (w.z < 0.5f) continue;
+    const double back = std::sqrt(1.0 - w.z) * std::atan2(std::abs(w.y), std::abs(w.x)) * 2 / M_PI;
+    square = std::max(square, std::abs(std::abs(2.0 * directionToSquare(w).y - 1) - back));
+  }
+  EXPECT_LT(direction, 4e-7);
+  EXPECT_LT(square, 6e-7);
+}
+
 TEST(Octahedral, KeepsAreas) {
   const auto sample = [](float, float u, float v) {
     return std::optional(toVec3(squareToDirection({u, v})));
@@ -64,6 +86,7 @@ SamplingMap makeMap(Content content) {
         break;
     }
   }
+  map.update();
   return map;
 }
 
@@ -77,8 +100,9 @@ class VertexMapTest : public ::testing::TestWithParam<Case> {};
 
 TEST_P(VertexMapTest, SampleHasTheDensityOfPdf) {
   const Case& c = GetParam();
+  const SamplingMap texels = makeMap(c.content);
   VertexMap map;
-  map.prepare(makeMap(c.content), c.normal, c.sides);
+  map.prepare(texels, c.normal, c.sides);
   ASSERT_FALSE(map.empty());
   // The density is constant within texels of the octahedral square, so the test's cells are those of the
   // square.
@@ -117,8 +141,9 @@ TEST_P(VertexMapTest, SampleHasTheDensityOfPdf) {
 
 TEST_P(VertexMapTest, PdfIsTheSampledOne) {
   const Case& c = GetParam();
+  const SamplingMap texels = makeMap(c.content);
   VertexMap map;
-  map.prepare(makeMap(c.content), c.normal, c.sides);
+  map.prepare(texels, c.normal, c.sides);
   int different = 0;
   for (int i = 0; i < 1000; ++i) {
     const VertexMap::Sample s = map.sample((i + 0.5f) / 1000, std::fmod(i * 0.618034f, 1.0f));
@@ -137,9 +162,41 @@ INSTANTIATE_TEST_SUITE_P(Maps, VertexMapTest,
                                            Case{Content::oneHot, {0, -1, 0}, Sides::reflection},
                                            Case{Content::gradient, kTilted, Sides::reflection}));
 
+// Where no block that holds anything crosses the horizon, the density is the product of map and cosine.
+TEST(VertexMap, IsTheProductAwayFromTheHorizon) {
+  for (const Sides sides : {Sides::reflection, Sides::both}) {
+    const Float3 normal = {0.48f, -0.6f, 0.64f};
+    SamplingMap texels = makeMap(Content::random);
+    double total = 0;
+    std::vector<double> product(kMapTexels);
+    for (int t = 0; t < kMapTexels; ++t) {
+      const int block = t - t % kBlockTexels;
+      int above = 0;
+      for (int i = block; i < block + kBlockTexels; ++i) above += dot(texelDirection(i), normal) > 0;
+      if (above != 0 && above != kBlockTexels) texels.texels[t] = 0;
+      const float cosine = dot(texelDirection(t), normal);
+      const float kept = sides == Sides::both ? std::abs(cosine) : std::max(cosine, 0.0f);
+      total += product[t] = texels.texels[t] * (kept + 0.02);
+    }
+    texels.update();
+    VertexMap map;
+    map.prepare(texels, normal, sides);
+    double found = 0, largest = 0;
+    for (int t = 0; t < kMapTexels; ++t) {
+      const double probability = map.texelPdf(t) * 4 * M_PI / kMapTexels;
+      if (!std::isfinite(probability)) continue;  // an empty block
+      found += probability;
+      largest = std::max(largest, std::abs(probability - product[t] / total));
+    }
+    EXPECT_NEAR(found, 1, 1e-4);
+    EXPECT_LT(largest, 0.01 / kMapTexels);
+  }
+}
+
 TEST(VertexMap, NothingToSampleIsEmpty) {
+  const SamplingMap texels = makeMap(Content::random);
   VertexMap map;
-  map.prepare(makeMap(Content::random), {NAN, 0, 1}, Sides::reflection);
+  map.prepare(texels, {NAN, 0, 1}, Sides::reflection);
   EXPECT_TRUE(map.empty());
   EXPECT_EQ(map.pdf({0, 0, 1}), 0);
 }
@@ -148,8 +205,9 @@ TEST(Mixture, IntegratesToOneAndKeepsSharpLobes) {
   // A BSDF that draws 0.7 of the time from a cosine lobe that may be guided and 0.3 from another that may
   // not.
   const float guidable = 0.7f, alpha = 0.4f;
+  const SamplingMap texels = makeMap(Content::random);
   VertexMap map;
-  map.prepare(makeMap(Content::random), {0, 0, 1}, Sides::reflection);
+  map.prepare(texels, {0, 0, 1}, Sides::reflection);
   double integral = 0;
   const int n = 1000;
   for (int i = 0; i < n; ++i)

@@ -21,12 +21,21 @@ class CellGrid {
                 dominantAxis(normal), level);
   }
 
+  // The key of the cell around a cell, one level coarser.
+  static uint64_t parent(uint64_t key) {
+    const auto halved = [&](int shift) { return (int((key >> shift) & 0x7ffff) - (1 << 18)) >> 1; };
+    return pack(halved(0), halved(19), halved(38), uint32_t(key >> 57) & 7, int(key >> 60) + 1);
+  }
+
  private:
-  // Positions are clamped to 2^18 cells either side of the origin, which only merges what is absurdly far
-  // away.
+  // Rounded down. Positions are clamped to 2^18 cells either side of the origin, which only merges what is
+  // absurdly far away; what is not a number lies at the lower end.
   static int coordinate(float x) {
-    constexpr float kLimit = 1 << 18;
-    return int(std::floor(std::fmin(std::fmax(x, -kLimit), kLimit)));
+    constexpr float kLimit = (1 << 18) - 1;
+    x = x > -kLimit ? x : -kLimit;
+    x = x < kLimit ? x : kLimit;
+    const int towardsZero = int(x);
+    return towardsZero - int(x < float(towardsZero));
   }
   // 0 to 5: +x, -x, +y, -y, +z, -z.
   static uint32_t dominantAxis(const Float3& n) {

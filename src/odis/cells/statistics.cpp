@@ -4,14 +4,11 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <cmath>
 
 namespace odis {
 
 namespace {
-
-bool isFinite(const Float3& v) {
-  return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
-}
 
 // The texel at (x, y), which may lie one step outside: the octahedral map continues across an edge mirrored
 // about the edge's middle.
@@ -24,7 +21,7 @@ int wrappedTexel(int x, int y) {
     y = y < 0 ? 0 : kMapSize - 1;
     x = kMapSize - 1 - x;
   }
-  return y * kMapSize + x;
+  return texelAt(x, y);
 }
 
 }  // namespace
@@ -40,53 +37,37 @@ Splat splat(const Float3& wi) {
           {(1 - fx) * (1 - fy), fx * (1 - fy), (1 - fx) * fy, fx * fy}};
 }
 
-bool isUsable(const PilotVertex& v) {
-  return !v.discrete && v.pdf > 0 && v.survival > 0 && std::isfinite(v.pdf) && isFinite(v.position) &&
-         isFinite(v.normal) && isFinite(v.wi) && isFinite(v.radiance) && std::isfinite(v.cosine);
-}
-
-float sampleValue(const PilotVertex& v) {
-  const float luminance = 0.212671f * v.radiance.x + 0.715160f * v.radiance.y + 0.072169f * v.radiance.z;
-  return std::max(luminance, 0.0f) * v.cosine / (v.pdf * v.survival);
-}
-
-Float3 reaim(const PilotVertex& v, const Float3& centroid) {
-  if (!std::isfinite(v.distance)) return v.wi;
-  const Float3 direction = v.position + v.wi * v.distance - centroid;
+Float3 reaim(const Float3& position, const Float3& wi, float distance, const Float3& centroid) {
+  if (!std::isfinite(distance)) return wi;
+  const Float3 direction = position + wi * distance - centroid;
   const float squared = dot(direction, direction);
-  return squared > 1e-20f && dot(direction, v.wi) > 0 ? direction * (1 / std::sqrt(squared)) : v.wi;
-}
-
-CellOrder sortByCell(const std::vector<uint32_t>& cellOfVertex, uint32_t cellCount) {
-  CellOrder result;
-  result.begin.assign(cellCount + 1, 0);
-  for (const uint32_t cell : cellOfVertex)
-    if (cell != kNoCell) ++result.begin[cell + 1];
-  for (uint32_t cell = 0; cell < cellCount; ++cell) result.begin[cell + 1] += result.begin[cell];
-  result.order.resize(result.begin.back());
-  std::vector<uint32_t> next(result.begin.begin(), result.begin.end() - 1);
-  for (uint32_t i = 0; i < cellOfVertex.size(); ++i)
-    if (cellOfVertex[i] != kNoCell) result.order[next[cellOfVertex[i]]++] = i;
-  return result;
+  return squared > 1e-20f && dot(direction, wi) > 0 ? direction * (1 / std::sqrt(squared)) : wi;
 }
 
 // The grid spans what the pilot saw, not what the scene holds: a huge ground plane must not make the cells
 // huge. A few vertices far out (0.5 % at either end of each axis) don't count.
-void CellStore::place(std::span<const PilotVertex> vertices, int cellsPerDiagonal) {
+void CellStore::place(PilotParts parts, int cellsPerDiagonal) {
   std::vector<float> axis[3];
-  const size_t step = std::max<size_t>(1, vertices.size() / 20000);
-  for (size_t i = 0; i < vertices.size(); i += step) {
-    if (!isFinite(vertices[i].position)) continue;
-    axis[0].push_back(vertices[i].position.x);
-    axis[1].push_back(vertices[i].position.y);
-    axis[2].push_back(vertices[i].position.z);
+  const size_t step = std::max<size_t>(1, countVertices(parts) / 20000);
+  size_t next = 0;  // within the part
+  for (const std::span<const PilotVertex> part : parts) {
+    for (; next < part.size(); next += step) {
+      const Float3& p = part[next].position;
+      if (!std::isfinite(p.x) || !std::isfinite(p.y) || !std::isfinite(p.z)) continue;
+      axis[0].push_back(p.x);
+      axis[1].push_back(p.y);
+      axis[2].push_back(p.z);
+    }
+    next -= part.size();
   }
   float low[3] = {}, extent[3] = {};
   for (int a = 0; a < 3 && !axis[a].empty(); ++a) {
-    std::sort(axis[a].begin(), axis[a].end());
-    const size_t cut = axis[a].size() / 200;
-    low[a] = axis[a][cut];
-    extent[a] = axis[a][axis[a].size() - 1 - cut] - low[a];
+    const auto cut = std::ptrdiff_t(axis[a].size() / 200);
+    const auto first = axis[a].begin() + cut, last = axis[a].end() - 1 - cut;
+    std::nth_element(axis[a].begin(), first, axis[a].end());
+    low[a] = *first;
+    std::nth_element(axis[a].begin(), last, axis[a].end());
+    extent[a] = *last - low[a];
   }
   const float diagonal = std::sqrt(extent[0] * extent[0] + extent[1] * extent[1] + extent[2] * extent[2]);
   const float edge = diagonal > 0 ? diagonal / float(cellsPerDiagonal) : 1.0f;
@@ -96,15 +77,14 @@ void CellStore::place(std::span<const PilotVertex> vertices, int cellsPerDiagona
   m_placed = true;
 }
 
-uint32_t CellStore::insert(const PilotVertex& vertex) {
+// The cell with this key, of the finest level; it and its ancestors are made if they are not there.
+uint32_t CellStore::insert(uint64_t key) {
   uint32_t child = kNoCell, finest = kNoCell;
-  for (int level = 0; level < kCellLevels; ++level) {
+  for (int level = 0; level < kCellLevels; ++level, key = CellGrid::parent(key)) {
     const uint32_t before = m_index.size();
-    const uint32_t cell = m_index.insert(m_grid.key(vertex.position, vertex.normal, level));
+    const uint32_t cell = m_index.insert(key);
     if (level == 0) finest = cell;
-    if (cell == before) {
-      m_cells.emplace_back().level = level;
-    }
+    if (cell == before) m_cells.emplace_back().level = level;
     if (child != kNoCell) m_cells[child].parent = cell;
     if (cell != before) break;  // its ancestors are known
     child = cell;
@@ -112,53 +92,71 @@ uint32_t CellStore::insert(const PilotVertex& vertex) {
   return finest;
 }
 
-void CellStore::add(std::span<const PilotVertex> vertices, int cellsPerDiagonal) {
-  if (!m_placed) place(vertices, cellsPerDiagonal);
+namespace {
 
-  // Sort the vertices into cells. One thread numbers the new ones, so their order is that of the vertices.
-  std::vector<uint32_t> cellOfVertex(vertices.size(), kNoCell);
-  std::vector<float> values(vertices.size(), 0.0f);
-  tbb::parallel_for(tbb::blocked_range<size_t>(0, vertices.size(), 4096), [&](const auto& range) {
-    for (size_t i = range.begin(); i < range.end(); ++i)
-      values[i] = isUsable(vertices[i]) ? sampleValue(vertices[i]) : -1;
+// Adds a batch's samples to their cell, values clamped.
+void accumulate(CellStatistics& cell, float limit, std::span<const CellSample* const> samples) {
+  if (cell.count == 0) {
+    forEachItem(samples, [&](const CellSample& s) { cell.centroid = cell.centroid + s.position; });
+    cell.centroid = cell.centroid * (1.0f / float(samples.size()));
+  }
+  forEachItem(samples, [&](const CellSample& sample) {
+    const float value = std::min(sample.value, limit);
+    cell.count += 1;
+    cell.sum += value;
+    cell.sumSquares += double(value) * value;
+    cell.normal = cell.normal + sample.normal;
+    if (value <= 0) return;
+    const Splat spread = splat(reaim(sample.position, sample.wi, sample.distance, cell.centroid));
+    for (int k = 0; k < 4; ++k) cell.histogram[spread.texel[k]] += value * spread.weight[k];
   });
-  for (size_t i = 0; i < vertices.size(); ++i)
-    if (values[i] >= 0) cellOfVertex[i] = insert(vertices[i]);
-  const CellOrder sorted = sortByCell(cellOfVertex, m_index.size());
+}
+
+}  // namespace
+
+void CellStore::add(PilotParts parts, int cellsPerDiagonal) {
+  if (!m_placed) place(parts, cellsPerDiagonal);
+
+  // Each batch finds its cells.
+  const std::vector<PilotBatch> pilot = makeBatches(parts);
+  std::vector<BatchSamples> batches(pilot.size());
+  tbb::parallel_for(size_t(0), pilot.size(), [&](size_t b) { batches[b] = takeSamples(pilot[b], m_grid); });
+
+  // One thread gives them their numbers, in the order of the vertices.
+  std::vector<std::vector<uint32_t>> numbers(pilot.size());
+  for (size_t b = 0; b < pilot.size(); ++b)
+    for (const BatchSamples::Cell& cell : batches[b].cells) numbers[b].push_back(insert(cell.key));
 
   // Values are clamped to a multiple of the mean over the next coarser cell, so that no single path rules a
   // map.
-  std::vector<double> parentSum(m_index.size(), 0.0), parentCount(m_index.size(), 0.0);
-  for (size_t i = 0; i < vertices.size(); ++i) {
-    if (cellOfVertex[i] == kNoCell) continue;
-    const uint32_t parent = m_cells[cellOfVertex[i]].parent;
-    parentSum[parent] += values[i];
-    parentCount[parent] += 1;
-  }
+  std::vector<double> parentSum(m_cells.size(), 0.0), parentCount(m_cells.size(), 0.0);
+  for (size_t b = 0; b < pilot.size(); ++b)
+    for (size_t i = 0; i < numbers[b].size(); ++i) {
+      const uint32_t parent = m_cells[numbers[b][i]].parent;
+      parentSum[parent] += batches[b].cells[i].value;
+      parentCount[parent] += batches[b].cells[i].count;
+    }
 
+  // Sort the samples by cell and add them up.
+  std::vector<std::vector<uint32_t>> cellOf(pilot.size());
+  m_transientBytes = 0;
+  for (size_t b = 0; b < pilot.size(); ++b) {
+    cellOf[b] = std::move(batches[b].cellOf);
+    m_transientBytes += batches[b].samples.size() * (sizeof(CellSample) + sizeof(uint32_t));
+  }
+  tbb::parallel_for(size_t(0), pilot.size(), [&](size_t b) {
+    for (uint32_t& cell : cellOf[b]) cell = numbers[b][cell];
+  });
+  const CellOrder<CellSample> order = sortByCell<CellSample>(
+      cellOf, uint32_t(m_cells.size()),
+      [&](size_t batch, size_t i) -> const CellSample& { return batches[batch].samples[i]; });
+  m_transientBytes += order.bytes();
   tbb::parallel_for(
-      tbb::blocked_range<uint32_t>(0, m_index.size(), 16), [&](const tbb::blocked_range<uint32_t>& range) {
-        for (uint32_t index = range.begin(); index < range.end(); ++index) {
-          CellStatistics& cell = m_cells[index];
-          const uint32_t begin = sorted.begin[index], end = sorted.begin[index + 1];
-          if (begin == end) continue;
-          if (cell.count == 0) {
-            for (uint32_t i = begin; i < end; ++i)
-              cell.centroid = cell.centroid + vertices[sorted.order[i]].position;
-            cell.centroid = cell.centroid * (1.0f / float(end - begin));
-          }
-          const float limit = m_clamp * float(parentSum[cell.parent] / parentCount[cell.parent]);
-          for (uint32_t i = begin; i < end; ++i) {
-            const PilotVertex& vertex = vertices[sorted.order[i]];
-            const float value = std::min(values[sorted.order[i]], limit);
-            cell.count += 1;
-            cell.sum += value;
-            cell.sumSquares += double(value) * value;
-            cell.normal = cell.normal + vertex.normal;
-            if (value <= 0) continue;
-            const Splat place = splat(reaim(vertex, cell.centroid));
-            for (int k = 0; k < 4; ++k) cell.histogram[place.texel[k]] += value * place.weight[k];
-          }
+      tbb::blocked_range<size_t>(0, m_cells.size(), 16), [&](const tbb::blocked_range<size_t>& range) {
+        for (size_t c = range.begin(); c < range.end(); ++c) {
+          if (order.of(c).empty()) continue;
+          const uint32_t parent = m_cells[c].parent;
+          accumulate(m_cells[c], m_clamp * float(parentSum[parent] / parentCount[parent]), order.of(c));
         }
       });
 }

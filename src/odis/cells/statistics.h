@@ -3,12 +3,9 @@
 #pragma once
 
 #include <array>
-#include <span>
 #include <vector>
 
-#include "odis/cells/grid.h"
-#include "odis/guide.h"
-#include "odis/pilot.h"
+#include "odis/cells/samples.h"
 #include "odis/sampling.h"
 
 namespace odis {
@@ -39,38 +36,31 @@ class CellStore {
   explicit CellStore(float clamp) : m_clamp(clamp) {}
 
   // Sorts the vertices into cells and adds them up. The first call places the grid.
-  void add(std::span<const PilotVertex> vertices, int cellsPerDiagonal);
+  void add(PilotParts parts, int cellsPerDiagonal);
   // The cells with the coarser levels filled in.
   std::vector<CellStatistics> rollUp() const;
 
   const CellGrid& grid() const { return m_grid; }
   const CellIndex& index() const { return m_index; }
   uint64_t bytes() const { return m_cells.capacity() * sizeof(CellStatistics) + m_index.bytes(); }
+  // What the last `add` needed on top of the cells.
+  uint64_t transientBytes() const { return m_transientBytes; }
   float clamp() const { return m_clamp; }
 
  private:
-  void place(std::span<const PilotVertex> vertices, int cellsPerDiagonal);
-  uint32_t insert(const PilotVertex& vertex);
+  void place(PilotParts parts, int cellsPerDiagonal);
+  uint32_t insert(uint64_t key);
 
   float m_clamp;
   bool m_placed = false;
   CellGrid m_grid;
   CellIndex m_index;
   std::vector<CellStatistics> m_cells;
+  uint64_t m_transientBytes = 0;
 };
 
-// Whether there is something to learn from a vertex: not discrete, and everything finite.
-bool isUsable(const PilotVertex& vertex);
-// What the vertex adds to a histogram: the estimate of radiance * cos, as a luminance.
-float sampleValue(const PilotVertex& vertex);
-// The direction in which a cell's centroid sees what the vertex saw.
-Float3 reaim(const PilotVertex& vertex, const Float3& centroid);
-
-// The vertices of each cell of the finest level, in their order: `order[begin[c] .. begin[c + 1])`.
-struct CellOrder {
-  std::vector<uint32_t> order;
-  std::vector<uint32_t> begin;
-};
-CellOrder sortByCell(const std::vector<uint32_t>& cellOfVertex, uint32_t cellCount);
+// The direction in which a cell's centroid sees what a vertex at `position` saw at `distance` in direction
+// `wi`.
+Float3 reaim(const Float3& position, const Float3& wi, float distance, const Float3& centroid);
 
 }  // namespace odis

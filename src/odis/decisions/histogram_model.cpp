@@ -1,4 +1,5 @@
 #include "odis/decisions/direction_model.h"
+#include "odis/decisions/texel_directions.h"
 
 namespace odis {
 
@@ -8,12 +9,17 @@ DirectionDistribution HistogramModel::predict(const CellStatistics& cell,
   const float length = std::sqrt(dot(cell.normal, cell.normal));
   const Float3 normal = length > 0 ? cell.normal * (1 / length) : Float3{0, 0, 1};
 
+  Histogram cosines;  // to the texels' centres
+  for (int t = 0; t < kMapTexels; ++t)
+    cosines[t] = kTexelDirections.x[t] * normal.x + kTexelDirections.y[t] * normal.y +
+                 kTexelDirections.z[t] * normal.z;
+
   // What is believed before the cell has seen anything: its parent's map, or a cosine lobe on top of a little
   // of everything (surfaces that transmit light receive it from both sides).
   Histogram prior;
   float priorSum = 0;
   for (int t = 0; t < kMapTexels; ++t) {
-    prior[t] = parent ? parent->probability[t] : std::max(dot(texelDirection(t), normal), 0.05f);
+    prior[t] = parent ? parent->probability[t] : std::max(cosines[t], 0.05f);
     priorSum += prior[t];
   }
 
@@ -23,7 +29,7 @@ DirectionDistribution HistogramModel::predict(const CellStatistics& cell,
   const float own = float(effective / (effective + trust));
   const float perSample = cell.sum > 0 ? own / float(cell.sum) : 0;
   for (int t = 0; t < kMapTexels; ++t) {
-    const float cosine = std::max(std::abs(dot(texelDirection(t), normal)), 0.1f);
+    const float cosine = std::max(std::abs(cosines[t]), 0.1f);
     result.probability[t] =
         (cell.sum > 0 ? 1 - own : 1) * prior[t] / priorSum + perSample * cell.histogram[t];
     result.perCosine[t] = 1 / cosine;

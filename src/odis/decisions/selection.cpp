@@ -16,6 +16,11 @@ constexpr float kContributionLimit = 50;
 // made from few samples, and the best of several looks better than it is.
 constexpr double kMargin = 0.02;
 
+// The lesser one; the limit for what is not a number.
+float limited(float value, float limit) {
+  return value < limit ? value : limit;
+}
+
 }  // namespace
 
 void SelectionSums::add(const SelectionSums& other, double scale) {
@@ -29,20 +34,27 @@ void SelectionSums::add(const SelectionSums& other, double scale) {
 // With D the direction's contribution at the pilot's density b and q the mixture's density, the second moment
 // of the contribution under q is E_b[D^2 b / q]; next-event estimate N and direction are independent given
 // the vertex, so their cross term is E[N] E[D] whatever q is. MIS weights depend on q and are made anew.
-void addVertex(CellSelection& sums, const PilotVertex& v, float mapPdf, float lightMapPdf) {
+void addVertex(CellSelection& sums, const PilotVertex& v, float mapPdf, float lightMapPdf, float scale) {
   SelectionSums& s = sums[int(materialClass(v.roughness))];
   s.count += 1;
+  // A discrete lobe is as likely under every candidate. Anything over infinity is nothing: no weight is lost
+  // where MIS does not apply.
+  const float own = v.discrete ? 1 : v.pdf;
+  const float gain = v.discrete ? 0 : v.guidableProbability * mapPdf - v.guidablePdf;
+  const float emissionPdf = v.discrete ? 0 : v.emissionLightPdf;
+  const float lightGain = v.guidableProbability * lightMapPdf - v.lightGuidablePdf;
+  const float lightPdf = v.lightPdf > 0 ? v.lightPdf : INFINITY;
+  const float indirect = v.indirect * scale, emission = v.emission * scale, light = v.light * scale;
   for (size_t a = 0; a < kAlphas.size(); ++a) {
-    const float density =
-        v.discrete ? v.pdf : mixturePdf(v.pdf, v.guidablePdf, v.guidableProbability, kAlphas[a], mapPdf);
-    const float ratio = v.discrete ? 1.0f : v.pdf / density;
-    const float emission = v.emission * (v.discrete ? 1.0f : powerHeuristic(density, v.emissionLightPdf));
-    const float direction = std::min(v.indirect + emission, kContributionLimit);
-    const float lightDensity =
-        mixturePdf(v.lightBsdfPdf, v.lightGuidablePdf, v.guidableProbability, kAlphas[a], lightMapPdf);
-    const float light = std::min(
-        v.lightPdf > 0 ? v.light * powerHeuristic(v.lightPdf, lightDensity) : v.light, kContributionLimit);
-    s.secondMoment[a] += light * light + 2 * light * direction + direction * direction * ratio;
+    const float guided = 1 - kAlphas[a];
+    const float density = own + guided * gain;  // mixturePdf
+    const float ratio = own / density;
+    const float emissionRatio = emissionPdf / density;
+    const float direction =
+        limited(indirect + emission / (1 + emissionRatio * emissionRatio), kContributionLimit);
+    const float lightRatio = (v.lightBsdfPdf + guided * lightGain) / lightPdf;
+    const float direct = limited(light / (1 + lightRatio * lightRatio), kContributionLimit);
+    s.secondMoment[a] += direct * direct + 2 * direct * direction + direction * direction * ratio;
     s.rays[a] += v.raysAfter / std::max(ratio, 0.05f);
   }
 }

@@ -26,8 +26,10 @@ struct SelectionSums {
 using CellSelection = std::array<SelectionSums, kMaterialClasses>;
 
 // Adds one vertex, whose density under its cell's map (with the vertex's own sample taken out) is `mapPdf`
-// for its direction and `lightMapPdf` for the direction of its next-event estimate.
-void addVertex(CellSelection& sums, const PilotVertex& vertex, float mapPdf, float lightMapPdf);
+// for its direction and `lightMapPdf` for the direction of its next-event estimate. What it adds to its pixel
+// is multiplied by `scale`.
+void addVertex(CellSelection& sums, const PilotVertex& vertex, float mapPdf, float lightMapPdf,
+               float scale = 1);
 
 // What the sums are weighed against: those of the whole image.
 struct SelectionTotals {

@@ -1,57 +1,96 @@
+#include "odis/decisions/texel_directions.h"
 #include "odis/sampling.h"
-
-// The one hot loop of the library, compiled for several instruction sets and chosen at load time.
-#if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__)
-#define ODIS_MULTIVERSION __attribute__((target_clones("arch=x86-64-v4", "avx2,fma", "default")))
-#else
-#define ODIS_MULTIVERSION
-#endif
 
 namespace odis {
 
 namespace {
 
-// The directions of the texels' centres, as three arrays.
-struct TexelDirections {
-  alignas(64) float x[kMapTexels], y[kMapTexels], z[kMapTexels];
-  TexelDirections() {
-    for (int i = 0; i < kMapTexels; ++i) {
-      const Float3 w = texelDirection(i);
-      x[i] = w.x;
-      y[i] = w.y;
-      z[i] = w.z;
-    }
-  }
-};
-const TexelDirections kDirections;
+// What is added to every cosine, so that the rim of texels whose centre lies below the horizon can be
+// sampled.
+constexpr float kRim = 0.02f;
 
-// weights[i] = texels[i] * max(cos_i, lowest * cos_i), where `lowest` is 0 (reflection) or -1 (both sides).
-ODIS_MULTIVERSION void multiply(const uint16_t* texels, const TexelDirections& w, float nx, float ny,
-                                float nz, float lowest, float* weights, float* rows) {
-  for (int y = 0; y < kMapSize; ++y) {
-    float partial[kMapSize];
-    for (int x = 0; x < kMapSize; ++x) {
-      const int i = y * kMapSize + x;
-      const float cosine = w.x[i] * nx + w.y[i] * ny + w.z[i] * nz;
-      const float scaled = lowest * cosine;
-      partial[x] = weights[i] = float(texels[i]) * (cosine > scaled ? cosine : scaled);
-    }
-    for (int half = kMapSize / 2; half > 0; half /= 2)
-      for (int x = 0; x < half; ++x) partial[x] += partial[x + half];
-    rows[y] = partial[0];
-  }
+// Which of four weights a number u uniform in [0, 1) falls into; u becomes its place within that weight. No
+// branches: they would be mispredicted every other time.
+int pick(const float* weights, float& u) {
+  const float begin[4] = {0, weights[0], weights[0] + weights[1], weights[0] + weights[1] + weights[2]};
+  const float target = u * (begin[3] + weights[3]);
+  const int i = int(target >= begin[1]) + int(target >= begin[2]) + int(target >= begin[3]);
+  u = std::clamp((target - begin[i]) / weights[i], 0.0f, 0x1.fffffep-1f);
+  return i;
+}
+
+// Sums of each row of a 4 x 4 table, and their sum.
+float sumRows(const float* table, float* rows) {
+  for (int y = 0; y < 4; ++y)
+    rows[y] = (table[4 * y] + table[4 * y + 1]) + (table[4 * y + 2] + table[4 * y + 3]);
+  return (rows[0] + rows[1]) + (rows[2] + rows[3]);
 }
 
 }  // namespace
 
+void SamplingMap::update() {
+  for (int b = 0; b < kMapBlocks; ++b) {
+    x[b] = y[b] = z[b] = sum[b] = 0;
+    for (int t = b * kBlockTexels; t < (b + 1) * kBlockTexels; ++t) {
+      x[b] += texels[t] * kTexelDirections.x[t];
+      y[b] += texels[t] * kTexelDirections.y[t];
+      z[b] += texels[t] * kTexelDirections.z[t];
+      sum[b] += texels[t];
+    }
+  }
+}
+
 void VertexMap::prepare(const SamplingMap& map, const Float3& normal, Sides sides) {
-  multiply(map.texels.data(), kDirections, normal.x, normal.y, normal.z, sides == Sides::both ? -1.0f : 0.0f,
-           m_weights.data(), m_rows.data());
-  m_total = 0;
-  for (const float row : m_rows) m_total += row;
+  m_map = &map;
+  m_normal = normal;
+  m_below = sides == Sides::both ? -1.0f : 0.0f;
+  for (int b = 0; b < kMapBlocks; ++b) {
+    const float cosines = map.x[b] * normal.x + map.y[b] * normal.y + map.z[b] * normal.z;
+    const float below = m_below * cosines;
+    m_blocks[b] = (cosines > below ? cosines : below) + kRim * map.sum[b];
+  }
+  const float total = sumRows(m_blocks.data(), m_rows.data());
   constexpr float kTexelsPerSteradian = kMapTexels / (4 * 3.14159265358979f);
-  if (empty()) m_weights.fill(0);
-  m_toPdf = empty() ? 0 : kTexelsPerSteradian / m_total;
+  m_toPdf = total > 0 && total < INFINITY ? kTexelsPerSteradian / total : 0;
+}
+
+// The texels of one block: their weights, the sums of their rows and the density of a unit of weight.
+struct VertexMap::BlockWeights {
+  float texels[kBlockTexels];
+  float rows[kBlockSize];
+  float toPdf;
+};
+
+void VertexMap::weigh(int block, BlockWeights& weights) const {
+  const int first = block * kBlockTexels;
+  const float *x = kTexelDirections.x + first, *y = kTexelDirections.y + first,
+              *z = kTexelDirections.z + first;
+  const uint16_t* texels = m_map->texels.data() + first;
+  for (int t = 0; t < kBlockTexels; ++t) {
+    const float cosine = x[t] * m_normal.x + y[t] * m_normal.y + z[t] * m_normal.z;
+    const float below = m_below * cosine;
+    weights.texels[t] = float(texels[t]) * ((cosine > below ? cosine : below) + kRim);
+  }
+  weights.toPdf = m_toPdf * m_blocks[block] / sumRows(weights.texels, weights.rows);
+}
+
+VertexMap::Sample VertexMap::sample(float u, float v) const {
+  const int blockY = pick(m_rows.data(), v);
+  const int block = blockY * kBlockSize + pick(m_blocks.data() + blockY * kBlockSize, u);
+  BlockWeights weights;
+  weigh(block, weights);
+  const int y = pick(weights.rows, v);
+  const int x = pick(weights.texels + y * kBlockSize, u);
+  const int within = y * kBlockSize + x;
+  return {squareToDirection(pointOfTexel(block * kBlockTexels + within, {u, v})),
+          weights.texels[within] * weights.toPdf};
+}
+
+float VertexMap::texelPdf(int texel) const {
+  if (empty()) return 0;
+  BlockWeights weights;
+  weigh(texel / kBlockTexels, weights);
+  return weights.texels[texel % kBlockTexels] * weights.toPdf;
 }
 
 }  // namespace odis

@@ -26,12 +26,6 @@ void accumulate(FeatureSums& sums, const FirstHit& first) {
   ++sums.hits;
 }
 
-// What one tile adds beside the images.
-struct TileResult {
-  std::vector<PilotVertex> records;
-  RayCounts counts;
-};
-
 // The pixels of a tile in blocks of 4 x 4, so that neighbours in the list are neighbours in the image.
 std::vector<uint32_t> pixelsOfTile(const Crop& crop, int x0, int y0) {
   constexpr int kBlock = 4;
@@ -46,7 +40,7 @@ std::vector<uint32_t> pixelsOfTile(const Crop& crop, int x0, int y0) {
 }
 
 // Adds what a path brought to its pixel.
-void deliver(const Pass& pass, Path& path, uint32_t pixel, float filterWeight, TileResult& tile) {
+void deliver(const Pass& pass, const Path& path, uint32_t pixel, float filterWeight) {
   // A path that is not a number (a broken normal, an overflow) would spoil its pixel for good: it counts as
   // black.
   const Rgb value = isFinite(path.radiance) ? path.radiance * filterWeight : Rgb(0, 0, 0);
@@ -59,17 +53,12 @@ void deliver(const Pass& pass, Path& path, uint32_t pixel, float filterWeight, T
   }
   if (pass.emitted) (*pass.emitted)[pixel] += path.emitted * filterWeight;
   if (pass.features) accumulate((*pass.features)[pixel], path.first);
-  for (PilotVertex& vertex : path.vertices) {
-    vertex.pixel = pixel;
-    vertex.sampleWeight = filterWeight;
-  }
-  tile.records.insert(tile.records.end(), path.vertices.begin(), path.vertices.end());
-  tile.counts.rays += path.counts.rays;
-  tile.counts.shadowRays += path.counts.shadowRays;
 }
 
-// All samples of a tile, one of each pixel at a time. Returns how many they were.
-uint64_t renderTile(const Pass& pass, const PathSettings& settings, int x0, int y0, TileResult& tile) {
+// All samples of a tile, one of each pixel at a time; appends their vertices to `records` if it is given.
+// Returns how many samples they were.
+uint64_t renderTile(const Pass& pass, const PathSettings& settings, int x0, int y0,
+                    std::vector<PilotVertex>* records, RayCounts& counts) {
   const FilmSettings& film = settings.scene->film();
   const std::vector<uint32_t> pixels = pixelsOfTile(film.crop, x0, y0);
   uint64_t done = 0;
@@ -91,9 +80,18 @@ uint64_t renderTile(const Pass& pass, const PathSettings& settings, int x0, int 
       targets.emplace_back(index, filterWeight);
     }
     if (paths.empty()) return done;
-    tracePaths(settings, paths);
-    for (size_t i = 0; i < paths.size(); ++i)
-      deliver(pass, paths[i], targets[i].first, targets[i].second, tile);
+    size_t vertex = records ? records->size() : 0;
+    tracePaths(settings, paths, records);
+    for (size_t i = 0; i < paths.size(); ++i) {
+      const auto [pixel, filterWeight] = targets[i];
+      deliver(pass, paths[i], pixel, filterWeight);
+      counts.rays += paths[i].counts.rays;
+      counts.shadowRays += paths[i].counts.shadowRays;
+      for (uint32_t v = 0; v < paths[i].recorded; ++v, ++vertex) {
+        (*records)[vertex].pixel = pixel;
+        (*records)[vertex].sampleWeight = filterWeight;
+      }
+    }
     done += paths.size();
   }
 }
@@ -110,35 +108,33 @@ RayCounts runPass(const Pass& pass, Progress& progress, const std::function<bool
   const Crop& crop = pass.path.scene->film().crop;
   const int tilesX = (crop.width + kTileSize - 1) / kTileSize,
             tilesY = (crop.height + kTileSize - 1) / kTileSize;
-  std::vector<TileResult> tiles(size_t(tilesX) * tilesY);
   PathSettings settings = pass.path;
-  settings.records = pass.records != nullptr;
   settings.features = pass.features != nullptr;
+  std::vector<RayCounts> counts(size_t(tilesX) * tilesY);
+  const size_t firstRecords = pass.records ? pass.records->size() : 0;
+  if (pass.records) pass.records->resize(firstRecords + counts.size());
   tbb::parallel_for(
-      tbb::blocked_range<size_t>(0, tiles.size(), 1),
+      tbb::blocked_range<size_t>(0, counts.size(), 1),
       [&](const tbb::blocked_range<size_t>& range) {
         flushDenormals();
         for (size_t t = range.begin(); t < range.end(); ++t) {
           if (stop()) return;
-          progress.advance(renderTile(pass, settings, int(t % size_t(tilesX)) * kTileSize,
-                                      int(t / size_t(tilesX)) * kTileSize, tiles[t]));
+          // Records are gathered in memory that stays warm, then stored without slack.
+          thread_local std::vector<PilotVertex> records;
+          records.clear();
+          const uint64_t done =
+              renderTile(pass, settings, int(t % size_t(tilesX)) * kTileSize,
+                         int(t / size_t(tilesX)) * kTileSize, pass.records ? &records : nullptr, counts[t]);
+          if (pass.records) (*pass.records)[firstRecords + t].assign(records.begin(), records.end());
+          progress.advance(done);
         }
       },
       tbb::simple_partitioner());
 
   RayCounts total;
-  size_t vertices = 0;
-  for (const TileResult& tile : tiles) {
-    total.rays += tile.counts.rays;
-    total.shadowRays += tile.counts.shadowRays;
-    vertices += tile.records.size();
-  }
-  if (pass.records) {
-    pass.records->reserve(pass.records->size() + vertices);
-    for (TileResult& tile : tiles) {
-      pass.records->insert(pass.records->end(), tile.records.begin(), tile.records.end());
-      tile.records = {};
-    }
+  for (const RayCounts& tile : counts) {
+    total.rays += tile.rays;
+    total.shadowRays += tile.shadowRays;
   }
   return total;
 }

@@ -24,6 +24,9 @@ struct FeatureSums {
   uint32_t hits = 0;
 };
 
+// Pilot vertices, an array for each tile.
+using Records = std::vector<std::vector<PilotVertex>>;
+
 struct Pass {
   PathSettings path;
   SamplerKind sampler = SamplerKind::sobol;
@@ -35,7 +38,7 @@ struct Pass {
   // Where results go; images have one entry a pixel of the crop. Null: not wanted.
   std::vector<PixelSums>* image = nullptr;
   std::vector<FeatureSums>* features = nullptr;
-  std::vector<PilotVertex>* records = nullptr;  // appended in the order of the tiles
+  Records* records = nullptr;  // one array a tile is appended
   std::vector<Rgb>* emitted = nullptr;
 };
 

@@ -43,7 +43,7 @@ class VertexGuide {
     if (!(m_guidable > 0)) return;
     const Vec3 normal = wo.z < 0 ? -at.shading.n : at.shading.n;
     const Cell* cell = settings.guide->find(toOdis(at.p), toOdis(normal));
-    if (!cell) return;
+    if (!cell || !cell->guidesAny()) return;
     m_alpha = cell->alpha[int(materialClass(bsdf.features(at, wo).roughness))];
     if (m_alpha >= 1) return;
     m_map.prepare(cell->map, toOdis(normal), bsdf.traits().transmissive ? Sides::both : Sides::reflection);
@@ -72,10 +72,10 @@ class VertexGuide {
       if (isDiscrete(result.lobe)) return result;
     }
     if (fromMap && (m_guidable >= 1 || result.lobe != Lobe::nearDelta)) {
-      const Float3 wi = m_map.sample(u.x, u.y).wi;
-      result.wi = at.shading.toLocal(fromOdis(wi));
+      const VertexMap::Sample sample = m_map.sample(u.x, u.y);
+      result.wi = at.shading.toLocal(fromOdis(sample.wi));
       const BsdfValue value = bsdf.evaluate(at, wo, result.wi);
-      result.pdf = pdf(value.pdf, value.guidablePdf, fromOdis(wi));
+      result.pdf = mixturePdf(value.pdf, value.guidablePdf, m_guidable, m_alpha, sample.pdf);
       result.guidablePdf = value.guidablePdf;
       result.weight = value.value / result.pdf;
       result.eta = 1;
@@ -100,8 +100,10 @@ void describe(FirstHit& first, const SurfacePoint& at, const Vec3& wo, float dis
   first = {true, at.p, at.shading.n * side, at.ng * side, features.albedo, distance, features.roughness};
 }
 
-// What each recorded vertex must remember until its path is complete.
-struct Pending {
+// A recorded vertex, with what it must remember until its path is complete.
+struct PendingRecord {
+  PilotVertex vertex;
+  uint32_t previous = 0;    // of the same path
   Rgb weight{0, 0, 0};      // of the vertex: f |cos| / pdf / survival
   Rgb throughput{0, 0, 0};  // up to the vertex, it excluded
   Rgb emission{0, 0, 0};    // met by the vertex's direction, without MIS weight
@@ -115,7 +117,8 @@ struct Errand {
   Rgb radiance;
 };
 
-// What the paths of a batch share while they are traced; kept from batch to batch for its memory.
+// What the paths of a batch share while they are traced; kept from batch to batch for its memory. 48 + 28
+// bytes a path and 28 + 16 a shadow ray.
 struct Batch {
   std::vector<uint32_t> active;  // paths that have a ray to trace
   std::vector<Ray> rays;         // theirs
@@ -123,33 +126,40 @@ struct Batch {
   std::vector<Errand> errands;
   std::vector<Ray> shadowRays;
   std::vector<uint8_t> hidden;
-  std::vector<std::vector<Pending>> pending;  // for each path
+  bool recording = false;
+  std::vector<PendingRecord> records;  // of all paths, as they come
 };
 
 // Adds emission that the path's ray met, weighted against next-event estimation where that could have found
 // it too. `emitterPdf` is the density with which the emitter would have been sampled there.
-void addEmission(const PathSettings& settings, Path& path, std::vector<Pending>& pending, int depth,
-                 const Rgb& emission, const Emitter& emitter, float emitterPdf) {
+void addEmission(const PathSettings& settings, Path& path, Batch& batch, int depth, const Rgb& emission,
+                 const Emitter& emitter, float emitterPdf) {
   if (isBlack(emission)) return;
   const float lightPdf = path.bySampling ? emitterPdf * settings.lights->probability(emitter) : 0;
   const float weight = path.bySampling ? powerHeuristic(path.directionPdf, lightPdf) : 1;
   path.radiance += path.throughput * emission * weight;
   if (depth == 1) path.emitted += emission;
-  if (!settings.records || depth == 1) return;
-  PilotVertex& v = path.vertices.back();
-  Pending& p = pending.back();
+  if (!batch.recording || depth == 1) return;
+  PendingRecord& p = batch.records[path.lastRecord];
   // Several environments may be met at once; the brightest decides what the selection probability is told.
-  if (luminance(emission) > luminance(p.emission)) v.emissionLightPdf = lightPdf;
+  if (luminance(emission) > luminance(p.emission)) p.vertex.emissionLightPdf = lightPdf;
   p.emissionWeight = (luminance(p.emission) * p.emissionWeight + luminance(emission) * weight) /
                      (luminance(p.emission) + luminance(emission));
   p.emission += emission;
 }
 
-// The vertex as a record, but for what only the complete path knows.
-void record(Path& path, const SurfacePoint& at, const Vec3& wo, const BsdfSample& next, float survival,
-            const LightEstimate& light, const Rgb& direct, int depth) {
+// Records the vertex, but for what only the complete path knows.
+void record(Path& path, Batch& batch, const SurfacePoint& at, const Vec3& wo, const BsdfSample& next,
+            const Rgb& weight, float survival, const LightEstimate& light, const Rgb& direct, int depth) {
   const Bsdf& bsdf = at.shape->bsdf();
-  PilotVertex& v = path.vertices.emplace_back();
+  PendingRecord& p = batch.records.emplace_back();
+  p.previous = path.lastRecord;
+  p.weight = weight;
+  p.throughput = path.throughput;
+  p.rays = path.counts.rays + path.counts.shadowRays;
+  path.lastRecord = uint32_t(batch.records.size() - 1);
+  ++path.recorded;
+  PilotVertex& v = p.vertex;
   v.position = toOdis(at.p);
   v.normal = toOdis(wo.z < 0 ? -at.shading.n : at.shading.n);
   v.wo = toOdis(-path.ray.direction);
@@ -176,7 +186,6 @@ void record(Path& path, const SurfacePoint& at, const Vec3& wo, const BsdfSample
 // is a ray to go on with, which is then path.ray; what next-event estimation would add becomes an errand.
 bool extend(const PathSettings& settings, Path& path, uint32_t index, const Hit& hit, int depth,
             Batch& batch) {
-  std::vector<Pending>& pending = batch.pending[index];
   Sampler& sampler = path.sampler;
   sampler.startVertex(depth);
   ++path.counts.rays;
@@ -184,7 +193,7 @@ bool extend(const PathSettings& settings, Path& path, uint32_t index, const Hit&
   // A ray that leaves the scene meets the environment.
   if (!hit.shape) {
     for (const EnvironmentEmitter* environment : settings.scene->environments())
-      addEmission(settings, path, pending, depth, environment->radiance(path.ray.direction), *environment,
+      addEmission(settings, path, batch, depth, environment->radiance(path.ray.direction), *environment,
                   path.bySampling ? environment->pdf(path.previous, path.ray.direction) : 0);
     return false;
   }
@@ -192,9 +201,9 @@ bool extend(const PathSettings& settings, Path& path, uint32_t index, const Hit&
   // Others meet a surface, which may emit.
   const SurfacePoint at = hit.shape->surfacePoint(path.ray, hit.raw);
   const float length = odis::render::length(at.p - path.ray.origin);
-  if (settings.records && depth > 1) path.vertices.back().distance = length;
+  if (batch.recording && depth > 1) batch.records[path.lastRecord].vertex.distance = length;
   if (const SurfaceEmitter* emitter = hit.shape->emitter())
-    addEmission(settings, path, pending, depth, emitter->radiance(at, -path.ray.direction), *emitter,
+    addEmission(settings, path, batch, depth, emitter->radiance(at, -path.ray.direction), *emitter,
                 path.bySampling ? emitter->pdf(path.previous, at) : 0);
   if (settings.maxDepth >= 0 && depth >= settings.maxDepth) return false;
 
@@ -232,15 +241,11 @@ bool extend(const PathSettings& settings, Path& path, uint32_t index, const Hit&
   if (survives && depth >= settings.rrDepth) {
     survival = std::min(maxComponent(path.throughput * weight) * sqr(eta), 0.95f);
     survives = uSurvival < survival;
-    weight = survives ? weight / survival : Rgb(0, 0, 0);
+    weight /= survival;
   }
 
-  if (settings.records) {
-    record(path, at, wo, next, survival, light, direct, depth);
-    pending.push_back({.weight = survives ? weight : Rgb(0, 0, 0),
-                       .throughput = path.throughput,
-                       .rays = path.counts.rays + path.counts.shadowRays});
-  }
+  if (!survives) weight = Rgb(0, 0, 0);
+  if (batch.recording) record(path, batch, at, wo, next, weight, survival, light, direct, depth);
   if (!survives) return false;
 
   path.throughput *= weight;
@@ -253,15 +258,15 @@ bool extend(const PathSettings& settings, Path& path, uint32_t index, const Hit&
 }
 
 // Runs the errands of this bounce: adds the light that nothing hides, and tells records of what is hidden.
-void addDirectLight(const PathSettings& settings, std::span<Path> paths, Batch& batch) {
+void addDirectLight(const Scene& scene, std::span<Path> paths, Batch& batch) {
   batch.hidden.resize(batch.errands.size());
-  settings.scene->occluded(batch.shadowRays, batch.hidden);
+  scene.occluded(batch.shadowRays, batch.hidden);
   for (size_t i = 0; i < batch.errands.size(); ++i) {
     Path& path = paths[batch.errands[i].path];
     if (!batch.hidden[i]) {
       path.radiance += batch.errands[i].radiance;
-    } else if (settings.records) {
-      PilotVertex& v = path.vertices.back();
+    } else if (batch.recording) {
+      PilotVertex& v = batch.records[path.lastRecord].vertex;
       v.direct = {};
       v.light = v.lightPdf = 0;
     }
@@ -270,13 +275,17 @@ void addDirectLight(const PathSettings& settings, std::span<Path> paths, Batch& 
   batch.shadowRays.clear();
 }
 
-// Fills what only the complete path knows: radiance from there on and the contributions to the pixel, from
-// the last vertex back to the first.
-void completeRecords(Path& path, const std::vector<Pending>& pending) {
+// Appends the vertices of a path, with what only the complete path knows: radiance from there on and the
+// contributions to the pixel, from the last vertex back to the first.
+void completeRecords(const Path& path, const Batch& batch, std::vector<PilotVertex>& records) {
   Rgb beyond(0, 0, 0);  // scattered towards this vertex by the next one
-  for (size_t i = path.vertices.size(); i-- > 0;) {
-    PilotVertex& v = path.vertices[i];
-    const Pending& p = pending[i];
+  const size_t first = records.size();
+  records.resize(first + path.recorded);
+  uint32_t from = path.lastRecord;
+  for (size_t i = records.size(); i-- > first;) {
+    const PendingRecord& p = batch.records[from];
+    from = p.previous;
+    PilotVertex& v = records[i] = p.vertex;
     const Rgb arriving = p.emission * p.emissionWeight + beyond;
     v.radiance = {arriving.x, arriving.y, arriving.z};
     v.weight = {p.weight.x, p.weight.y, p.weight.z};
@@ -289,12 +298,12 @@ void completeRecords(Path& path, const std::vector<Pending>& pending) {
 
 }  // namespace
 
-void tracePaths(const PathSettings& settings, std::span<Path> paths) {
+void tracePaths(const PathSettings& settings, std::span<Path> paths, std::vector<PilotVertex>* records) {
   thread_local Batch batch;
+  batch.recording = records != nullptr;
+  batch.records.clear();
   batch.active.resize(paths.size());
   std::iota(batch.active.begin(), batch.active.end(), 0u);
-  batch.pending.resize(std::max(batch.pending.size(), paths.size()));
-  for (std::vector<Pending>& pending : batch.pending) pending.clear();
 
   for (int depth = 1; !batch.active.empty(); ++depth) {
     batch.rays.clear();
@@ -308,10 +317,10 @@ void tracePaths(const PathSettings& settings, std::span<Path> paths) {
       if (extend(settings, paths[index], index, batch.hits[i], depth, batch)) batch.active[left++] = index;
     }
     batch.active.resize(left);
-    addDirectLight(settings, paths, batch);
+    addDirectLight(*settings.scene, paths, batch);
   }
-  if (settings.records)
-    for (size_t i = 0; i < paths.size(); ++i) completeRecords(paths[i], batch.pending[i]);
+  if (records)
+    for (const Path& path : paths) completeRecords(path, batch, *records);
 }
 
 }  // namespace odis::render

@@ -21,7 +21,6 @@ struct PathSettings {
   int rrDepth = 5;
   const Guide* guide = nullptr;  // null: BSDF sampling only
   int guideBounces = -1;         // -1: all
-  bool records = false;          // fill Path::vertices
   bool features = false;         // fill Path::first
 };
 
@@ -49,9 +48,7 @@ struct Path {
   Rgb emitted{0, 0, 0};  // the part of it that the camera ray met directly
   FirstHit first;        // if asked for
   RayCounts counts;
-  // If asked for, a record of each vertex. Fields for the selection probability are in units of radiance:
-  // whoever knows the pixel divides by its value.
-  std::vector<PilotVertex> vertices;
+  uint32_t recorded = 0;  // vertices in the records
 
   // How things stand while it is traced.
   Rgb throughput{1, 1, 1};
@@ -60,11 +57,15 @@ struct Path {
   float directionPdf = 0;   // its density, if so
   Vec3 previous;            // where the ray started
   float distance = 0;       // from the camera to there
+  uint32_t lastRecord = 0;  // within the batch
 };
 
 // Traces all paths side by side, a bounce of each before the next bounce of any, so that rays reach the
-// intersector many at once. What a path gathers does not depend on its neighbours.
-void tracePaths(const PathSettings& settings, std::span<Path> paths);
+// intersector many at once. What a path gathers does not depend on its neighbours. If `records` is given,
+// appends a record for each vertex, path after path (fields for the selection probability in units of
+// radiance: whoever knows the pixel divides by its value).
+void tracePaths(const PathSettings& settings, std::span<Path> paths,
+                std::vector<PilotVertex>* records = nullptr);
 
 inline Float3 toOdis(const Vec3& v) {
   return {v.x, v.y, v.z};

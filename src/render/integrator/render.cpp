@@ -50,14 +50,16 @@ class Renderer {
     result.stats = m_stats;
     result.stats.interrupted = m_stopped;
     if (m_options.records) {
-      result.records = std::move(m_records);
+      const std::vector<float> estimates = pixelEstimates();
+      for (const std::vector<PilotVertex>& tile : m_records)
+        for (PilotVertex v : tile) result.records.push_back(divided(v, estimates[v.pixel]));
       result.pilotEmitted = std::move(m_emitted);
     }
     return result;
   }
 
   // Everything up to the guided passes, then one path.
-  Path trace(Vec2i pixel, uint32_t sample) {
+  Path trace(Vec2i pixel, uint32_t sample, std::vector<PilotVertex>& vertices) {
     const Crop& crop = m_scene.film().crop;
     const uint32_t index = uint32_t(pixel.y - crop.y) * uint32_t(crop.width) + uint32_t(pixel.x - crop.x);
     PathSettings settings = pathSettings();
@@ -70,9 +72,8 @@ class Renderer {
                     uint32_t(pixel.y) * uint32_t(m_scene.film().width) + uint32_t(pixel.x), sample);
     float filterWeight;
     const Ray ray = cameraRay(m_scene, pixel, sampler, filterWeight);
-    settings.records = true;
     Path path(ray, sampler);
-    tracePaths(settings, std::span(&path, 1));
+    tracePaths(settings, std::span(&path, 1), &vertices);
     return path;
   }
 
@@ -129,8 +130,14 @@ class Renderer {
     run(pass);
     m_progress.end();
     m_stats.secondsPilot = secondsSince(start);
-    m_stats.pilotVertices = m_records.size();
-    m_stats.bytesRecords = m_records.size() * sizeof(PilotVertex);
+    m_stats.pilotVertices = countVertices();
+    m_stats.bytesBuild = m_stats.pilotVertices * sizeof(PilotVertex);
+  }
+
+  uint64_t countVertices() const {
+    uint64_t count = 0;
+    for (const std::vector<PilotVertex>& tile : m_records) count += tile.size();
+    return count;
   }
 
   // An estimate of each pixel's luminance, to measure contributions by: the mean over its block of the pilot,
@@ -162,13 +169,16 @@ class Renderer {
     return result;
   }
 
-  static void divideByPixels(std::vector<PilotVertex>& records, const std::vector<float>& estimates) {
-    for (PilotVertex& v : records) {
-      const float scale = 1 / estimates[v.pixel];
-      v.indirect *= scale;
-      v.emission *= scale;
-      v.light *= scale;
-    }
+  // A record whose contributions are relative to its pixel's value.
+  static PilotVertex divided(PilotVertex v, float estimate) {
+    v.indirect /= estimate;
+    v.emission /= estimate;
+    v.light /= estimate;
+    return v;
+  }
+
+  static std::vector<std::span<const PilotVertex>> partsOf(const Records& records) {
+    return {records.begin(), records.end()};
   }
 
   void buildGuide() {
@@ -178,27 +188,26 @@ class Renderer {
     GuideBuilder builder(m_options.guideOptions);
     if (m_options.guide == GuideKind::oracle) {
       m_progress.begin("oracle", m_pixels * uint64_t(m_options.oracleSpp));
-      std::vector<PilotVertex> selection;
+      Records selection;
       for (int i = 0; i < m_options.oracleSpp && !stop(); ++i) {
         Pass pass = basicPass();
         pass.features = nullptr;
         pass.seed = m_options.seed ^ kOracleSeed;
         pass.samples = [i](uint32_t) { return std::pair(uint32_t(i), 1u); };
-        std::vector<PilotVertex> records;
+        Records records;
         pass.records = &records;
         run(pass);
-        builder.add(records);
-        if (i < kOracleSelectionPasses) selection.insert(selection.end(), records.begin(), records.end());
+        builder.add(partsOf(records));
+        if (i < kOracleSelectionPasses)
+          std::move(records.begin(), records.end(), std::back_inserter(selection));
       }
-      divideByPixels(selection, estimates);
-      m_guide = builder.build(selection);
+      m_guide = builder.build(partsOf(selection), estimates);
       m_progress.end();
     } else {
-      divideByPixels(m_records, estimates);
-      builder.add(m_records);
-      m_guide = builder.build(m_records);
+      builder.add(partsOf(m_records));
+      m_guide = builder.build(partsOf(m_records), estimates);
     }
-    m_stats.bytesRecords = m_records.size() * sizeof(PilotVertex) + builder.bytes();
+    m_stats.bytesBuild += builder.bytes();
     if (!m_options.records) m_records = {};
     m_stats.secondsBuild = secondsSince(start);
     m_stats.cells = m_guide.cellCount();
@@ -242,6 +251,7 @@ class Renderer {
     for (size_t pixel = 0; pixel < m_pixels; ++pixel) {
       const PixelSums &pilot = m_pilot[pixel], &guided = m_guided[pixel];
       m_stats.samples += pilot.count + guided.count;
+      m_stats.pilotSamples += pilot.count;
       const double weight = pilot.count * ratio + guided.count;
       if (!(weight > 0)) {
         frame.color[pixel] = Rgb(0, 0, 0);
@@ -301,7 +311,7 @@ class Renderer {
   size_t m_pixels;
   std::vector<PixelSums> m_pilot, m_guided;
   std::vector<FeatureSums> m_features;
-  std::vector<PilotVertex> m_records;
+  Records m_records;
   std::vector<Rgb> m_emitted;
   Guide m_guide;
   RenderStats m_stats;
@@ -323,10 +333,11 @@ RenderResult render(const Scene& scene, const RenderOptions& options, Progress& 
 std::string replay(const Scene& scene, const RenderOptions& options, Vec2i pixel, int sample) {
   const tbb::global_control limit = limitThreads(options.threads);
   Progress quiet;
-  const Path path = Renderer(scene, options, quiet).trace(pixel, uint32_t(sample));
+  std::vector<PilotVertex> vertices;
+  const Path path = Renderer(scene, options, quiet).trace(pixel, uint32_t(sample), vertices);
   std::string text = fmt::format("pixel {},{} sample {}: radiance {:.6g} {:.6g} {:.6g}\n", pixel.x, pixel.y,
                                  sample, path.radiance.x, path.radiance.y, path.radiance.z);
-  for (const PilotVertex& v : path.vertices)
+  for (const PilotVertex& v : vertices)
     text += fmt::format(
         "  vertex {}: p ({:.5g} {:.5g} {:.5g}) n ({:.3f} {:.3f} {:.3f}) wi ({:.3f} {:.3f} {:.3f}){} pdf "
         "{:.4g} weight "

@@ -62,11 +62,18 @@ struct Frame2D {
 
 struct RenderStats {
   double secondsPilot = 0, secondsBuild = 0, secondsGuided = 0;  // path: all of it in secondsGuided
-  uint64_t samples = 0, rays = 0, shadowRays = 0;
+  uint64_t samples = 0, pilotSamples = 0, rays = 0, shadowRays = 0;
   uint64_t pilotVertices = 0, cells = 0;
-  uint64_t bytesRecords = 0, bytesMaps = 0;
+  uint64_t bytesBuild = 0;  // held at most until the guide is built: pilot vertices and what is made of them
+  uint64_t bytesMaps = 0;
   double pilotWeight = 0;  // of the pilot's mean in the image
   double spp = 0;          // samples per pixel really taken
+  // The time of a guided sample in that of a pilot sample, recording included; 0 if there was none of either.
+  double guidedCost() const {
+    const uint64_t guided = samples - pilotSamples;
+    if (pilotSamples == 0 || guided == 0 || !(secondsPilot > 0)) return 0;
+    return secondsGuided / double(guided) / (secondsPilot / double(pilotSamples));
+  }
   bool interrupted = false;
 };
 

@@ -1,0 +1,38 @@
+// What the cells take from the pilot's vertices.
+#pragma once
+
+#include <vector>
+
+#include "odis/cells/batches.h"
+#include "odis/cells/grid.h"
+#include "odis/pilot.h"
+
+namespace odis {
+
+// Whether there is something to learn from a vertex: not discrete, and everything finite.
+bool isUsable(const PilotVertex& vertex);
+// What the vertex adds to a histogram: the estimate of radiance * cos, as a luminance.
+float sampleValue(const PilotVertex& vertex);
+
+// A usable vertex. 44 bytes.
+struct CellSample {
+  Float3 position, normal, wi;
+  float distance;
+  float value;  // `sampleValue`
+};
+
+// The usable vertices of a batch, and the cells of the finest level that they fall into, numbered as they are
+// met.
+struct BatchSamples {
+  struct Cell {
+    uint64_t key = 0;
+    uint32_t count = 0;
+    double value = 0;  // sum
+  };
+  std::vector<CellSample> samples;
+  std::vector<uint32_t> cellOf;  // of each sample
+  std::vector<Cell> cells;
+};
+BatchSamples takeSamples(const PilotBatch& batch, const CellGrid& grid);
+
+}  // namespace odis

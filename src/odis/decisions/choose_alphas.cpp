@@ -1,0 +1,154 @@
+#include "odis/decisions/choose_alphas.h"
+
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+
+#include "odis/decisions/selection.h"
+
+namespace odis {
+
+namespace {
+
+// Selection probabilities are made from about so many vertices: one pixel of `stride`, all of its path.
+constexpr size_t kSelectionVertices = 400000;
+bool isChosen(const PilotVertex& vertex, uint32_t stride) {
+  return ((vertex.pixel * 0x9e3779b9u) >> 8) % stride == 0;
+}
+
+// What vertices' contributions are multiplied by.
+class PixelScale {
+ public:
+  explicit PixelScale(std::span<const float> values) : m_values(values) {}
+  float operator()(const PilotVertex& v) const { return m_values.empty() ? 1 : 1 / m_values[v.pixel]; }
+
+ private:
+  std::span<const float> m_values;
+};
+
+// The chosen vertices of a batch, their cells, and their part in what the whole image varies by.
+struct BatchSelection {
+  std::vector<const PilotVertex*> vertices;
+  std::vector<uint32_t> cellOf;
+  SelectionTotals totals;
+};
+
+// The image's variance and rays are those of the first vertices.
+void addToTotals(SelectionTotals& totals, const PilotVertex& v, float scale) {
+  const float emission = v.emission * (v.discrete ? 1.0f : powerHeuristic(v.pdf, v.emissionLightPdf));
+  const float light = v.lightPdf > 0 ? v.light * powerHeuristic(v.lightPdf, v.lightBsdfPdf) : v.light;
+  const double value = (v.indirect + emission + light) * scale;
+  if (std::isfinite(value)) totals.variance += std::min((value - 1) * (value - 1), 2500.0);
+  totals.rays += v.raysAfter;
+}
+
+BatchSelection select(const PilotBatch& batch, uint32_t stride, const PixelScale& scale,
+                      const CellStore& store) {
+  BatchSelection result;
+  for (const std::span<const PilotVertex> piece : batch)
+    for (const PilotVertex& v : piece) {
+      if (!isChosen(v, stride)) continue;
+      if (v.depth == 1) addToTotals(result.totals, v, scale(v));
+      if (!v.discrete && !isUsable(v)) continue;
+      const uint32_t cell = store.index().find(store.grid().key(v.position, v.normal, 0));
+      if (cell == kNoCell) continue;
+      result.vertices.push_back(&v);
+      result.cellOf.push_back(cell);
+    }
+  return result;
+}
+
+// The share of its texel's density that a vertex's own sample did not make.
+float shareOfOthers(const PilotVertex& v, int texel, const CellStatistics& cell,
+                    const DirectionDistribution& distribution, float limit) {
+  const float value = std::min(sampleValue(v), limit);
+  const Splat place = splat(reaim(v.position, v.wi, v.distance, cell.centroid));
+  float own = 0;
+  for (int k = 0; k < 4; ++k)
+    if (place.texel[k] == texel) own += place.weight[k] * value;
+  return std::max(1 - own * distribution.sensitivity / distribution.probability[texel], 0.0f);
+}
+
+// Adds a vertex, judged by its cell's map without its own sample.
+void addJudged(CellSelection& sums, const PilotVertex& v, float scale, const SamplingMap& map,
+               const CellStatistics& cell, const DirectionDistribution& distribution, float limit) {
+  float mapPdf = 0, lightMapPdf = 0;
+  if (v.guidableProbability > 0) {
+    VertexMap vertexMap;
+    vertexMap.prepare(map, v.normal, v.both ? Sides::both : Sides::reflection);
+    if (!v.discrete) {
+      const int texel = texelOf(v.wi);
+      mapPdf = vertexMap.texelPdf(texel) * shareOfOthers(v, texel, cell, distribution, limit);
+    }
+    if (v.lightPdf > 0) lightMapPdf = vertexMap.pdf(v.lightDirection);
+  }
+  addVertex(sums, v, mapPdf, lightMapPdf, scale);
+}
+
+template <class Body>
+void forEachCell(size_t count, const Body& body) {
+  tbb::parallel_for(tbb::blocked_range<size_t>(0, count, 16), [&](const tbb::blocked_range<size_t>& range) {
+    for (size_t cell = range.begin(); cell < range.end(); ++cell) body(cell);
+  });
+}
+
+}  // namespace
+
+float chooseAlphas(std::vector<Cell>& result, const CellStore& store, std::span<const CellStatistics> cells,
+                   std::span<const DirectionDistribution> distributions, PilotParts parts,
+                   std::span<const float> pixelValues) {
+  // Choose vertices and sort them by cell.
+  const uint32_t stride = uint32_t(std::max<size_t>(1, countVertices(parts) / kSelectionVertices));
+  const PixelScale scale(pixelValues);
+  const std::vector<PilotBatch> pilot = makeBatches(parts);
+  std::vector<BatchSelection> batches(pilot.size());
+  std::vector<std::vector<uint32_t>> cellOf(pilot.size());
+  tbb::parallel_for(size_t(0), pilot.size(), [&](size_t b) {
+    batches[b] = select(pilot[b], stride, scale, store);
+    cellOf[b] = std::move(batches[b].cellOf);
+  });
+  const CellOrder<PilotVertex> order = sortByCell<PilotVertex>(
+      cellOf, uint32_t(cells.size()),
+      [&](size_t batch, size_t i) -> const PilotVertex& { return *batches[batch].vertices[i]; });
+  SelectionTotals totals;
+  for (const BatchSelection& batch : batches) {
+    totals.variance += batch.totals.variance;
+    totals.rays += batch.totals.rays;
+  }
+
+  // Predicted second moments and rays of each cell, then of the coarser levels and of the image.
+  std::vector<CellSelection> sums(cells.size());
+  forEachCell(cells.size(), [&](size_t c) {
+    if (order.of(c).empty()) return;
+    const CellStatistics& parent = cells[cells[c].parent];
+    const float limit = parent.count > 0 ? store.clamp() * float(parent.sum / parent.count) : 0;
+    forEachItem(order.of(c), [&](const PilotVertex& v) {
+      addJudged(sums[c], v, scale(v), result[c].map, cells[c], distributions[c], limit);
+    });
+  });
+  CellSelection image;
+  for (int level = 0; level < kCellLevels; ++level)
+    for (size_t c = 0; c < cells.size(); ++c)
+      if (cells[c].level == level) {
+        CellSelection& coarser = cells[c].parent == kNoCell ? image : sums[cells[c].parent];
+        for (int m = 0; m < kMaterialClasses; ++m) coarser[m].add(sums[c][m]);
+      }
+
+  // A cell's sums are backed by its parent's, those by the parent's parent's, and so on up to the whole
+  // image. Choices, and the variance that they predict.
+  std::vector<CellSelection> backed(cells.size());
+  double saved = 0;
+  for (int level = kCellLevels - 1; level >= 0; --level)
+    for (size_t c = 0; c < cells.size(); ++c) {
+      if (cells[c].level != level) continue;
+      const CellSelection& coarser = cells[c].parent == kNoCell ? image : backed[cells[c].parent];
+      for (int m = 0; m < kMaterialClasses; ++m) {
+        backed[c][m] = back(sums[c][m], coarser[m]);
+        const size_t choice = chooseAlpha(backed[c][m], totals);
+        result[c].alpha[m] = kAlphas[choice];
+        if (level == 0) saved += sums[c][m].secondMoment[0] - sums[c][m].secondMoment[choice];
+      }
+    }
+  return totals.variance > 0 ? std::clamp(float(1 - saved / totals.variance), 0.1f, 1.5f) : 1;
+}
+
+}  // namespace odis

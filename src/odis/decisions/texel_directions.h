@@ -1,0 +1,21 @@
+// The directions of the texels' centres, as three arrays.
+#pragma once
+
+#include "odis/sampling.h"
+
+namespace odis {
+
+struct TexelDirections {
+  alignas(64) float x[kMapTexels], y[kMapTexels], z[kMapTexels];
+  TexelDirections() {
+    for (int i = 0; i < kMapTexels; ++i) {
+      const Float3 w = texelDirection(i);
+      x[i] = w.x;
+      y[i] = w.y;
+      z[i] = w.z;
+    }
+  }
+};
+inline const TexelDirections kTexelDirections;
+
+}  // namespace odis
