@@ -44,6 +44,7 @@ std::string statsTable(const RunStats& stats) {
                                        bytesText(double(r.bytesMaps))));
   }
   row("memory of scene", bytesText(double(stats.bytesScene)));
+  row("memory of lights", bytesText(double(r.bytesLights)));
   row("memory at most", bytesText(double(stats.bytesPeak)));
   return text;
 }
@@ -72,6 +73,7 @@ std::string statsJson(const RunStats& stats) {
                                        {"bytes",
                                         {{"peak", stats.bytesPeak},
                                          {"scene", stats.bytesScene},
+                                         {"lights", r.bytesLights},
                                          {"records", r.bytesRecords},
                                          {"maps", r.bytesMaps}}}};
   return json.dump(2) + "\n";

@@ -12,14 +12,19 @@ struct LightEstimate {
   BsdfValue bsdf;
 };
 
+// What of a vertex the choice among lights depends on.
+LightReference lightReference(const SurfacePoint& at, const Vec3& wo) {
+  return {at.p, wo.z < 0 ? -at.shading.n : at.shading.n, at.shape->bsdf().traits().transmissive};
+}
+
 LightEstimate sampleLight(const PathSettings& settings, const SurfacePoint& at, const Vec3& wo,
                           Sampler& sampler, RayCounts& counts) {
   LightEstimate result;
-  float uChoice = sampler.get1D();
+  const float uChoice = sampler.get1D();
   const Vec2 u = sampler.get2D();
-  const LightSampler::Choice choice = settings.lights->sample(uChoice);
+  const LightSampler::Choice choice = settings.lights->sample(lightReference(at, wo), uChoice);
   if (!choice.emitter) return result;
-  const EmitterSample light = choice.emitter->sample(at.p, u);
+  const EmitterSample light = choice.emitter->sample(choice.part, at.p, u);
   if (!(light.pdf > 0) || isBlack(light.radiance)) return result;
   result.wiWorld = light.wi;
   result.bsdf = at.shape->bsdf().evaluate(at, wo, at.shading.toLocal(light.wi));
@@ -135,7 +140,7 @@ PathResult tracePath(const PathSettings& settings, Ray ray, Sampler& sampler, Ra
   float eta = 1;            // product of the relative indices passed
   bool bySampling = false;  // whether the ray's direction competes with next-event estimation
   float directionPdf = 0;   // its density, if so
-  Vec3 previous;            // where it started
+  LightReference previous;  // where it started
   float distance = 0;       // from the camera
   const size_t begin = vertices ? vertices->size() : 0;
   thread_local std::vector<Pending> pending;
@@ -152,9 +157,11 @@ PathResult tracePath(const PathSettings& settings, Ray ray, Sampler& sampler, Ra
 
     // Add the emission that the ray met, weighted against next-event estimation where that could have found
     // it too.
-    const auto addEmission = [&](const Rgb& emission, const Emitter& emitter, float emitterPdf) {
+    const auto addEmission = [&](const Rgb& emission, const Emitter& emitter, uint32_t part,
+                                 float emitterPdf) {
       if (isBlack(emission)) return;
-      const float lightPdf = bySampling ? emitterPdf * settings.lights->probability(emitter) : 0;
+      const float lightPdf =
+          bySampling ? emitterPdf * settings.lights->probability(previous, emitter, part) : 0;
       const float weight = bySampling ? powerHeuristic(directionPdf, lightPdf) : 1;
       result.radiance += throughput * emission * weight;
       if (depth == 1) result.emitted += emission;
@@ -171,13 +178,13 @@ PathResult tracePath(const PathSettings& settings, Ray ray, Sampler& sampler, Ra
     };
     if (!hit) {
       for (const EnvironmentEmitter* environment : scene.environments())
-        addEmission(environment->radiance(ray.direction), *environment,
-                    bySampling ? environment->pdf(previous, ray.direction) : 0);
+        addEmission(environment->radiance(ray.direction), *environment, 0,
+                    bySampling ? environment->pdf(previous.p, ray.direction) : 0);
       break;
     }
     if (const SurfaceEmitter* emitter = at.shape->emitter())
-      addEmission(emitter->radiance(at, -ray.direction), *emitter,
-                  bySampling ? emitter->pdf(previous, at) : 0);
+      addEmission(emitter->radiance(at, -ray.direction), *emitter, emitter->part(at),
+                  bySampling ? emitter->pdf(previous.p, at) : 0);
     if (settings.maxDepth >= 0 && depth >= settings.maxDepth) break;
 
     const Bsdf& bsdf = at.shape->bsdf();
@@ -248,7 +255,7 @@ PathResult tracePath(const PathSettings& settings, Ray ray, Sampler& sampler, Ra
     eta = etaAfter;
     bySampling = !isDiscrete(next.lobe);
     directionPdf = next.pdf;
-    previous = at.p;
+    previous = lightReference(at, wo);
     ray = Scene::spawn(at, at.shading.toWorld(next.wi));
   }
   if (vertices) completeRecords(*vertices, begin, pending, counts.rays + counts.shadowRays);

@@ -64,7 +64,7 @@ struct RenderStats {
   double secondsPilot = 0, secondsBuild = 0, secondsGuided = 0;  // path: all of it in secondsGuided
   uint64_t samples = 0, rays = 0, shadowRays = 0;
   uint64_t pilotVertices = 0, cells = 0;
-  uint64_t bytesRecords = 0, bytesMaps = 0;
+  uint64_t bytesRecords = 0, bytesMaps = 0, bytesLights = 0;
   double pilotWeight = 0;  // of the pilot's mean in the image
   double spp = 0;          // samples per pixel really taken
   bool interrupted = false;

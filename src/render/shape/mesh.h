@@ -39,6 +39,9 @@ class Mesh final : public Shape {
   ShapeSample sample(const Vec3& ref, const Vec2& u) const override;  // uniform by area
   float pdf(const Vec3& ref, const SurfacePoint& at) const override;
   uint64_t primitiveCount() const override { return m_triangles.size(); }
+  PrimitiveExtent extent(uint32_t triangle) const override;
+  ShapeSample samplePrimitive(uint32_t triangle, const Vec3& ref, const Vec2& u) const override;  // by area
+  float primitivePdf(const Vec3& ref, const SurfacePoint& at) const override;
   uint64_t bytes() const override;
 
   // The point with barycentric coordinates (b1, b2) on a triangle, in the space of the mesh.
@@ -46,6 +49,7 @@ class Mesh final : public Shape {
 
  private:
   Mesh(MeshData data, const MeshOptions& options);
+  float triangleArea(uint32_t triangle) const;
 
   std::vector<Vec3> m_positions;  // one more than there are vertices: Embree reads 16 bytes at each
   std::vector<Vec3> m_normals;    // empty: face normals
