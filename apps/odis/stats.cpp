@@ -51,6 +51,7 @@ std::string statsTable(const RunStats& stats) {
                     bytesText(double(r.bytesMaps))));
   }
   row("memory of scene", bytesText(double(stats.bytesScene)));
+  row("memory of lights", bytesText(double(r.bytesLights)));
   row("memory at most", bytesText(double(stats.bytesPeak)));
   return text;
 }
@@ -81,6 +82,7 @@ std::string statsJson(const RunStats& stats) {
                                         {{"peak", stats.bytesPeak},
                                          {"scene", stats.bytesScene},
                                          {"build", r.bytesBuild},
+                                         {"lights", r.bytesLights},
                                          {"maps", r.bytesMaps}}}};
   return json.dump(2) + "\n";
 }

@@ -19,7 +19,7 @@ const Vec3 kOrigin(0, 0, 0);
   options.testCount = 7;
   return chi2Test(
       [&](float u, float v, float) -> std::optional<Vec3> {
-        const EmitterSample s = light.sample(kOrigin, {u, v});
+        const EmitterSample s = light.sample(0, kOrigin, {u, v});
         if (!(s.pdf > 0)) return std::nullopt;
         return s.wi;
       },
@@ -32,7 +32,7 @@ void expectConsistent(const EnvironmentEmitter& light, float tolerance = 1e-3f) 
   std::uniform_real_distribution<float> uniform(0, 1);
   int far = 0;
   for (int i = 0; i < 20000; ++i) {
-    const EmitterSample s = light.sample(kOrigin, {uniform(engine), uniform(engine)});
+    const EmitterSample s = light.sample(0, kOrigin, {uniform(engine), uniform(engine)});
     if (!(s.pdf > 0)) continue;
     ASSERT_NEAR(length(s.wi), 1, 1e-5f);
     ASSERT_EQ(s.distance, kInfinity);
@@ -55,7 +55,7 @@ Estimate sampledIrradiance(const EnvironmentEmitter& light, const Vec3& n, int s
   std::uniform_real_distribution<float> uniform(0, 1);
   double sum = 0, squares = 0;
   for (int i = 0; i < samples; ++i) {
-    const EmitterSample s = light.sample(kOrigin, {uniform(engine), uniform(engine)});
+    const EmitterSample s = light.sample(0, kOrigin, {uniform(engine), uniform(engine)});
     if (!(s.pdf > 0)) continue;
     const double value = average(s.radiance) * std::max(dot(s.wi, n), 0.0f) / s.pdf;
     sum += value;
@@ -200,7 +200,7 @@ TEST(EnvironmentMap, BlackAndSmallMapsAreSafe) {
     for (int height : {1, 2}) {
       const EnvironmentMap map(std::vector<Rgb>(size_t(width * height), Rgb(0, 0, 0)), width, height,
                                Matrix4());
-      EXPECT_TRUE(isBlack(map.sample(kOrigin, {0.3f, 0.6f}).radiance));
+      EXPECT_TRUE(isBlack(map.sample(0, kOrigin, {0.3f, 0.6f}).radiance));
       EXPECT_TRUE(std::isfinite(map.pdf(kOrigin, {0, 1, 0})));
       EXPECT_EQ(map.power(), 0);
     }

@@ -1,9 +1,8 @@
-// Point, spot, directional and area lights, and the choice among them.
+// Point, spot, directional and area lights.
 #include <gtest/gtest.h>
 
 #include "render/emitter/area.h"
 #include "render/emitter/directional.h"
-#include "render/emitter/light_sampler.h"
 #include "render/emitter/point.h"
 #include "render/emitter/spot.h"
 #include "render/shape/shape.h"
@@ -21,6 +20,9 @@ class CeilingLamp final : public Shape {
   RTCGeometryTy* makeGeometry(RTCDeviceTy*) const override { return nullptr; }
   SurfacePoint surfacePoint(const Ray&, const RawHit&) const override { return {}; }
   float area() const override { return 4; }
+  PrimitiveExtent extent(uint32_t) const override {
+    return {.min = {-1, -1, 1}, .max = {1, 1, 1}, .axis = {0, 0, -1}, .theta = 0, .area = 4};
+  }
   ShapeSample sample(const Vec3& ref, const Vec2& u) const override {
     ShapeSample s;
     s.at = at(u);
@@ -90,7 +92,7 @@ TEST(AreaLight, SamplesItsDensity) {
   options.quadrature = 24;
   EXPECT_TRUE(chi2Test(
       [&](float u, float v, float) {
-        return light.sample(ref, {u, v}).wi;
+        return light.sample(0, ref, {u, v}).wi;
       },
       [&](const Vec3& w) {
         const auto at = CeilingLamp::hit(ref, w);
@@ -116,7 +118,7 @@ TEST(AreaLight, TexturedIrradianceAgreesWithQuadrature) {
   double sum[2] = {}, squares[2] = {};
   constexpr int samples = 200000;
   forUniform(samples, [&](const Vec2& u) {
-    const EmitterSample s = light.sample(ref, u);
+    const EmitterSample s = light.sample(0, ref, u);
     for (int c = 0; c < 2; ++c) {
       const double value = s.radiance[c] * s.wi.z / s.pdf;
       sum[c] += value;
@@ -135,28 +137,28 @@ TEST(AreaLight, IsDarkBehind) {
   const AreaLight light(lamp, std::make_shared<Plain>(Rgb(2, 3, 4)));
   EXPECT_EQ(light.radiance(CeilingLamp::at({0.5f, 0.5f}), {0, 0, -1}), Rgb(2, 3, 4));
   EXPECT_EQ(light.radiance(CeilingLamp::at({0.5f, 0.5f}), {0, 0, 1}), Rgb(0, 0, 0));
-  EXPECT_TRUE(isBlack(light.sample({0, 0, 5}, {0.5f, 0.5f}).radiance));
-  EXPECT_FALSE(isBlack(light.sample({0, 0, -5}, {0.5f, 0.5f}).radiance));
+  EXPECT_TRUE(isBlack(light.sample(0, {0, 0, 5}, {0.5f, 0.5f}).radiance));
+  EXPECT_FALSE(isBlack(light.sample(0, {0, 0, -5}, {0.5f, 0.5f}).radiance));
   EXPECT_FLOAT_EQ(light.power(), 4 * kPi * 3);  // area 4, average radiance 3, one side
 }
 
 // Twice as far, a quarter of the irradiance.
 TEST(PointLight, FollowsTheInverseSquare) {
   const PointLight light({1, 2, 3}, Rgb(8, 4, 2));
-  const EmitterSample s = light.sample({1, 2, 5}, {0, 0});
+  const EmitterSample s = light.sample(0, {1, 2, 5}, {0, 0});
   EXPECT_EQ(s.wi, Vec3(0, 0, -1));
   EXPECT_EQ(s.distance, 2);
   EXPECT_EQ(s.radiance, Rgb(2, 1, 0.5f));
   EXPECT_EQ(s.pdf, 1);
   EXPECT_TRUE(s.delta);
-  EXPECT_EQ(light.sample({1, 2, 3}, {0, 0}).pdf, 0) << "at the light itself";
+  EXPECT_EQ(light.sample(0, {1, 2, 3}, {0, 0}).pdf, 0) << "at the light itself";
   EXPECT_NEAR(light.power(), 4 * M_PI * 14 / 3, 1e-3);
 }
 
 TEST(DirectionalLight, IsTheSameEverywhere) {
   DirectionalLight light({0, 0, 1}, Rgb(1, 2, 3));
   for (const Vec3& ref : {Vec3(0, 0, 0), Vec3(100, -5, 3)}) {
-    const EmitterSample s = light.sample(ref, {0.2f, 0.8f});
+    const EmitterSample s = light.sample(0, ref, {0.2f, 0.8f});
     EXPECT_EQ(s.wi, Vec3(0, 0, -1));
     EXPECT_EQ(s.distance, kInfinity);
     EXPECT_EQ(s.radiance, Rgb(1, 2, 3));
@@ -172,7 +174,7 @@ TEST(SpotLight, FallsOffLinearlyInAngle) {
   const SpotLight light({0, 0, 0}, {0, 0, 1}, Rgb(4, 4, 4), 30 * kDegree, 20 * kDegree);
   const auto irradiance = [&](float degrees) {
     const EmitterSample s =
-        light.sample({2 * std::sin(degrees * kDegree), 0, 2 * std::cos(degrees * kDegree)}, {0, 0});
+        light.sample(0, {2 * std::sin(degrees * kDegree), 0, 2 * std::cos(degrees * kDegree)}, {0, 0});
     EXPECT_EQ(s.pdf > 0, degrees < 30);
     return s.radiance.x;
   };
@@ -186,51 +188,6 @@ TEST(SpotLight, FallsOffLinearlyInAngle) {
 
 TEST(SpotLight, ABeamAsWideAsTheConeHasASharpRim) {
   const SpotLight light({0, 0, 0}, {0, 0, 1}, Rgb(1, 1, 1), 0.5f, 0.5f);
-  EXPECT_NEAR(light.sample({std::sin(0.499f), 0, std::cos(0.499f)}, {0, 0}).radiance.x, 1, 1e-5f);
-  EXPECT_EQ(light.sample({std::sin(0.501f), 0, std::cos(0.501f)}, {0, 0}).pdf, 0);
-}
-
-TEST(LightSampler, ChoosesInProportionToPower) {
-  std::vector<PointLight> lights;
-  for (float intensity : {0.0f, 1.0f, 2.0f, 7.0f})
-    lights.emplace_back(Vec3(0, 0, 0), Rgb(intensity, intensity, intensity));
-  std::vector<const Emitter*> emitters;
-  for (const PointLight& light : lights) emitters.push_back(&light);
-  const LightSampler sampler(emitters);
-
-  // A tenth evenly over four lights, the rest by power.
-  const double expected[] = {0.025, 0.025 + 0.09, 0.025 + 0.18, 0.025 + 0.63};
-  for (int i = 0; i < 4; ++i) EXPECT_NEAR(sampler.probability(lights[size_t(i)]), expected[i], 1e-6);
-  EXPECT_EQ(sampler.probability(PointLight({0, 0, 0}, Rgb(1, 1, 1))), 0);
-
-  constexpr int n = 100000, kBins = 4;
-  double counts[4][kBins] = {};
-  forUniform(n, [&](const Vec2& uniform) {
-    float u = uniform.x;
-    const LightSampler::Choice choice = sampler.sample(u);
-    ASSERT_EQ(choice.probability, sampler.probability(*choice.emitter));
-    ASSERT_TRUE(u >= 0 && u < 1);
-    counts[static_cast<const PointLight*>(choice.emitter) - lights.data()][int(u * kBins)] += 1;
-  });
-  // The light and what is left of u are independent, the latter uniform.
-  double statistic = 0;
-  for (int i = 0; i < 4; ++i)
-    for (double c : counts[i]) {
-      const double e = n * expected[i] / kBins;
-      statistic += (c - e) * (c - e) / e;
-    }
-  EXPECT_GT(odis::test::chi2PValue(statistic, 4 * kBins - 1), 0.01);
-}
-
-TEST(LightSampler, UnknownPowersAreNeitherStarvedNorTheOnlyOnesChosen) {
-  const PointLight normal({0, 0, 0}, Rgb(1, 1, 1)), endless({0, 0, 0}, Rgb(kInfinity, 1, 1)),
-      dark({0, 0, 0}, Rgb(0, 0, 0));
-  const LightSampler both({&normal, &endless});
-  EXPECT_NEAR(both.probability(normal), 0.5, 1e-6);
-  EXPECT_NEAR(both.probability(endless), 0.5, 1e-6);
-  const LightSampler black({&dark});
-  EXPECT_NEAR(black.probability(dark), 1, 1e-6);
-  float u = 0.4f;
-  EXPECT_EQ(LightSampler().sample(u).emitter, nullptr);
-  EXPECT_EQ(LightSampler(std::vector<const Emitter*>()).sample(u).emitter, nullptr);
+  EXPECT_NEAR(light.sample(0, {std::sin(0.499f), 0, std::cos(0.499f)}, {0, 0}).radiance.x, 1, 1e-5f);
+  EXPECT_EQ(light.sample(0, {std::sin(0.501f), 0, std::cos(0.501f)}, {0, 0}).pdf, 0);
 }

@@ -145,7 +145,7 @@ TEST(Intersector, CountsItsMemory) {
 // An environment that remembers the bounds it was told.
 class Recorder final : public EnvironmentEmitter {
  public:
-  EmitterSample sample(const Vec3&, const Vec2&) const override { return {}; }
+  EmitterSample sample(uint32_t, const Vec3&, const Vec2&) const override { return {}; }
   float power() const override { return 1; }
   void setSceneBounds(const SceneBounds& b) override { bounds = b; }
   Rgb radiance(const Vec3&) const override { return {1, 1, 1}; }

@@ -2,17 +2,47 @@
 //
 //   radiance   texture, rgb or number   what leaves every point in every direction, W/(m^2 sr); default 1
 //
-// Nested in a shape. It emits on the side that the shading normal points to; the other side is black. Points
-// are drawn by the shape: by the cone that it fills where the shape knows it (spheres), else uniformly by
-// area. A textured radiance is looked up at the point's uv and does not steer where points are drawn.
+// Nested in a shape. It emits on the side that the shading normal points to; the other side is black. The
+// triangles of a mesh are chosen one by one (see light_sampler.h). Points are drawn by the shape: by the cone
+// that it fills where the shape knows it (spheres), else uniformly by area. A textured radiance is looked up
+// at the point's uv and does not steer where points are drawn.
 #include "render/emitter/area.h"
 
 #include "render/scene/builder.h"
 
 namespace odis::render {
 
-EmitterSample AreaLight::sample(const Vec3& ref, const Vec2& u) const {
-  const ShapeSample point = m_shape.sample(ref, u);
+namespace {
+
+// Two triangles, mostly a rectangle, are one part: little is gained by choosing between them.
+constexpr uint64_t kWholePrimitives = 2;
+
+}  // namespace
+
+AreaLight::AreaLight(const Shape& shape, TexturePtr radiance)
+    : m_shape(shape), m_radiance(std::move(radiance)), m_whole(shape.primitiveCount() <= kWholePrimitives) {}
+
+uint32_t AreaLight::partCount() const {
+  return m_whole ? 1 : uint32_t(m_shape.primitiveCount());
+}
+
+LightBounds AreaLight::bounds(uint32_t part) const {
+  LightBounds result;
+  const uint32_t end = m_whole ? uint32_t(m_shape.primitiveCount()) : part + 1;
+  for (uint32_t primitive = part; primitive < end; ++primitive) {
+    const PrimitiveExtent extent = m_shape.extent(primitive);
+    const LightBounds bounds{.min = extent.min,
+                             .max = extent.max,
+                             .axis = extent.axis,
+                             .thetaO = extent.theta,
+                             .phi = extent.area * average(m_radiance->mean())};
+    result = primitive == part ? bounds : merged(result, bounds);
+  }
+  return result;
+}
+
+EmitterSample AreaLight::sample(uint32_t part, const Vec3& ref, const Vec2& u) const {
+  const ShapeSample point = m_whole ? m_shape.sample(ref, u) : m_shape.samplePrimitive(part, ref, u);
   if (!(point.pdf > 0)) return {};
   return {.wi = point.wi,
           .distance = point.distance,
@@ -32,7 +62,7 @@ Rgb AreaLight::radiance(const SurfacePoint& at, const Vec3& wo) const {
 }
 
 float AreaLight::pdf(const Vec3& ref, const SurfacePoint& at) const {
-  return m_shape.pdf(ref, at);
+  return m_whole ? m_shape.pdf(ref, at) : m_shape.primitivePdf(ref, at);
 }
 
 std::shared_ptr<SurfaceEmitter> makeSurfaceEmitter(const Properties& node, const Shape& shape,

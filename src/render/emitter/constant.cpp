@@ -14,7 +14,7 @@ namespace {
 constexpr float kSphereSolidAngle = 4 * kPi;
 }
 
-EmitterSample ConstantEnvironment::sample(const Vec3&, const Vec2& u) const {
+EmitterSample ConstantEnvironment::sample(uint32_t, const Vec3&, const Vec2& u) const {
   return {.wi = squareToSphere(u),
           .distance = kInfinity,
           .radiance = m_radiance,

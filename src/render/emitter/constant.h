@@ -9,7 +9,7 @@ class ConstantEnvironment final : public EnvironmentEmitter {
  public:
   explicit ConstantEnvironment(const Rgb& radiance) : m_radiance(radiance) {}
 
-  EmitterSample sample(const Vec3& ref, const Vec2& u) const override;
+  EmitterSample sample(uint32_t part, const Vec3& ref, const Vec2& u) const override;
   float power() const override;
   void setSceneBounds(const SceneBounds& bounds) override { m_sceneRadius = bounds.radius; }
   Rgb radiance(const Vec3&) const override { return m_radiance; }

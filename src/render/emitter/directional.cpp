@@ -9,7 +9,7 @@
 
 namespace odis::render {
 
-EmitterSample DirectionalLight::sample(const Vec3&, const Vec2&) const {
+EmitterSample DirectionalLight::sample(uint32_t, const Vec3&, const Vec2&) const {
   return {.wi = m_wi, .distance = kInfinity, .radiance = m_irradiance, .pdf = 1, .delta = true};
 }
 

@@ -11,7 +11,7 @@ class DirectionalLight final : public Emitter {
   DirectionalLight(const Vec3& direction, const Rgb& irradiance)
       : m_wi(-direction), m_irradiance(irradiance) {}
 
-  EmitterSample sample(const Vec3& ref, const Vec2& u) const override;
+  EmitterSample sample(uint32_t part, const Vec3& ref, const Vec2& u) const override;
   // What passes through a disk of the scene's radius.
   float power() const override { return kPi * sqr(m_sceneRadius) * average(m_irradiance); }
   void setSceneBounds(const SceneBounds& bounds) override { m_sceneRadius = bounds.radius; }

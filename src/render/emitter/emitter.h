@@ -4,6 +4,7 @@
 
 #include <memory>
 
+#include "render/emitter/light_bounds.h"
 #include "render/math/surface_point.h"
 
 namespace odis::render {
@@ -28,12 +29,24 @@ class Emitter {
  public:
   virtual ~Emitter() = default;
 
-  // Samples light arriving at `ref`.
-  virtual EmitterSample sample(const Vec3& ref, const Vec2& u) const = 0;
+  // Into how many parts the emitter falls that are chosen one by one, as the triangles of a mesh; 0 if it is
+  // infinitely far away, when part 0 is all of it.
+  virtual uint32_t partCount() const { return 0; }
+  // Where a part is and where it shines; only of emitters with parts.
+  virtual LightBounds bounds(uint32_t /*part*/) const { return {}; }
+  // Samples light arriving at `ref` from one part.
+  virtual EmitterSample sample(uint32_t part, const Vec3& ref, const Vec2& u) const = 0;
   // Emitted power in watts (average over channels), for choosing among lights. Approximate is fine.
   virtual float power() const = 0;
   // Called once before rendering, when the extent of the scene is known.
   virtual void setSceneBounds(const SceneBounds&) {}
+
+  // The emitter's place among those of its scene.
+  uint32_t index() const { return m_index; }
+  void setIndex(uint32_t index) { m_index = index; }
+
+ private:
+  uint32_t m_index = 0;
 };
 
 // Light leaving the surface of a shape. One emitter a shape.
@@ -41,7 +54,9 @@ class SurfaceEmitter : public Emitter {
  public:
   // Radiance leaving `at` in direction `wo` (world space, away from the surface); zero on the back.
   virtual Rgb radiance(const SurfacePoint& at, const Vec3& wo) const = 0;
-  // Solid-angle density with which sample(ref) gives the direction from `ref` to `at`.
+  // The part that a point of the shape belongs to.
+  virtual uint32_t part(const SurfacePoint& at) const = 0;
+  // Solid-angle density with which sample(part(at), ref) gives the direction from `ref` to `at`.
   virtual float pdf(const Vec3& ref, const SurfacePoint& at) const = 0;
 };
 
@@ -50,7 +65,7 @@ class EnvironmentEmitter : public Emitter {
  public:
   // Radiance arriving from direction `wi`.
   virtual Rgb radiance(const Vec3& wi) const = 0;
-  // Solid-angle density with which sample(ref) gives wi.
+  // Solid-angle density with which sample(0, ref) gives wi.
   virtual float pdf(const Vec3& ref, const Vec3& wi) const = 0;
 };
 

@@ -110,7 +110,7 @@ Rgb EnvironmentMap::radiance(const Vec3& wi) const {
   return lookUp(toSpherical(normalize(transformVector(m_toLocal, wi))).uv);
 }
 
-EmitterSample EnvironmentMap::sample(const Vec3&, const Vec2& u) const {
+EmitterSample EnvironmentMap::sample(uint32_t, const Vec3&, const Vec2& u) const {
   const PiecewiseConstant2D::Sample s = m_table.sample(u);
   // Cell 0 of the table begins at the centre of column 0.
   float x = s.x.x + 0.5f / float(m_width);

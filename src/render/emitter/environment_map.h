@@ -14,7 +14,7 @@ class EnvironmentMap final : public EnvironmentEmitter {
   // than `horizon` of the way from the upper pole to the lower one is black, with a sharp edge.
   EnvironmentMap(std::vector<Rgb> pixels, int width, int height, const Matrix4& toWorld, float horizon = 1);
 
-  EmitterSample sample(const Vec3& ref, const Vec2& u) const override;
+  EmitterSample sample(uint32_t part, const Vec3& ref, const Vec2& u) const override;
   float power() const override;
   void setSceneBounds(const SceneBounds& bounds) override { m_sceneRadius = bounds.radius; }
   Rgb radiance(const Vec3& wi) const override;

@@ -1,32 +1,44 @@
-// Which light to sample next-event estimation from: a fixed distribution over the emitters of the scene.
+// Which light to sample next-event estimation from: what each may give the point decides.
 #pragma once
 
-#include <unordered_map>
 #include <vector>
 
 #include "render/emitter/emitter.h"
+#include "render/emitter/light_tree.h"
 
 namespace odis::render {
 
-// Chooses in proportion to power, mixed with a uniform share so that no light is starved by a bad estimate.
+// Chooses among the parts of all emitters that are somewhere by a tree, and among those infinitely far away,
+// the tree itself one of them, in proportion to power, mixed with a uniform share so that none is starved by
+// a bad estimate.
 class LightSampler {
  public:
   LightSampler() = default;
+  // The emitters of a scene, in the order of their indices.
   explicit LightSampler(const std::vector<const Emitter*>& emitters);
 
   struct Choice {
-    const Emitter* emitter = nullptr;  // null if there are no lights
-    float probability = 0;
+    const Emitter* emitter = nullptr;  // null if no light shines upon the reference
+    uint32_t part = 0;
+    float probability = 0;  // discrete
   };
-  // Chooses with u in [0, 1); u is rescaled so that it can be used again.
-  Choice sample(float& u) const;
-  // The probability with which sample() chooses the emitter; 0 for one that it does not know.
-  float probability(const Emitter& emitter) const;
+  // Chooses with u in [0, 1).
+  Choice sample(const LightReference& ref, float u) const;
+  // The probability with which sample() chooses the part of the emitter. It is zero only for parts that give
+  // the reference nothing.
+  float probability(const LightReference& ref, const Emitter& emitter, uint32_t part) const;
+
+  uint64_t bytes() const;
 
  private:
   std::vector<const Emitter*> m_emitters;
-  std::vector<float> m_cdf;  // size n + 1
-  std::unordered_map<const Emitter*, uint32_t> m_index;
+  std::vector<uint32_t> m_firstLight;  // of each emitter: the number of its part 0 in the tree
+  std::vector<uint32_t> m_emitterOf;   // of each light of the tree
+  LightTree m_tree;
+  float m_treeProbability = 0;
+  std::vector<uint32_t> m_infinite;  // emitters outside of the tree
+  std::vector<float> m_cdf;          // of these, size n + 1
+  std::vector<float> m_probability;  // of each emitter that is outside of the tree; 0 for others
 };
 
 }  // namespace odis::render

@@ -9,7 +9,11 @@
 
 namespace odis::render {
 
-EmitterSample PointLight::sample(const Vec3& ref, const Vec2&) const {
+LightBounds PointLight::bounds(uint32_t) const {
+  return {.min = m_position, .max = m_position, .thetaO = kPi, .phi = power() / kPi};
+}
+
+EmitterSample PointLight::sample(uint32_t, const Vec3& ref, const Vec2&) const {
   const Vec3 toLight = m_position - ref;
   const float distance = length(toLight);
   if (!(distance > 0)) return {};

@@ -9,7 +9,9 @@ class PointLight final : public Emitter {
  public:
   PointLight(const Vec3& position, const Rgb& intensity) : m_position(position), m_intensity(intensity) {}
 
-  EmitterSample sample(const Vec3& ref, const Vec2& u) const override;
+  uint32_t partCount() const override { return 1; }
+  LightBounds bounds(uint32_t part) const override;
+  EmitterSample sample(uint32_t part, const Vec3& ref, const Vec2& u) const override;
   float power() const override { return 4 * kPi * average(m_intensity); }
 
  private:

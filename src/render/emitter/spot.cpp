@@ -17,11 +17,24 @@ SpotLight::SpotLight(const Vec3& position, const Vec3& axis, const Rgb& intensit
       m_axis(axis),
       m_intensity(intensity),
       m_cutoff(cutoff),
+      m_beamWidth(beamWidth),
       m_cosCutoff(std::cos(cutoff)),
       m_cosBeam(std::cos(beamWidth)),
       m_inverseTransition(cutoff > beamWidth ? 1 / (cutoff - beamWidth) : 0) {}
 
-EmitterSample SpotLight::sample(const Vec3& ref, const Vec2&) const {
+// Full within the beam, and nothing beyond the rim; importance fades with the cosine from one to the other,
+// so the two are kept within a right angle.
+LightBounds SpotLight::bounds(uint32_t) const {
+  const float full = std::max(m_beamWidth, m_cutoff - kPi / 2);
+  return {.min = m_position,
+          .max = m_position,
+          .axis = m_axis,
+          .thetaO = full,
+          .thetaE = m_cutoff - full,
+          .phi = average(m_intensity) / axialIntensity(full)};
+}
+
+EmitterSample SpotLight::sample(uint32_t, const Vec3& ref, const Vec2&) const {
   const Vec3 toLight = m_position - ref;
   const float distance = length(toLight);
   if (!(distance > 0)) return {};

@@ -11,13 +11,15 @@ class SpotLight final : public Emitter {
   // <= pi.
   SpotLight(const Vec3& position, const Vec3& axis, const Rgb& intensity, float cutoff, float beamWidth);
 
-  EmitterSample sample(const Vec3& ref, const Vec2& u) const override;
+  uint32_t partCount() const override { return 1; }
+  LightBounds bounds(uint32_t part) const override;
+  EmitterSample sample(uint32_t part, const Vec3& ref, const Vec2& u) const override;
   float power() const override;
 
  private:
   Vec3 m_position, m_axis;
   Rgb m_intensity;
-  float m_cutoff, m_cosCutoff, m_cosBeam;
+  float m_cutoff, m_beamWidth, m_cosCutoff, m_cosBeam;
   float m_inverseTransition;  // 1 / (cutoff - beamWidth)
 };
 

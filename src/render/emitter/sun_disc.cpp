@@ -4,7 +4,7 @@
 
 namespace odis::render {
 
-EmitterSample SunDisc::sample(const Vec3&, const Vec2& u) const {
+EmitterSample SunDisc::sample(uint32_t, const Vec3&, const Vec2& u) const {
   // Lambert's azimuthal projection takes areas of the disk to areas of the cap.
   const Vec2 d = squareToDisk(u) * m_chord;
   const float squared = d.x * d.x + d.y * d.y, side = safeSqrt(1 - squared / 4);

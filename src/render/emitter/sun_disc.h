@@ -12,7 +12,7 @@ class SunDisc final : public EnvironmentEmitter {
       : m_frame(direction), m_chord(2 * std::sin(halfAngle / 2)), m_radiance(radiance) {}
 
   // Uniform over the disc.
-  EmitterSample sample(const Vec3& ref, const Vec2& u) const override;
+  EmitterSample sample(uint32_t part, const Vec3& ref, const Vec2& u) const override;
   // What passes through a disk of the scene's radius.
   float power() const override { return kPi * sqr(m_sceneRadius) * solidAngle() * average(m_radiance); }
   void setSceneBounds(const SceneBounds& bounds) override { m_sceneRadius = bounds.radius; }

@@ -15,14 +15,19 @@ struct LightEstimate {
   BsdfValue bsdf;
 };
 
+// What of a vertex the choice among lights depends on.
+LightReference lightReference(const SurfacePoint& at, const Vec3& wo) {
+  return {at.p, wo.z < 0 ? -at.shading.n : at.shading.n, at.shape->bsdf().traits().transmissive};
+}
+
 LightEstimate sampleLight(const PathSettings& settings, const SurfacePoint& at, const Vec3& wo,
                           Sampler& sampler) {
   LightEstimate result;
-  float uChoice = sampler.get1D();
+  const float uChoice = sampler.get1D();
   const Vec2 u = sampler.get2D();
-  const LightSampler::Choice choice = settings.lights->sample(uChoice);
+  const LightSampler::Choice choice = settings.lights->sample(lightReference(at, wo), uChoice);
   if (!choice.emitter) return result;
-  const EmitterSample light = choice.emitter->sample(at.p, u);
+  const EmitterSample light = choice.emitter->sample(choice.part, at.p, u);
   if (!(light.pdf > 0) || isBlack(light.radiance)) return result;
   result.wi = light.wi;
   result.distance = light.distance;
@@ -133,9 +138,10 @@ struct Batch {
 // Adds emission that the path's ray met, weighted against next-event estimation where that could have found
 // it too. `emitterPdf` is the density with which the emitter would have been sampled there.
 void addEmission(const PathSettings& settings, Path& path, Batch& batch, int depth, const Rgb& emission,
-                 const Emitter& emitter, float emitterPdf) {
+                 const Emitter& emitter, uint32_t part, float emitterPdf) {
   if (isBlack(emission)) return;
-  const float lightPdf = path.bySampling ? emitterPdf * settings.lights->probability(emitter) : 0;
+  const float lightPdf =
+      path.bySampling ? emitterPdf * settings.lights->probability(path.previous, emitter, part) : 0;
   const float weight = path.bySampling ? powerHeuristic(path.directionPdf, lightPdf) : 1;
   path.radiance += path.throughput * emission * weight;
   if (depth == 1) path.emitted += emission;
@@ -193,8 +199,8 @@ bool extend(const PathSettings& settings, Path& path, uint32_t index, const Hit&
   // A ray that leaves the scene meets the environment.
   if (!hit.shape) {
     for (const EnvironmentEmitter* environment : settings.scene->environments())
-      addEmission(settings, path, batch, depth, environment->radiance(path.ray.direction), *environment,
-                  path.bySampling ? environment->pdf(path.previous, path.ray.direction) : 0);
+      addEmission(settings, path, batch, depth, environment->radiance(path.ray.direction), *environment, 0,
+                  path.bySampling ? environment->pdf(path.previous.p, path.ray.direction) : 0);
     return false;
   }
 
@@ -204,7 +210,7 @@ bool extend(const PathSettings& settings, Path& path, uint32_t index, const Hit&
   if (batch.recording && depth > 1) batch.records[path.lastRecord].vertex.distance = length;
   if (const SurfaceEmitter* emitter = hit.shape->emitter())
     addEmission(settings, path, batch, depth, emitter->radiance(at, -path.ray.direction), *emitter,
-                path.bySampling ? emitter->pdf(path.previous, at) : 0);
+                emitter->part(at), path.bySampling ? emitter->pdf(path.previous.p, at) : 0);
   if (settings.maxDepth >= 0 && depth >= settings.maxDepth) return false;
 
   const Bsdf& bsdf = hit.shape->bsdf();
@@ -252,7 +258,7 @@ bool extend(const PathSettings& settings, Path& path, uint32_t index, const Hit&
   path.eta = eta;
   path.bySampling = !isDiscrete(next.lobe);
   path.directionPdf = next.pdf;
-  path.previous = at.p;
+  path.previous = lightReference(at, wo);
   path.ray = Scene::spawn(at, at.shading.toWorld(next.wi));
   return true;
 }

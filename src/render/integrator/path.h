@@ -55,7 +55,7 @@ struct Path {
   float eta = 1;            // product of the relative indices passed
   bool bySampling = false;  // whether the ray's direction competes with next-event estimation
   float directionPdf = 0;   // its density, if so
-  Vec3 previous;            // where the ray started
+  LightReference previous;  // where the ray started
   float distance = 0;       // from the camera to there
   uint32_t lastRecord = 0;  // within the batch
 };

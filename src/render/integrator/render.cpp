@@ -48,6 +48,7 @@ class Renderer {
     RenderResult result;
     result.frame = combine();
     result.stats = m_stats;
+    result.stats.bytesLights = m_lights.bytes();
     result.stats.interrupted = m_stopped;
     if (m_options.records) {
       const std::vector<float> estimates = pixelEstimates();

@@ -65,7 +65,7 @@ struct RenderStats {
   uint64_t samples = 0, pilotSamples = 0, rays = 0, shadowRays = 0;
   uint64_t pilotVertices = 0, cells = 0;
   uint64_t bytesBuild = 0;  // held at most until the guide is built: pilot vertices and what is made of them
-  uint64_t bytesMaps = 0;
+  uint64_t bytesMaps = 0, bytesLights = 0;
   double pilotWeight = 0;  // of the pilot's mean in the image
   double spp = 0;          // samples per pixel really taken
   // The time of a guided sample in that of a pilot sample, recording included; 0 if there was none of either.

@@ -9,7 +9,10 @@ Scene::Scene() = default;
 Scene::~Scene() = default;
 
 void Scene::addShape(ShapePtr shape) {
-  if (const SurfaceEmitter* emitter = shape->emitter()) m_emitters.push_back(emitter);
+  if (SurfaceEmitter* emitter = shape->emitter()) {
+    emitter->setIndex(uint32_t(m_emitters.size()));
+    m_emitters.push_back(emitter);
+  }
   m_shapes.push_back(std::move(shape));
 }
 
@@ -18,6 +21,7 @@ void Scene::addInstance(Instance instance) {
 }
 
 void Scene::addEmitter(EmitterPtr emitter) {
+  emitter->setIndex(uint32_t(m_emitters.size()));
   m_emitters.push_back(emitter.get());
   if (const auto* environment = dynamic_cast<const EnvironmentEmitter*>(emitter.get()))
     m_environments.push_back(environment);

@@ -73,7 +73,7 @@ class Scene {
   const IntegratorSettings& integrator() const { return m_integrator; }
   const std::vector<ShapePtr>& shapes() const { return m_shapes; }
   const std::vector<Instance>& instances() const { return m_instances; }
-  // All light sources: surface emitters of shapes, delta lights, environments.
+  // All light sources by their index: surface emitters of shapes, delta lights, environments.
   const std::vector<const Emitter*>& emitters() const { return m_emitters; }
   const std::vector<const EnvironmentEmitter*>& environments() const { return m_environments; }
   uint64_t bytes() const;  // memory of geometry, acceleration structure and textures

@@ -92,6 +92,11 @@ float Cylinder::pdf(const Vec3& ref, const SurfacePoint& at) const {
   return uniformAreaPdf(ref, at, area());
 }
 
+PrimitiveExtent Cylinder::extent(uint32_t) const {
+  const Imath::Box3d box = bounds();
+  return {.min = roundedDown(box.min), .max = roundedUp(box.max), .area = area()};
+}
+
 ShapePtr makeCylinder(const Properties& node, Builder& builder) {
   const Affine affine(readToWorld(node));
   const Vec3d p0(node.vector("p0", Vec3(0, 0, 0))), p1(node.vector("p1", Vec3(0, 0, 1)));

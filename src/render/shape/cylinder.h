@@ -19,6 +19,7 @@ class Cylinder final : public Shape {
   float area() const override { return float(2 * M_PI * m_radius * m_length); }
   ShapeSample sample(const Vec3& ref, const Vec2& u) const override;  // uniform by area
   float pdf(const Vec3& ref, const SurfacePoint& at) const override;
+  PrimitiveExtent extent(uint32_t primitive) const override;
   uint64_t bytes() const override { return sizeof(*this); }
 
   Imath::Box3d bounds() const;

@@ -74,6 +74,15 @@ float Disk::pdf(const Vec3& ref, const SurfacePoint& at) const {
   return uniformAreaPdf(ref, at, m_area);
 }
 
+PrimitiveExtent Disk::extent(uint32_t) const {
+  const Imath::Box3d box = bounds();
+  return {.min = roundedDown(box.min),
+          .max = roundedUp(box.max),
+          .axis = Vec3(m_normal),
+          .theta = 0,
+          .area = m_area};
+}
+
 ShapePtr makeDisk(const Properties& node, Builder&) {
   return std::make_shared<Disk>(Affine(readToWorld(node)), node.boolean("flip_normals", false));
 }

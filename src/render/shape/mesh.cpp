@@ -105,8 +105,7 @@ Mesh::Mesh(MeshData data, const MeshOptions& options) : m_flipFaceNormals(option
   std::vector<double> sums;
   sums.reserve(m_triangles.size());
   for (const Triangle& t : m_triangles) {
-    const Vec3d normal =
-        areaVector(m_vertices[t[0]].position, m_vertices[t[1]].position, m_vertices[t[2]].position);
+    const Vec3d normal = areaVector(t);
     sums.push_back(sum += 0.5 * std::sqrt(normal.dot(normal)));
   }
   m_area = float(sum);
@@ -189,6 +188,44 @@ ShapeSample Mesh::sample(const Vec3& ref, const Vec2& u) const {
 
 float Mesh::pdf(const Vec3& ref, const SurfacePoint& at) const {
   return uniformAreaPdf(ref, at, m_area);
+}
+
+Imath::V3d Mesh::areaVector(const Triangle& t) const {
+  return render::areaVector(m_vertices[t[0]].position, m_vertices[t[1]].position, m_vertices[t[2]].position);
+}
+
+float Mesh::triangleArea(uint32_t triangle) const {
+  const Vec3d normal = areaVector(m_triangles[triangle]);
+  return float(0.5 * std::sqrt(normal.dot(normal)));
+}
+
+PrimitiveExtent Mesh::extent(uint32_t triangle) const {
+  PrimitiveExtent result;
+  result.area = triangleArea(triangle);
+  result.min = result.max = m_vertices[m_triangles[triangle][0]].position;
+  for (const uint32_t vertex : m_triangles[triangle])
+    for (int i = 0; i < 3; ++i) {
+      result.min[i] = std::min(result.min[i], m_vertices[vertex].position[i]);
+      result.max[i] = std::max(result.max[i], m_vertices[vertex].position[i]);
+    }
+  // Between the corners the normals are combinations of theirs: a cone that holds these, and is narrower than
+  // half of all directions, holds those.
+  const Vec3 corners[3] = {pointOn(triangle, {0, 0}).shading.n, pointOn(triangle, {1, 0}).shading.n,
+                           pointOn(triangle, {0, 1}).shading.n};
+  result.axis = normalizeOr(Vec3d(corners[0]) + Vec3d(corners[1]) + Vec3d(corners[2]), corners[0]);
+  result.theta = 0;
+  for (const Vec3& n : corners)
+    result.theta = std::max(result.theta, std::atan2(length(cross(result.axis, n)), dot(result.axis, n)));
+  if (result.theta > kPi / 2) result.theta = kPi;
+  return result;
+}
+
+ShapeSample Mesh::samplePrimitive(uint32_t triangle, const Vec3& ref, const Vec2& u) const {
+  return uniformAreaSample(ref, pointOn(triangle, squareToTriangle(u)), triangleArea(triangle));
+}
+
+float Mesh::primitivePdf(const Vec3& ref, const SurfacePoint& at) const {
+  return uniformAreaPdf(ref, at, triangleArea(at.primitive));
 }
 
 uint64_t Mesh::bytes() const {

@@ -39,6 +39,9 @@ class Mesh final : public Shape {
   ShapeSample sample(const Vec3& ref, const Vec2& u) const override;  // uniform by area
   float pdf(const Vec3& ref, const SurfacePoint& at) const override;
   uint64_t primitiveCount() const override { return m_triangles.size(); }
+  PrimitiveExtent extent(uint32_t triangle) const override;
+  ShapeSample samplePrimitive(uint32_t triangle, const Vec3& ref, const Vec2& u) const override;  // by area
+  float primitivePdf(const Vec3& ref, const SurfacePoint& at) const override;
   uint64_t bytes() const override;
 
   // The point with barycentric coordinates (b1, b2) on a triangle, in the space of the mesh. dpdu
@@ -51,6 +54,8 @@ class Mesh final : public Shape {
     Vec3 position, normal{0, 0, 0};
     Vec2 uv{0, 0};
   };
+  Imath::V3d areaVector(const Triangle& t) const;  // twice the area along the normal
+  float triangleArea(uint32_t triangle) const;
 
   Mesh(MeshData data, const MeshOptions& options);
   void findTangents(SurfacePoint& at, const Triangle& t) const;

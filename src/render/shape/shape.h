@@ -35,6 +35,15 @@ struct Hit {
   RawHit raw;
 };
 
+// Bounds of a primitive (a triangle of a mesh, the whole of other shapes): its box, and a cone about all
+// shading normals.
+struct PrimitiveExtent {
+  Vec3 min, max;
+  Vec3 axis{0, 0, 1};  // unit
+  float theta = kPi;   // radians
+  float area = 0;
+};
+
 class Shape {
  public:
   virtual ~Shape() = default;
@@ -51,12 +60,19 @@ class Shape {
   // Density with respect to solid angle with which sample(ref, .) gives the direction to `at`.
   virtual float pdf(const Vec3& ref, const SurfacePoint& at) const = 0;
   virtual uint64_t primitiveCount() const { return 1; }
+  virtual PrimitiveExtent extent(uint32_t primitive) const = 0;
+  // The same for one primitive: samples it, and the density with which it gives the direction to `at`, on it.
+  virtual ShapeSample samplePrimitive(uint32_t /*primitive*/, const Vec3& ref, const Vec2& u) const {
+    return sample(ref, u);
+  }
+  virtual float primitivePdf(const Vec3& ref, const SurfacePoint& at) const { return pdf(ref, at); }
   virtual uint64_t bytes() const { return 0; }
 
   const Bsdf& bsdf() const { return *m_bsdf; }
   const SurfaceEmitter* emitter() const { return m_emitter.get(); }
   // Whether surface points need dpdu, dpdv and a shading frame along them.
   bool tangents() const { return !m_bsdf || m_bsdf->traits().tangents; }
+  SurfaceEmitter* emitter() { return m_emitter.get(); }
   void setBsdf(BsdfPtr bsdf) { m_bsdf = std::move(bsdf); }
   void setEmitter(std::shared_ptr<SurfaceEmitter> emitter) { m_emitter = std::move(emitter); }
 

@@ -113,6 +113,11 @@ float Sphere::pdf(const Vec3& ref, const SurfacePoint& at) const {
   return height < 0 ? uniformAreaPdf(ref, at, area()) : float(1 / (2 * M_PI * height));
 }
 
+PrimitiveExtent Sphere::extent(uint32_t) const {
+  const Imath::Box3d box = bounds();
+  return {.min = roundedDown(box.min), .max = roundedUp(box.max), .area = area()};
+}
+
 ShapePtr makeSphere(const Properties& node, Builder& builder) {
   const Affine affine(readToWorld(node));
   if (!isSquare(affine.x, affine.y) || !isSquare(affine.y, affine.z) || !isSquare(affine.z, affine.x))

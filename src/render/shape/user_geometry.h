@@ -21,6 +21,15 @@ struct PreciseRay {
   bool contains(double t) const { return t > tMin && t < tMax; }
 };
 
+inline Vec3 roundedDown(const Imath::V3d& v) {
+  constexpr float infinity = std::numeric_limits<float>::infinity();
+  return {std::nextafter(float(v.x), -infinity), std::nextafter(float(v.y), -infinity),
+          std::nextafter(float(v.z), -infinity)};
+}
+inline Vec3 roundedUp(const Imath::V3d& v) {
+  return -roundedDown(-v);
+}
+
 namespace detail {
 
 // Ray i of a packet of n.
@@ -35,14 +44,14 @@ template <class Analytic>
 void boundsCallback(const RTCBoundsFunctionArguments* arguments) {
   // Rounded outwards, as the box is known in double precision.
   const Imath::Box3d box = static_cast<const Analytic*>(arguments->geometryUserPtr)->bounds();
+  const Vec3 lower = roundedDown(box.min), upper = roundedUp(box.max);
   RTCBounds& bounds = *arguments->bounds_o;
-  constexpr float infinity = std::numeric_limits<float>::infinity();
-  bounds.lower_x = std::nextafter(float(box.min.x), -infinity);
-  bounds.lower_y = std::nextafter(float(box.min.y), -infinity);
-  bounds.lower_z = std::nextafter(float(box.min.z), -infinity);
-  bounds.upper_x = std::nextafter(float(box.max.x), infinity);
-  bounds.upper_y = std::nextafter(float(box.max.y), infinity);
-  bounds.upper_z = std::nextafter(float(box.max.z), infinity);
+  bounds.lower_x = lower.x;
+  bounds.lower_y = lower.y;
+  bounds.lower_z = lower.z;
+  bounds.upper_x = upper.x;
+  bounds.upper_y = upper.y;
+  bounds.upper_z = upper.z;
 }
 
 template <class Analytic>

@@ -1,0 +1,72 @@
+// A binary tree over lights, from which one is drawn in proportion to what it may give a point (Conty Estevez
+// and Kulla 2018; the walk back to the root by a trail of bits as in pbrt-v4).
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "render/emitter/light_bounds.h"
+
+namespace odis::render {
+
+// The point that light is sampled for, as far as the choice among lights depends on it.
+struct LightReference {
+  Vec3 p;
+  Vec3 n;             // unit shading normal on the side that light is scattered to
+  bool both = false;  // whether light of the other side is scattered too
+};
+
+class LightTree {
+ public:
+  static constexpr uint32_t kNone = ~0u;
+
+  LightTree() = default;
+  // Lights without phi are left out and never drawn. At most 2^31 lights.
+  explicit LightTree(std::span<const LightBounds> lights);
+
+  struct Choice {
+    uint32_t light = kNone;  // none: no light of the tree shines upon the reference
+    float probability = 0;   // discrete
+  };
+  // Draws a light with u in [0, 1). Takes time logarithmic in their number.
+  Choice sample(const LightReference& ref, float u) const;
+  // The probability with which sample() draws the light. It is zero only for lights that give the reference
+  // nothing, because they or it look away.
+  float probability(const LightReference& ref, uint32_t light) const;
+
+  bool empty() const { return m_root == kNone; }
+  // 72 bytes a light.
+  uint64_t bytes() const {
+    return m_pairs.capacity() * sizeof(Pair) + m_trails.capacity() * sizeof(uint64_t);
+  }
+
+ private:
+  // The bounds of a subtree: a sphere for the box, 16 bits a coordinate for the axis.
+  struct Node {
+    Vec3 center;
+    float radiusSquared;
+    float intensity;         // towards the axis, W/sr
+    int16_t axis[3];         // times 32767
+    uint8_t thetaO, thetaE;  // in steps of pi / 254, rounded up
+    uint32_t link;           // an index of m_pairs, or a light and kLeaf
+  };
+  struct alignas(64) Pair {
+    Node child[2];
+  };
+  class Build;
+  static constexpr uint32_t kLeaf = 1u << 31;
+
+  static Node pack(const LightBounds& bounds, uint32_t link);
+  // What the lights below the node may give the reference, in W/m^2; zero only if nothing.
+  static float importance(const Node& node, const LightReference& ref);
+  // The probability of the first child; negative if neither gives anything.
+  static float firstProbability(const Pair& pair, const LightReference& ref);
+
+  std::vector<Pair> m_pairs;
+  std::vector<uint64_t> m_trails;  // for each light its turns from the root, the first in the lowest bit,
+                                   // ended by a one; 0 if it is left out
+  uint32_t m_root = kNone;         // a link
+};
+
+}  // namespace odis::render
