@@ -3,7 +3,7 @@ PRESET ?= release
 BUILD := build/$(PRESET)
 JOBS ?= $(shell nproc)
 
-.PHONY: help setup build demo test format format-check lint clean
+.PHONY: help setup build demo test agreement format format-check lint clean
 
 help:                ## Show this list
 	@sed -n 's/^\([a-z-]*\):.*## /  make \1\t/p' Makefile | expand -t 24
@@ -22,6 +22,9 @@ demo: setup          ## Render the demo scene with plain path tracing and with O
 
 test: build          ## Build and run all tests
 	@ctest --test-dir $(BUILD) --parallel $(JOBS) --output-on-failure --output-log $(BUILD)/ctest.log
+
+agreement: build     ## Test `path` against other renderers' images: SCENES=DIR REFERENCES=DIR
+	@scripts/agreement $(BUILD)/apps/odis/odis "$(SCENES)" "$(REFERENCES)" $(SPP)
 
 format:              ## Format the C++ sources in place
 	@scripts/format

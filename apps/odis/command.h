@@ -43,6 +43,7 @@ Command addSceneCommand(CLI::App& parent);
 Command addMetricsCommand(CLI::App& parent);
 Command addMontageCommand(CLI::App& parent);
 Command addCompareCommand(CLI::App& parent);
+Command addAgreementCommand(CLI::App& parent);
 
 // Runs the whole command line; errors go to stderr. Returns an ExitCode.
 int runCommandLine(int argc, char** argv);

@@ -46,8 +46,12 @@ int runCommandLine(int argc, char** argv) {
   app.require_subcommand(1);
   std::string commandLine;
   for (int i = 0; i < argc; ++i) commandLine += (i > 0 ? " " : "") + std::string(argv[i]);
-  const std::vector<Command> commands{addRenderCommand(app, commandLine), addCompareCommand(app),
-                                      addMetricsCommand(app), addMontageCommand(app), addSceneCommand(app)};
+  const std::vector<Command> commands{addRenderCommand(app, commandLine),
+                                      addCompareCommand(app),
+                                      addAgreementCommand(app),
+                                      addMetricsCommand(app),
+                                      addMontageCommand(app),
+                                      addSceneCommand(app)};
   try {
     app.parse(argc, argv);
     for (const Command& command : commands)

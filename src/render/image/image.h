@@ -35,6 +35,8 @@ class Image {
   bool hasAlpha() const { return !m_alpha.empty(); }  // whether any pixel is not opaque
   inline Rgb rgb(int x, int y) const;                 // 0 <= x < width, 0 <= y < height
   inline float scalar(int x, int y) const;            // the single channel, or the luminance
+  // Between the pixels of columns x0, x1 and rows y0, y1: fx of the way to x1, fy of the way to y1.
+  inline Rgb bilinear(int x0, int x1, int y0, int y1, float fx, float fy) const;
   float alpha(int x, int y) const { return m_alpha.empty() ? 1.0f : m_alpha[index(x, y)] * (1.0f / 255.0f); }
   Rgb mean() const;
   uint64_t bytes() const;
@@ -63,6 +65,21 @@ Rgb Image::rgb(int x, int y) const {
   if (m_channels == 1) return Rgb(m_floats[index(x, y)]);
   const float* p = &m_floats[3 * index(x, y)];
   return {p[0], p[1], p[2]};
+}
+
+Rgb Image::bilinear(int x0, int x1, int y0, int y1, float fx, float fy) const {
+  const float w11 = fx * fy, w01 = fy - w11, w10 = fx - w11, w00 = 1 - fx - w01;
+  // Most textures are of this kind.
+  if (m_channels == 3 && !m_bytes.empty()) {
+    const uint8_t *p00 = &m_bytes[3 * index(x0, y0)], *p10 = &m_bytes[3 * index(x1, y0)];
+    const uint8_t *p01 = &m_bytes[3 * index(x0, y1)], *p11 = &m_bytes[3 * index(x1, y1)];
+    const auto mix = [&](int c) {
+      return m_decode[p00[c]] * w00 + m_decode[p10[c]] * w10 + m_decode[p01[c]] * w01 +
+             m_decode[p11[c]] * w11;
+    };
+    return {mix(0), mix(1), mix(2)};
+  }
+  return rgb(x0, y0) * w00 + rgb(x1, y0) * w10 + rgb(x0, y1) * w01 + rgb(x1, y1) * w11;
 }
 
 float Image::scalar(int x, int y) const {

@@ -9,16 +9,15 @@ namespace odis::render {
 // Uniform on the unit disk, concentric (Shirley and Chiu 1997); area density 1/pi.
 inline Vec2 squareToDisk(const Vec2& u) {
   const float x = 2.0f * u.x - 1.0f, y = 2.0f * u.y - 1.0f;
-  if (x == 0.0f && y == 0.0f) return {0.0f, 0.0f};
-  float r, phi;
-  if (std::abs(x) > std::abs(y)) {
-    r = x;
-    phi = (kPi / 4) * (y / x);
-  } else {
-    r = y;
-    phi = (kPi / 2) - (kPi / 4) * (x / y);
-  }
-  return {r * std::cos(phi), r * std::sin(phi)};
+  // The angle to the nearer axis is at most a quarter of pi, where short series are exact to a rounding.
+  const bool nearX = std::abs(x) > std::abs(y);
+  const float r = nearX ? x : y, other = nearX ? y : x;
+  if (r == 0.0f) return {0.0f, 0.0f};
+  const float t = (kPi / 4) * (other / r), t2 = t * t;
+  const float along =
+      r * (1 + t2 * (-1.0f / 2 + t2 * (1.0f / 24 + t2 * (-1.0f / 720 + t2 * (1.0f / 40320)))));
+  const float across = r * t * (1 + t2 * (-1.0f / 6 + t2 * (1.0f / 120 + t2 * (-1.0f / 5040))));
+  return nearX ? Vec2(along, across) : Vec2(across, along);
 }
 
 // Cosine-weighted on the hemisphere z > 0; solid-angle density cos(theta)/pi.

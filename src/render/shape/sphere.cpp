@@ -41,21 +41,23 @@ bool Sphere::hit(const PreciseRay& ray, double& t) const {
 
 SurfacePoint Sphere::pointToward(const Vec3d& unit) const {
   const Vec3d local(unit.dot(m_axes[0]), unit.dot(m_axes[1]), unit.dot(m_axes[2]));
-  const double rho = std::hypot(local.x, local.y);
-  const double cosPhi = rho > 0 ? local.x / rho : 1, sinPhi = rho > 0 ? local.y / rho : 0;
-  double phi = std::atan2(local.y, local.x);
-  if (phi < 0) phi += 2 * M_PI;
+  const double rho = std::sqrt(local.x * local.x + local.y * local.y);
+  float phi = std::atan2(float(local.y), float(local.x));
+  if (phi < 0) phi += 2 * kPi;
 
   SurfacePoint at;
   at.shape = this;
   at.p = Vec3(m_center + unit * m_radius);
   at.pError = positionError(
       float(std::max({std::abs(m_center.x), std::abs(m_center.y), std::abs(m_center.z)}) + m_radius));
-  at.uv = {float(phi / (2 * M_PI)), float(std::atan2(rho, local.z) / M_PI)};
+  at.uv = {phi * (0.5f * kInvPi), std::atan2(float(rho), float(local.z)) * kInvPi};
+  at.ng = Vec3(m_flipNormals ? -unit : unit);
+  at.shading = Frame(at.ng);
+  if (!tangents()) return at;
+  const double cosPhi = rho > 0 ? local.x / rho : 1, sinPhi = rho > 0 ? local.y / rho : 0;
   at.dpdu = Vec3((m_axes[1] * local.x - m_axes[0] * local.y) * (2 * M_PI * m_radius));
   at.dpdv = Vec3((m_axes[0] * (local.z * cosPhi) + m_axes[1] * (local.z * sinPhi) - m_axes[2] * rho) *
                  (M_PI * m_radius));
-  at.ng = Vec3(m_flipNormals ? -unit : unit);
   at.shading = Frame::fromTangent(at.ng, at.dpdu);
   return at;
 }

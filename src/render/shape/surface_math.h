@@ -42,10 +42,12 @@ inline ShapeSample uniformAreaSample(const Vec3& ref, const SurfacePoint& at, fl
   ShapeSample sample;
   sample.at = at;
   const Vec3 d = at.p - ref;
-  sample.distance = length(d);
+  const float squared = lengthSquared(d);
+  sample.distance = std::sqrt(squared);
   if (!(sample.distance > 0)) return sample;
   sample.wi = d * (1 / sample.distance);
-  sample.pdf = uniformAreaPdf(ref, at, area);
+  const float pdf = squared / (absDot(at.ng, sample.wi) * area);
+  if (std::isfinite(pdf)) sample.pdf = pdf;
   return sample;
 }
 

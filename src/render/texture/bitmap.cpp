@@ -143,6 +143,10 @@ T BitmapTexture::interpolate(const Vec2& uv, Fetch&& fetch) const {
 }
 
 Rgb BitmapTexture::rgb(const Vec2& uv) const {
+  if (!m_options.nearest) {
+    const Patch p = patch(uv);
+    if (std::min({p.x0, p.x1, p.y0, p.y1}) >= 0) return m_image->bilinear(p.x0, p.x1, p.y0, p.y1, p.fx, p.fy);
+  }
   return interpolate<Rgb>(uv, [&image = *m_image](int x, int y) { return image.rgb(x, y); });
 }
 
