@@ -47,13 +47,12 @@ eval::Estimate renderEstimate(const Arguments& a, int width, int height) {
   ConsoleProgress progress(a.quiet);
   const render::RenderResult result = render::render(*scene, options, progress);
   eval::Estimate estimate{width, height, result.frame.color, result.frame.variance};
-  for (render::Rgb& v : estimate.standardError)
-    v = {std::sqrt(v.x), std::sqrt(v.y), std::sqrt(v.z)};
+  for (render::Rgb& v : estimate.standardError) v = {std::sqrt(v.x), std::sqrt(v.y), std::sqrt(v.z)};
   return estimate;
 }
 
-// Blocks that are too bright in red, too dark in blue, full colour where the difference is twice what is allowed;
-// the grey is the reference.
+// Blocks that are too bright in red, too dark in blue, full colour where the difference is twice what is
+// allowed; the grey is the reference.
 void writePicture(const std::string& path, const eval::Agreement& found, const eval::Estimate& reference) {
   double mean = 0;
   for (const render::Rgb& c : reference.mean) mean += render::luminance(c);
@@ -63,9 +62,11 @@ void writePicture(const std::string& path, const eval::Agreement& found, const e
     for (int x = 0; x < reference.width; ++x) {
       const float excess = found.excess[size_t(y / eval::kAgreementBlock) * size_t(found.blocksX) +
                                         size_t(x / eval::kAgreementBlock)];
-      const float grey = 0.3f * std::min(
-          1.0f, float(render::luminance(reference.mean[size_t(y) * size_t(reference.width) + size_t(x)]) /
-                      (3 * mean)));
+      const float grey =
+          0.3f *
+          std::min(1.0f,
+                   float(render::luminance(reference.mean[size_t(y) * size_t(reference.width) + size_t(x)]) /
+                         (3 * mean)));
       const float strength = std::min(std::max(std::abs(excess) - 1, 0.0f), 1.0f);
       pixels.emplace_back(excess > 0 ? grey + strength : grey, grey, excess < 0 ? grey + strength : grey);
     }
@@ -102,23 +103,28 @@ static int run(const Arguments& a) {
 
 Command addAgreementCommand(CLI::App& parent) {
   CLI::App* app = parent.add_subcommand("agreement", "Test path tracing against another renderer's image");
-  app->footer(
-      fmt::format("Blocks of {0} x {0} pixels agree if the means of every channel differ by at most {1:.0f} standard "
-                  "errors\nplus {2} % of the reference.",
-                  eval::kAgreementBlock, eval::kAgreementErrors, 100 * eval::kAgreementShare));
+  app->footer(fmt::format(
+      "Blocks of {0} x {0} pixels agree if the means of every channel differ by at most {1:.0f} standard "
+      "errors\nplus {2} % of the reference.",
+      eval::kAgreementBlock, eval::kAgreementErrors, 100 * eval::kAgreementShare));
   const auto a = std::make_shared<Arguments>();
   const CLI::Range positive(1, 1 << 24);
   app->add_option("SCENE", a->scene, "Mitsuba scene file")->required();
   app->add_option("REFERENCE", a->reference, "EXR file with R, G, B and their standard errors, stderr.R, ...")
       ->required();
-  app->add_option("--picture", a->picture, "PNG of the blocks that do not agree: red too bright, blue too dark");
+  app->add_option("--picture", a->picture,
+                  "PNG of the blocks that do not agree: red too bright, blue too dark");
   app->add_option("--spp", a->spp, "Samples per pixel")->check(positive)->capture_default_str();
   app->add_option("--seed", a->seed, "Another seed, another noise")->capture_default_str();
   app->add_option("--max-depth", a->maxDepth, "As the reference has it")
       ->check(CLI::Range(-1, 1 << 20))
       ->capture_default_str();
-  app->add_option("--rr-depth", a->rrDepth, "As the reference has it")->check(positive)->capture_default_str();
-  app->add_option("--threads", a->threads, "0: one a core")->check(CLI::Range(0, 4096))->capture_default_str();
+  app->add_option("--rr-depth", a->rrDepth, "As the reference has it")
+      ->check(positive)
+      ->capture_default_str();
+  app->add_option("--threads", a->threads, "0: one a core")
+      ->check(CLI::Range(0, 4096))
+      ->capture_default_str();
   app->add_flag("--json", a->json, "Print JSON");
   app->add_flag("-q,--quiet", a->quiet, "No progress");
   return {app, [a] { return run(*a); }};

@@ -44,6 +44,7 @@ Command addMetricsCommand(CLI::App& parent);
 Command addMontageCommand(CLI::App& parent);
 Command addCompareCommand(CLI::App& parent);
 Command addAgreementCommand(CLI::App& parent);
+Command addBenchCommand(CLI::App& parent);
 
 // Runs the whole command line; errors go to stderr. Returns an ExitCode.
 int runCommandLine(int argc, char** argv);

@@ -49,6 +49,7 @@ int runCommandLine(int argc, char** argv) {
   const std::vector<Command> commands{addRenderCommand(app, commandLine),
                                       addCompareCommand(app),
                                       addAgreementCommand(app),
+                                      addBenchCommand(app),
                                       addMetricsCommand(app),
                                       addMontageCommand(app),
                                       addSceneCommand(app)};

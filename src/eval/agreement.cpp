@@ -21,8 +21,8 @@ Estimate readEstimate(const std::string& path) {
   for (int c = 0; c < 3; ++c) {
     const auto found = file.channels.find(names[size_t(c)]);
     if (found == file.channels.end())
-      throw ImageError(
-          fmt::format("{}: no channel {}; expected the standard errors of R, G and B", path, names[size_t(c)]));
+      throw ImageError(fmt::format("{}: no channel {}; expected the standard errors of R, G and B", path,
+                                   names[size_t(c)]));
     for (size_t i = 0; i < result.mean.size(); ++i) result.standardError[i][c] = found->second[i];
   }
   return result;
@@ -63,8 +63,8 @@ double luminance(const Rgbd& c) {
 
 Agreement agreement(const Estimate& image, const Estimate& reference) {
   if (image.width != reference.width || image.height != reference.height)
-    throw std::invalid_argument(fmt::format("{} x {} pixels against {} x {}: they must be of one size", image.width,
-                                            image.height, reference.width, reference.height));
+    throw std::invalid_argument(fmt::format("{} x {} pixels against {} x {}: they must be of one size",
+                                            image.width, image.height, reference.width, reference.height));
   Agreement result;
   result.blocksX = (image.width + kAgreementBlock - 1) / kAgreementBlock;
   result.blocksY = (image.height + kAgreementBlock - 1) / kAgreementBlock;

@@ -7,6 +7,7 @@
 #include <stdexcept>
 
 #include "eval/image_file.h"
+#include "eval/load_scene.h"
 #include "eval/montage.h"
 #include "eval/reference.h"
 #include "eval/results_log.h"
@@ -25,19 +26,6 @@ std::string sceneName(const std::string& path) {
   return stem == "scene" ? absolute.parent_path().filename().string() : stem;
 }
 
-// Loads the scene so that it has about `pixels` pixels.
-static std::unique_ptr<Scene> loadScene(const std::string& path, const CompareSettings& settings,
-                                        Warnings& warnings) {
-  std::unique_ptr<Scene> scene = Scene::load(path, settings.load, warnings);
-  if (settings.pixels <= 0) return scene;
-  const double aspect = double(scene->film().width) / scene->film().height;
-  LoadOptions options = settings.load;
-  options.resolution = Vec2i(std::max(1, int(std::lround(std::sqrt(settings.pixels * aspect)))),
-                             std::max(1, int(std::lround(std::sqrt(settings.pixels / aspect)))));
-  scene.reset();  // never two in memory
-  return Scene::load(path, options, warnings);
-}
-
 namespace {
 
 // One scene's share of a comparison.
@@ -48,7 +36,7 @@ class SceneRun {
       : m_settings(settings), m_name(sceneName(path)), m_log(log), m_observer(observer) {
     observer.start(m_name);
     Warnings warnings;
-    m_scene = loadScene(path, settings, warnings);
+    m_scene = loadScene(path, settings.load, settings.pixels, warnings);
     observer.warnings(warnings);
     m_hash = hashScene(path, settings.load.defines);
     RenderOptions options;

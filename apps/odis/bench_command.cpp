@@ -1,0 +1,122 @@
+// odis bench
+#include <fmt/format.h>
+#include <CLI/CLI.hpp>
+
+#include <chrono>
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "command.h"
+#include "console.h"
+#include "eval/benchmark.h"
+#include "eval/compare.h"
+#include "eval/load_scene.h"
+
+namespace odis::app {
+
+namespace {
+
+struct Arguments {
+  std::vector<std::string> scenes;
+  eval::BenchmarkSettings settings;
+  std::string sampler = "independent";
+  int pixels = 57600;
+  bool json = false, quiet = false;
+};
+
+struct Row {
+  std::string scene;
+  double secondsLoad = 0;
+  eval::BenchmarkResult result;
+};
+
+nlohmann::ordered_json toJson(const Row& row) {
+  const eval::BenchmarkResult& r = row.result;
+  return {{"scene", row.scene},
+          {"pixels", r.pixels},
+          {"secondsLoad", row.secondsLoad},
+          {"samplesPerSecond", r.samplesPerSecond},
+          {"samplesPerCpuSecond", r.samplesPerCpuSecond},
+          {"raysPerSecond", r.raysPerSecond},
+          {"guidedCost", r.guidedCost},
+          {"guidingShare", r.guidingShare},
+          {"frameCost", r.frameCost},
+          {"bytesPerVertex", r.bytesPerVertex},
+          {"bytesMaps", r.bytesMaps}};
+}
+
+void printRow(const Row& row) {
+  const eval::BenchmarkResult& r = row.result;
+  fmt::print("| {} | {:.2f} | {:.3f} | {:.2f} | {:.2f} | {:.1f} % | {:.2f} | {:.0f} | {} |\n", row.scene,
+             row.secondsLoad, r.samplesPerSecond * 1e-6, r.raysPerSecond * 1e-6, r.guidedCost,
+             100 * r.guidingShare, r.frameCost, r.bytesPerVertex, bytesText(double(r.bytesMaps)));
+  std::fflush(stdout);
+}
+
+}  // namespace
+
+static int run(Arguments& a) {
+  a.settings.sampler =
+      a.sampler == "sobol" ? render::SamplerKind::sobol : render::SamplerKind::independent;
+  const InterruptScope interruptible;
+  ConsoleProgress progress(a.quiet);
+  nlohmann::ordered_json all = nlohmann::ordered_json::array();
+  if (!a.json)
+    fmt::print(
+        "| scene | load, s | path, M samples/s | M rays/s | guided sample | guiding of a frame | frame | "
+        "B a vertex | maps |\n|---|---|---|---|---|---|---|---|---|\n");
+  for (const std::string& path : a.scenes) {
+    Row row{eval::sceneName(path), 0, {}};
+    progress.setTitle(row.scene);
+    render::Warnings warnings;
+    // The time of one loading: the size of the image, which may make it two, has no part in it.
+    const auto start = std::chrono::steady_clock::now();
+    std::unique_ptr<render::Scene> scene = render::Scene::load(path, {}, warnings);
+    row.secondsLoad = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    scene.reset();
+    scene = eval::loadScene(path, {}, a.pixels, warnings);
+    row.result = eval::benchmark(*scene, a.settings, progress);
+    if (InterruptScope::interrupted()) return kInterrupted;
+    if (a.json)
+      all.push_back(toJson(row));
+    else
+      printRow(row);
+  }
+  if (a.json) fmt::print("{}\n", all.dump(2));
+  return kOk;
+}
+
+Command addBenchCommand(CLI::App& parent) {
+  CLI::App* app = parent.add_subcommand("bench", "Measure how fast rendering is and what guiding adds");
+  app->footer(
+      "`path` and `odis` take turns at the same number of samples; medians over the rounds. \"Guided sample\" and\n"
+      "\"frame\" are times in those of `path`, \"guiding of a frame\" is the share of recording the pilot and of\n"
+      "building cells, maps and selection probabilities.");
+  const auto a = std::make_shared<Arguments>();
+  const CLI::Range positive(1, 1 << 24);
+  app->add_option("SCENE", a->scenes, "Mitsuba scene files")->required();
+  app->add_option("--spp", a->settings.spp, "Samples per pixel, of which one is the pilot")
+      ->check(CLI::Range(2, 1 << 20))
+      ->capture_default_str();
+  app->add_option("--rounds", a->settings.rounds, "How often each renders")->check(positive)->capture_default_str();
+  app->add_option("--pixels", a->pixels, "Make the images about so many pixels large")
+      ->check(positive)
+      ->capture_default_str();
+  app->add_option("--sampler", a->sampler, "Where random numbers come from")
+      ->check(CLI::IsMember({"sobol", "independent"}))
+      ->capture_default_str();
+  app->add_option("--max-depth", a->settings.maxDepth, "In place of the scenes'")
+      ->check(CLI::Range(-1, 1 << 20))
+      ->capture_default_str();
+  app->add_option("--rr-depth", a->settings.rrDepth, "In place of the scenes'")
+      ->check(positive)
+      ->capture_default_str();
+  app->add_option("--threads", a->settings.threads, "0: one a core")
+      ->check(CLI::Range(0, 4096))
+      ->capture_default_str();
+  app->add_flag("--json", a->json, "Print JSON");
+  app->add_flag("-q,--quiet", a->quiet, "No progress");
+  return {app, [a] { return run(*a); }};
+}
+
+}  // namespace odis::app

@@ -1,0 +1,86 @@
+#!/usr/bin/env python3
+"""Speed of `odis render --integrator path` as a ratio to Mitsuba 3's `path`, both measured in this run.
+
+    bench/mitsuba.py ODIS SCENE.xml... [--variant llvm_ad_rgb] [--pixels 57600] [--spp 64] [--rounds 3]
+
+Needs `pip install mitsuba numpy` (and a libLLVM for the llvm variants). Both trace paths of at most 13 vertices with
+Russian roulette from the fifth, independent samples and a box filter or the scene's own; they take turns, and time is
+the processes' time on all cores, which a busy machine disturbs least. Mitsuba's compilation is left out. Scenes that
+Mitsuba 3 does not load as they are get `-`.
+"""
+import argparse
+import json
+import math
+import os
+import subprocess
+import time
+
+import mitsuba as mi
+import numpy as np
+
+
+def load(path, pixels):
+    """The scene at about so many pixels."""
+    scene = mi.load_file(path)
+    parameters = mi.traverse(scene)
+    key = next(k for k in parameters.keys() if k.endswith("film.size"))
+    width, height = (int(v) for v in parameters[key])
+    scale = math.sqrt(pixels / (width * height))
+    size = [max(1, round(width * scale)), max(1, round(height * scale))]
+    parameters[key] = size
+    parameters[key.replace("film.size", "film.crop_size")] = size
+    parameters.update()
+    return scene
+
+
+def mitsuba_rate(scene, spp, seed):
+    """Samples a second of processor time."""
+    integrator = mi.load_dict({"type": "path", "max_depth": 13, "rr_depth": 5})
+    start = sum(os.times()[:2])
+    image = np.array(mi.render(scene, integrator=integrator, spp=spp, seed=seed))
+    return image.shape[0] * image.shape[1] * spp / (sum(os.times()[:2]) - start)
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("odis")
+    parser.add_argument("scenes", nargs="+")
+    parser.add_argument("--variant", default="llvm_ad_rgb")
+    parser.add_argument("--pixels", type=int, default=57600)
+    parser.add_argument("--spp", type=int, default=64)
+    parser.add_argument("--rounds", type=int, default=3)
+    args = parser.parse_args()
+    mi.set_variant(args.variant)
+    mi.set_log_level(mi.LogLevel.Error)
+
+    print(f"| scene | odis, M samples / CPU s | {args.variant} | ratio | load, s: odis, Mitsuba |\n|---|---|---|---|---|")
+    ratios = []
+    for path in args.scenes:
+        name = os.path.basename(os.path.dirname(os.path.abspath(path)))
+        command = [args.odis, "bench", path, "--json", "--quiet", "--rounds", "1", "--pixels", str(args.pixels),
+                   "--spp", str(args.spp)]
+        ours, theirs, loaded, seconds = [], [], None, float("nan")
+        try:
+            start = time.time()
+            loaded = load(path, args.pixels)
+            seconds = time.time() - start
+            mitsuba_rate(loaded, args.spp, 0)  # compiles
+        except (RuntimeError, StopIteration):
+            loaded = None
+        for seed in range(args.rounds):
+            measured = json.loads(subprocess.run(command, capture_output=True, check=True).stdout)[0]
+            ours.append(measured["samplesPerCpuSecond"])
+            if loaded is not None:
+                theirs.append(mitsuba_rate(loaded, args.spp, seed + 1))
+        rate = f"{np.median(theirs) / 1e6:.3f}" if theirs else "-"
+        ratio = np.median(ours) / np.median(theirs) if theirs else float("nan")
+        if theirs:
+            ratios.append(ratio)
+        print(f"| {name} | {np.median(ours) / 1e6:.3f} | {rate} | {ratio:.2f} | "
+              f"{measured['secondsLoad']:.2f}, {seconds:.2f} |", flush=True)
+    if ratios:
+        print(f"| geometric mean of {len(ratios)} | | | {np.exp(np.mean(np.log(ratios))):.2f} | |")
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,71 @@
+#include "eval/benchmark.h"
+
+#include <algorithm>
+#include <ctime>
+
+namespace odis::eval {
+
+using namespace render;
+
+namespace {
+
+double cpuSeconds() {
+  return double(std::clock()) / CLOCKS_PER_SEC;  // of all threads
+}
+
+double seconds(const RenderStats& s) {
+  return s.secondsPilot + s.secondsBuild + s.secondsGuided;
+}
+
+double median(std::vector<double> values) {
+  if (values.empty()) return 0;
+  std::sort(values.begin(), values.end());
+  const size_t middle = values.size() / 2;
+  return values.size() % 2 == 1 ? values[middle] : 0.5 * (values[middle - 1] + values[middle]);
+}
+
+}  // namespace
+
+BenchmarkResult benchmark(const Scene& scene, const BenchmarkSettings& settings, Progress& progress) {
+  RenderOptions path;
+  path.integrator = IntegratorKind::path;
+  path.sampler = settings.sampler;
+  path.spp = settings.spp;
+  path.maxDepth = settings.maxDepth;
+  path.rrDepth = settings.rrDepth;
+  path.threads = settings.threads;
+  RenderOptions guided = path;
+  guided.integrator = IntegratorKind::odis;
+
+  BenchmarkResult result;
+  std::vector<double> samples, cpuSamples, rays, guidedCost, guidingShare, frameCost;
+  for (int round = 0; round < settings.rounds && !progress.cancelled(); ++round) {
+    path.seed = guided.seed = uint64_t(round);
+    const double cpu = cpuSeconds();
+    const RenderStats plain = render::render(scene, path, progress).stats;
+    cpuSamples.push_back(double(plain.samples) / (cpuSeconds() - cpu));
+    const RenderStats odis = render::render(scene, guided, progress).stats;
+    if (plain.interrupted || odis.interrupted || odis.pilotSamples == odis.samples) break;
+
+    const double perSample = seconds(plain) / double(plain.samples);
+    samples.push_back(1 / perSample);
+    rays.push_back(double(plain.rays + plain.shadowRays) / seconds(plain));
+    guidedCost.push_back(odis.secondsGuided / double(odis.samples - odis.pilotSamples) / perSample);
+    const double recording = odis.secondsPilot - double(odis.pilotSamples) * perSample;
+    guidingShare.push_back((recording + odis.secondsBuild) / seconds(odis));
+    frameCost.push_back(seconds(odis) / seconds(plain));
+    result.bytesPerVertex = double(odis.bytesBuild) / double(std::max<uint64_t>(odis.pilotVertices, 1));
+    result.bytesMaps = odis.bytesMaps;
+  }
+  const Crop& crop = scene.film().crop;
+  result.pixels = uint64_t(crop.width) * uint64_t(crop.height);
+  result.samplesPerSecond = median(samples);
+  result.samplesPerCpuSecond = median(cpuSamples);
+  result.raysPerSecond = median(rays);
+  result.guidedCost = median(guidedCost);
+  result.guidingShare = median(guidingShare);
+  result.frameCost = median(frameCost);
+  return result;
+}
+
+}  // namespace odis::eval
