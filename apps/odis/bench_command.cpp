@@ -56,8 +56,7 @@ void printRow(const Row& row) {
 }  // namespace
 
 static int run(Arguments& a) {
-  a.settings.sampler =
-      a.sampler == "sobol" ? render::SamplerKind::sobol : render::SamplerKind::independent;
+  a.settings.sampler = a.sampler == "sobol" ? render::SamplerKind::sobol : render::SamplerKind::independent;
   const InterruptScope interruptible;
   ConsoleProgress progress(a.quiet);
   nlohmann::ordered_json all = nlohmann::ordered_json::array();
@@ -89,8 +88,10 @@ static int run(Arguments& a) {
 Command addBenchCommand(CLI::App& parent) {
   CLI::App* app = parent.add_subcommand("bench", "Measure how fast rendering is and what guiding adds");
   app->footer(
-      "`path` and `odis` take turns at the same number of samples; medians over the rounds. \"Guided sample\" and\n"
-      "\"frame\" are times in those of `path`, \"guiding of a frame\" is the share of recording the pilot and of\n"
+      "`path` and `odis` take turns at the same number of samples; medians over the rounds. \"Guided "
+      "sample\" and\n"
+      "\"frame\" are times in those of `path`, \"guiding of a frame\" is the share of recording the pilot "
+      "and of\n"
       "building cells, maps and selection probabilities.");
   const auto a = std::make_shared<Arguments>();
   const CLI::Range positive(1, 1 << 24);
@@ -98,7 +99,9 @@ Command addBenchCommand(CLI::App& parent) {
   app->add_option("--spp", a->settings.spp, "Samples per pixel, of which one is the pilot")
       ->check(CLI::Range(2, 1 << 20))
       ->capture_default_str();
-  app->add_option("--rounds", a->settings.rounds, "How often each renders")->check(positive)->capture_default_str();
+  app->add_option("--rounds", a->settings.rounds, "How often each renders")
+      ->check(positive)
+      ->capture_default_str();
   app->add_option("--pixels", a->pixels, "Make the images about so many pixels large")
       ->check(positive)
       ->capture_default_str();

@@ -6,8 +6,8 @@
 namespace odis::eval {
 
 struct BenchmarkSettings {
-  int spp = 4;      // samples per pixel: of `path`, and of `odis` with a pilot of one
-  int rounds = 5;   // the two take turns so often; medians are reported
+  int spp = 4;     // samples per pixel: of `path`, and of `odis` with a pilot of one
+  int rounds = 5;  // the two take turns so often; medians are reported
   int maxDepth = 13, rrDepth = 5;
   render::SamplerKind sampler = render::SamplerKind::independent;
   int threads = 0;
@@ -19,9 +19,9 @@ struct BenchmarkResult {
   double samplesPerSecond = 0, raysPerSecond = 0;  // of `path`
   double samplesPerCpuSecond = 0;                  // the same by the process's time on all cores: what a busy
                                                    // machine disturbs least
-  double guidedCost = 0;   // time of a guided sample over that of a sample of `path`
-  double guidingShare = 0; // of the time of a frame of `odis`: recording the pilot and building the guide
-  double frameCost = 0;    // time of a frame of `odis` over that of `path` with as many samples
+  double guidedCost = 0;                           // time of a guided sample over that of a sample of `path`
+  double guidingShare = 0;    // of the time of a frame of `odis`: recording the pilot and building the guide
+  double frameCost = 0;       // time of a frame of `odis` over that of `path` with as many samples
   double bytesPerVertex = 0;  // held at most while building, over the pilot's vertices
   uint64_t bytesMaps = 0;
 };

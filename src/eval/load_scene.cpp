@@ -4,7 +4,8 @@ namespace odis::eval {
 
 using namespace render;
 
-std::unique_ptr<Scene> loadScene(const std::string& path, LoadOptions options, int pixels, Warnings& warnings) {
+std::unique_ptr<Scene> loadScene(const std::string& path, LoadOptions options, int pixels,
+                                 Warnings& warnings) {
   std::unique_ptr<Scene> scene = Scene::load(path, options, warnings);
   if (pixels <= 0) return scene;
   const double aspect = double(scene->film().width) / scene->film().height;

@@ -1,8 +1,10 @@
 // normalmap: replaces the shading normal by one from a texture.
 //
-//   normalmap                rgb texture without gamma, (n + 1) / 2 for the normal n in the shading frame;
-//   required (nested bsdf)            one flip_invalid_normals     whether to mirror a perturbed normal that
-//   faces away from the viewer; true use_shadowing_function   whether to smooth the terminator; true
+//   normalmap                rgb texture without gamma, (n + 1) / 2 for the normal n in the shading
+//                            frame; required
+//   (nested bsdf)            one
+//   flip_invalid_normals     whether to mirror a perturbed normal that faces away from the viewer; true
+//   use_shadowing_function   whether to smooth the terminator; true
 #include "render/bsdf/factories.h"
 #include "render/bsdf/perturbed.h"
 

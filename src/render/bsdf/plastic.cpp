@@ -1,9 +1,11 @@
 // plastic: a diffuse base under a perfectly smooth dielectric coat, one-sided.
 //
 //   int_ior, ext_ior       number or name, index of refraction of the coat and of the outside;
-//   "polypropylene", "air" diffuse_reflectance    rgb or texture, of the base; 0.5 specular_reflectance   rgb
-//   or texture, scales the coat's reflection; 1 nonlinear              whether light reflected inside the
-//   coat takes on the base's colour every time; false
+//                          "polypropylene", "air"
+//   diffuse_reflectance    rgb or texture, of the base; 0.5
+//   specular_reflectance   rgb or texture, scales the coat's reflection; 1
+//   nonlinear              whether light reflected inside the coat takes on the base's colour every time;
+//                          false
 #include "render/bsdf/factories.h"
 #include "render/bsdf/fresnel.h"
 #include "render/bsdf/plastic_base.h"

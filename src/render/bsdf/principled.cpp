@@ -3,7 +3,8 @@
 //
 // All parameters are in [0, 1] unless noted; all but the last five may be textures.
 //   base_color       rgb, 0.5: albedo of the diffuse part, reflectance of the metallic part at normal
-//   incidence roughness        0.5: its square is the GGX roughness of the interface (at least 0.001)
+//                    incidence
+//   roughness        0.5: its square is the GGX roughness of the interface (at least 0.001)
 //   anisotropic      0: lengthens highlights along the tangent
 //   metallic         0: blends from dielectric to metal
 //   spec_trans       0: blends the dielectric from opaque to transparent

@@ -1,9 +1,12 @@
 // roughplastic: a diffuse base under a rough dielectric coat, one-sided.
 //
 //   int_ior, ext_ior       number or name, index of refraction of the coat and of the outside;
-//   "polypropylene", "air" diffuse_reflectance    rgb or texture, of the base; 0.5 specular_reflectance   rgb
-//   or texture, scales the coat's reflection; 1 nonlinear              whether light reflected inside the
-//   coat takes on the base's colour every time; false distribution           "beckmann" (default) or "ggx"
+//                          "polypropylene", "air"
+//   diffuse_reflectance    rgb or texture, of the base; 0.5
+//   specular_reflectance   rgb or texture, scales the coat's reflection; 1
+//   nonlinear              whether light reflected inside the coat takes on the base's colour every time;
+//                          false
+//   distribution           "beckmann" (default) or "ggx"
 //   alpha                  number, roughness of the coat; 0.1
 //   sample_visible         whether to sample only facets that are visible; true
 #include "render/bsdf/factories.h"

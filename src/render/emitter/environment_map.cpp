@@ -2,8 +2,9 @@
 //
 //   filename   string      HDR, EXR or an 8-bit image
 //   scale      number      multiplies the radiance; default 1
-//   to_world   transform   turns the image; default identity: the top of the image is +Y, its middle -Z seen
-//   from inside gamma      number      of 8-bit images: 1 means linear, -1 sRGB; default sRGB
+//   to_world   transform   turns the image; default identity: the top of the image is +Y, its middle -Z
+//                          seen from inside
+//   gamma      number      of 8-bit images: 1 means linear, -1 sRGB; default sRGB
 //
 // Along with Mitsuba 3, a direction d of the image's own space has u = atan2(d.x, -d.z) / 2 pi and v =
 // acos(d.y) / pi. Columns are centred within pixels and wrap around; rows are spread from pole to pole, the

@@ -4,7 +4,7 @@
 //   intensity      rgb or number   along the axis, W/sr; default 1
 //   cutoff_angle   number          degrees from the axis beyond which there is no light; default 20
 //   beam_width     number          degrees from the axis within which the light is full; default 3/4 of
-//   cutoff_angle
+//                                  cutoff_angle
 #include "render/emitter/spot.h"
 
 #include "render/emitter/factories.h"

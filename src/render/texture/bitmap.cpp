@@ -2,12 +2,11 @@
 //
 //   filename      string     PNG, JPEG, TGA, BMP, HDR or EXR; relative to the scene file
 //   filter_type   string     bilinear (default) or nearest; trilinear and ewa of Mitsuba 0.6 mean bilinear,
-//   since a
-//                            path tracer filters by its samples
-//   wrap_mode     string     repeat (default), clamp, mirror; zero and one of 0.6. wrap_mode_u, wrap_mode_v
-//   for one axis raw           boolean    true: the numbers of the file are used as they are (normal maps,
-//   roughness); default false:
-//                            8- and 16-bit files are decoded from sRGB
+//                            since a path tracer filters by its samples
+//   wrap_mode     string     repeat (default), clamp, mirror; zero and one of 0.6; wrap_mode_u, wrap_mode_v
+//                            for one axis
+//   raw           boolean    true: the numbers of the file are used as they are (normal maps, roughness);
+//                            default false: 8- and 16-bit files are decoded from sRGB
 //   gamma         number     Mitsuba 0.6: 1 means raw, -1 (default) sRGB, another value a power curve
 //   channel       string     Mitsuba 0.6: r, g, b or a, to use one channel alone
 //   to_uv         transform  applied to uv before the look-up; uscale, vscale, uoffset, voffset of 0.6
