@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Speed of `odis render --integrator path` as a ratio to Mitsuba 3's `path`, both measured in this run.
 
-    bench/mitsuba.py ODIS SCENE.xml... [--variant llvm_ad_rgb] [--pixels 57600] [--spp 64] [--rounds 3]
+    bench/beside_mitsuba.py ODIS SCENE.xml... [--variant llvm_ad_rgb] [--pixels 57600] [--spp 64] [--rounds 3]
 
 Needs `pip install mitsuba numpy` (and a libLLVM for the llvm variants). Both trace paths of at most 13 vertices with
 Russian roulette from the fifth, independent samples and a box filter or the scene's own; they take turns, and time is
@@ -12,16 +12,41 @@ import argparse
 import json
 import math
 import os
+import re
 import subprocess
+import sys
 import time
+from xml.etree import ElementTree
 
 import mitsuba as mi
 import numpy as np
 
 
+def load_file(path):
+    """Loads a scene without its integrator and without the parameters that Mitsuba 3 no longer knows."""
+    tree = ElementTree.parse(path).getroot()
+    for integrator in tree.findall("integrator"):
+        tree.remove(integrator)
+    for string in tree.iter("string"):
+        if string.get("value") in ("trilinear", "ewa"):
+            string.set("value", "bilinear")
+    mi.file_resolver().prepend(os.path.dirname(os.path.abspath(path)))
+    while True:
+        try:
+            return mi.load_string(ElementTree.tostring(tree, encoding="unicode"))
+        except RuntimeError as error:
+            unknown = set(re.findall(r'- \w+ "(\w+)"', str(error)))
+            unknown |= {re.sub(r"_(\w)", lambda m: m.group(1).upper(), name) for name in unknown}
+            found = [(node, child) for node in tree.iter() for child in node if child.get("name") in unknown]
+            if "unreferenced" not in str(error) or not found:
+                raise
+            for node, child in found:
+                node.remove(child)
+
+
 def load(path, pixels):
     """The scene at about so many pixels."""
-    scene = mi.load_file(path)
+    scene = load_file(path)
     parameters = mi.traverse(scene)
     key = next(k for k in parameters.keys() if k.endswith("film.size"))
     width, height = (int(v) for v in parameters[key])
@@ -65,7 +90,8 @@ def main():
             loaded = load(path, args.pixels)
             seconds = time.time() - start
             mitsuba_rate(loaded, args.spp, 0)  # compiles
-        except (RuntimeError, StopIteration):
+        except (RuntimeError, StopIteration) as error:
+            print(f"{name}: {str(error).strip().splitlines()[-1]}", file=sys.stderr)
             loaded = None
         for seed in range(args.rounds):
             measured = json.loads(subprocess.run(command, capture_output=True, check=True).stdout)[0]
