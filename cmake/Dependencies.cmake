@@ -5,6 +5,7 @@ find_package(OpenEXR REQUIRED)
 find_package(pugixml REQUIRED)
 find_package(fmt REQUIRED)
 find_package(ZLIB REQUIRED)
+find_package(JPEG REQUIRED)
 find_package(nlohmann_json REQUIRED)
 
 # Debian 12 has Embree 3, later releases have Embree 4.

@@ -3,8 +3,11 @@
 #include <stb_image_write.h>
 #include <zlib.h>
 
+#include <cstdio>  // for jpeglib.h
 #include <fstream>
 #include <random>
+
+#include <jpeglib.h>
 
 #include "render/image/image.h"
 #include "render/image/srgb.h"
@@ -106,6 +109,43 @@ TEST(ReadImage, JpegIsCloseToTheOriginal) {
   for (int i = 0; i < 32 * 16; ++i)
     for (int c = 0; c < 3; ++c)
       EXPECT_NEAR(image->rgb(i % 32, i / 32)[c], float(pixels[3 * i + c]) / 255.0f, 4.0f / 255.0f);
+}
+
+// Files as cameras and printers make them: of one channel, and of the inks that are left out.
+TEST(ReadImage, JpegOfGreyAndOfInks) {
+  const test::TemporaryFolder folder;
+  const std::string path = folder.path("a.jpg");
+  for (const int channels : {1, 4}) {
+    const std::vector<uint8_t> pixels(size_t(8 * 8 * channels), 200);
+    jpeg_compress_struct info{};
+    jpeg_error_mgr errors{};
+    info.err = jpeg_std_error(&errors);
+    jpeg_create_compress(&info);
+    unsigned char* bytes = nullptr;
+    unsigned long count = 0;
+    jpeg_mem_dest(&info, &bytes, &count);
+    info.image_width = info.image_height = 8;
+    info.input_components = channels;
+    info.in_color_space = channels == 1 ? JCS_GRAYSCALE : JCS_CMYK;
+    jpeg_set_defaults(&info);
+    jpeg_start_compress(&info, TRUE);
+    for (int y = 0; y < 8; ++y) {
+      auto* row = const_cast<JSAMPROW>(&pixels[size_t(8 * y * channels)]);
+      jpeg_write_scanlines(&info, &row, 1);
+    }
+    jpeg_finish_compress(&info);
+    jpeg_destroy_compress(&info);
+    writeBytes(path, std::string(reinterpret_cast<char*>(bytes), count));
+    // Cut off within the pixels, the rest would be made up.
+    writeBytes(folder.path("cut.jpg"), std::string(reinterpret_cast<char*>(bytes), count - 3));
+    std::free(bytes);
+
+    const auto image = Image::read(path, false, kAt);
+    EXPECT_EQ(image->channels(), channels == 1 ? 1 : 3);
+    const float expected = channels == 1 ? 200.0f / 255 : 200.0f / 255 * 200.0f / 255;
+    EXPECT_NEAR(image->rgb(3, 5).y, expected, 1.5f / 255);
+    EXPECT_NE(complaint(folder.path("cut.jpg")).find("JPEG: Premature end"), std::string::npos);
+  }
 }
 
 // Scan lines of at least eight pixels are run-length encoded.

@@ -2,37 +2,24 @@
 
 #include <fmt/format.h>
 
-#include <cerrno>
 #include <cstring>
-#include <filesystem>
-#include <fstream>
 #include <stdexcept>
 
 #include "render/image/limits.h"
+#include "render/image/read_bytes.h"
+#include "render/image/srgb.h"
 
 namespace odis::render {
 
 namespace {
 
-std::vector<uint8_t> readFile(const std::string& path) {
-  std::error_code error;
-  const std::filesystem::file_status status = std::filesystem::status(path, error);
-  if (!std::filesystem::exists(status)) throw std::runtime_error("there is no such file");
-  if (!std::filesystem::is_regular_file(status)) throw std::runtime_error("it is not a file");
-  std::ifstream stream(path, std::ios::binary);
-  if (!stream) throw std::runtime_error(std::strerror(errno));
-  const uintmax_t size = std::filesystem::file_size(path);
-  if (size == 0) throw std::runtime_error("the file is empty");
-  if (size > uintmax_t(INT32_MAX)) throw std::runtime_error("the file is larger than 2 GiB");
-  std::vector<uint8_t> bytes(size);
-  if (!stream.read(reinterpret_cast<char*>(bytes.data()), std::streamsize(size)))
-    throw std::runtime_error("the file could not be read to its end");
-  return bytes;
-}
-
 bool isExr(const std::vector<uint8_t>& file) {
   constexpr uint8_t kMagic[4] = {0x76, 0x2f, 0x31, 0x01};
   return file.size() >= 4 && std::memcmp(file.data(), kMagic, 4) == 0;
+}
+
+bool isJpeg(const std::vector<uint8_t>& file) {
+  return file.size() >= 3 && file[0] == 0xff && file[1] == 0xd8 && file[2] == 0xff;
 }
 
 bool isHdr(const std::vector<uint8_t>& file) {
@@ -43,8 +30,9 @@ bool isHdr(const std::vector<uint8_t>& file) {
 
 std::shared_ptr<const Image> Image::read(const std::string& path, bool srgb, const SourceLocation& at) {
   try {
-    const std::vector<uint8_t> file = readFile(path);
-    if (isExr(file)) return readExrPixels(path);
+    const std::vector<uint8_t> file = readImageBytes(path);
+    if (isExr(file)) return readExrPixels(file);
+    if (isJpeg(file)) return readJpegPixels(file, srgb);
     if (isHdr(file)) return readHdrPixels(file);
     return readStbPixels(file, srgb);
   } catch (const std::bad_alloc&) {
@@ -98,6 +86,13 @@ std::shared_ptr<const Image> Image::channel(char name) const {
     for (size_t i = 0; i < pixels; ++i) result->m_floats[i] = m_floats[stride * i + at];
   }
   return result;
+}
+
+void Image::decodeBytes(bool srgb) {
+  for (int i = 0; i < 256; ++i) {
+    const float stored = float(i) / 255.0f;
+    m_decode[i] = srgb ? srgbDecode(stored) : stored;
+  }
 }
 
 Rgb Image::mean() const {

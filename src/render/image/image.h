@@ -15,9 +15,9 @@ namespace odis::render {
 // table.
 class Image {
  public:
-  // Reads PNG, JPEG, TGA, BMP (stb), HDR or EXR (OpenEXR; the layer without a name, else the first). `srgb`
-  // decodes the sRGB curve of 8- and 16-bit files; float files are linear always. Throws SceneError at `at`
-  // if the file can't be read.
+  // Reads PNG, TGA, BMP (stb), JPEG (libjpeg-turbo), HDR or EXR (OpenEXR; the layer without a name, else the
+  // first). `srgb` decodes the sRGB curve of 8- and 16-bit files; float files are linear always. Throws
+  // SceneError at `at` if the file can't be read.
   static std::shared_ptr<const Image> read(const std::string& path, bool srgb, const SourceLocation& at);
   // Pixels from memory, `channels` (1 or 3) floats each. Throws std::invalid_argument if the sizes do not
   // agree.
@@ -43,9 +43,11 @@ class Image {
 
  private:
   Image() = default;
+  void decodeBytes(bool srgb);  // fills m_decode
   size_t index(int x, int y) const { return size_t(y) * size_t(m_width) + size_t(x); }
-  static std::shared_ptr<Image> readExrPixels(const std::string& path);
+  static std::shared_ptr<Image> readExrPixels(const std::vector<uint8_t>& file);
   static std::shared_ptr<Image> readHdrPixels(const std::vector<uint8_t>& file);
+  static std::shared_ptr<Image> readJpegPixels(const std::vector<uint8_t>& file, bool srgb);
   static std::shared_ptr<Image> readStbPixels(const std::vector<uint8_t>& file, bool srgb);
 
   int m_width = 0, m_height = 0, m_channels = 0;

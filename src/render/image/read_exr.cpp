@@ -2,40 +2,62 @@
 #include <ImfChannelList.h>
 #include <ImfFrameBuffer.h>
 #include <ImfHeader.h>
+#include <ImfIO.h>
 #include <ImfInputFile.h>
 #include <ImfStringAttribute.h>
 #include <fmt/format.h>
 
-#include <mutex>
+#include <cstring>
 #include <stdexcept>
 
+#include "render/image/exr_check.h"
 #include "render/image/image.h"
-#include "render/image/limits.h"
+#include "render/image/read_bytes.h"
 #include "render/image/write.h"
 
 namespace odis::render {
 
 namespace {
 
-// An open file whose header has passed the checks that protect our memory.
+// A file in memory, as OpenEXR reads one.
+class ByteStream final : public Imf::IStream {
+ public:
+  explicit ByteStream(const std::vector<uint8_t>& bytes) : IStream("image"), m_bytes(bytes) {}
+
+  bool read(char target[], int count) override {
+    if (count < 0 || m_at > m_bytes.size() || size_t(count) > m_bytes.size() - m_at)
+      throw std::runtime_error("the file ends early");
+    std::memcpy(target, m_bytes.data() + m_at, size_t(count));
+    m_at += uint64_t(count);
+    return m_at < m_bytes.size();
+  }
+  uint64_t tellg() override { return m_at; }
+  void seekg(uint64_t at) override { m_at = at; }
+
+ private:
+  const std::vector<uint8_t>& m_bytes;
+  uint64_t m_at = 0;
+};
+
+// An open file whose headers have passed the checks that protect our memory.
 class CheckedExr {
  public:
-  explicit CheckedExr(const std::string& path) : m_file((limitSides(), path.c_str())) {
+  explicit CheckedExr(const std::vector<uint8_t>& file)
+      : m_stream((checkExrHeaders(file), file)), m_file(m_stream) {
     const Imath::Box2i& window = m_file.header().dataWindow();
     m_width = window.max.x - window.min.x + 1;
     m_height = window.max.y - window.min.y + 1;
-    checkImageSize(m_width, m_height);
   }
 
   const Imf::Header& header() const { return m_file.header(); }
   int width() const { return m_width; }
   int height() const { return m_height; }
 
-  // Reads the named channels as floats, each into its own plane.
+  // Reads the named channels as floats, each into its own plane. The planes grow with what has been read, so
+  // that a file that ends early costs no more memory than it has pixels.
   std::vector<std::vector<float>> read(const std::vector<std::string>& names) {
+    constexpr int kRows = 256;
     std::vector<std::vector<float>> planes(names.size());
-    const Imath::V2i origin = header().dataWindow().min;
-    Imf::FrameBuffer frame;
     for (size_t i = 0; i < names.size(); ++i) {
       const Imf::Channel& channel = header().channels()[names[i].c_str()];
       if (channel.xSampling != 1 || channel.ySampling != 1)
@@ -43,20 +65,24 @@ class CheckedExr {
             "the channel \"{}\" has fewer samples than pixels; expected full resolution (convert the file "
             "from luminance and chroma to RGB)",
             names[i]));
-      planes[i].assign(size_t(m_width) * size_t(m_height), 0.0f);
-      frame.insert(names[i], Imf::Slice::Make(Imf::FLOAT, planes[i].data(), origin, m_width, m_height));
+      planes[i].reserve(size_t(m_width) * size_t(m_height));
     }
-    m_file.setFrameBuffer(frame);
-    m_file.readPixels(header().dataWindow().min.y, header().dataWindow().max.y);
+    const Imath::V2i origin = header().dataWindow().min;
+    for (int row = 0; row < m_height; row += kRows) {
+      const int end = std::min(row + kRows, m_height);
+      Imf::FrameBuffer frame;
+      for (size_t i = 0; i < names.size(); ++i) {
+        planes[i].resize(size_t(m_width) * size_t(end));
+        frame.insert(names[i], Imf::Slice::Make(Imf::FLOAT, planes[i].data(), origin, m_width, m_height));
+      }
+      m_file.setFrameBuffer(frame);
+      m_file.readPixels(origin.y + row, origin.y + end - 1);
+    }
     return planes;
   }
 
  private:
-  static void limitSides() {
-    static std::once_flag once;
-    std::call_once(once, [] { Imf::Header::setMaxImageSize(kMaxImageSide, kMaxImageSide); });
-  }
-
+  ByteStream m_stream;
   Imf::InputFile m_file;
   int m_width = 0, m_height = 0;
 };
@@ -69,8 +95,8 @@ std::string layerOf(const std::string& channel) {
 
 }  // namespace
 
-std::shared_ptr<Image> Image::readExrPixels(const std::string& path) {
-  CheckedExr file(path);
+std::shared_ptr<Image> Image::readExrPixels(const std::vector<uint8_t>& bytes) {
+  CheckedExr file(bytes);
   const Imf::ChannelList& list = file.header().channels();
   const auto has = [&](const std::string& name) { return list.findChannel(name.c_str()) != nullptr; };
 
@@ -124,7 +150,8 @@ std::shared_ptr<Image> Image::readExrPixels(const std::string& path) {
 
 ExrFile readExr(const std::string& path) {
   try {
-    CheckedExr file(path);
+    const std::vector<uint8_t> bytes = readImageBytes(path);
+    CheckedExr file(bytes);
     const Imath::Box2i &data = file.header().dataWindow(), &display = file.header().displayWindow();
     ExrFile result;
     result.window = {display.max.x - display.min.x + 1,

@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 #include <stb_image.h>
 
+#include <cstring>
 #include <stdexcept>
 
 #include "render/image/image.h"
@@ -43,6 +44,14 @@ std::vector<uint8_t> alphaBytes(const In* pixels, size_t count, int fileChannels
   return result;
 }
 
+// How many pixels the file can stand for: in PNG deflate shrinks by no more than 1032 to one and a byte has 8
+// pixels; TGA takes a byte for each run of 128. stb would fill a larger image with whatever comes after the
+// end of the file.
+uint64_t maxPixels(const std::vector<uint8_t>& file) {
+  const bool png = file.size() >= 4 && std::memcmp(file.data(), "\x89PNG", 4) == 0;
+  return uint64_t(file.size()) * (png ? 8 * 1032 : 128);
+}
+
 }  // namespace
 
 std::shared_ptr<Image> Image::readStbPixels(const std::vector<uint8_t>& file, bool srgb) {
@@ -56,6 +65,9 @@ std::shared_ptr<Image> Image::readStbPixels(const std::vector<uint8_t>& file, bo
   // The header first, so that a damaged one does not make stb allocate what it promises.
   if (!stbi_info_from_memory(file.data(), size, &width, &height, &channels)) fail();
   checkImageSize(width, height);
+  if (uint64_t(width) * uint64_t(height) > maxPixels(file))
+    throw std::runtime_error(
+        fmt::format("it announces {} x {} pixels, more than the file can hold", width, height));
 
   std::shared_ptr<Image> image(new Image);
   const auto finish = [&] {
@@ -82,7 +94,7 @@ std::shared_ptr<Image> Image::readStbPixels(const std::vector<uint8_t>& file, bo
   if (!pixels) fail();
   image->m_bytes = colours<uint8_t>(pixels.get(), count, channels, [](uint8_t v) { return v; });
   image->m_alpha = alphaBytes(pixels.get(), count, channels, 0);
-  for (int i = 0; i < 256; ++i) image->m_decode[i] = srgb ? srgbDecode(float(i) / 255.0f) : float(i) / 255.0f;
+  image->decodeBytes(srgb);
   return finish();
 }
 

@@ -1,7 +1,6 @@
 // The code of stb_image and stb_image_write, compiled once, for the formats that scenes use.
 #define STB_IMAGE_IMPLEMENTATION
 #define STBI_ONLY_PNG
-#define STBI_ONLY_JPEG
 #define STBI_ONLY_TGA
 #define STBI_ONLY_BMP
 #include <stb_image.h>

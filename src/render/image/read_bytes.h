@@ -1,0 +1,13 @@
+// A whole image file in memory.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace odis::render {
+
+// Throws std::runtime_error with the reason if it is no file, empty, larger than 2 GiB or can't be read.
+std::vector<uint8_t> readImageBytes(const std::string& path);
+
+}  // namespace odis::render
