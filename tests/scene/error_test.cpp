@@ -136,8 +136,20 @@ TEST(Errors, StopWhatGrowsWithoutEnd) {
   for (int i = 1; i < 10000; ++i)
     chain +=
         "<bsdf type='x' id='b" + std::to_string(i) + "'><ref id='b" + std::to_string(i - 1) + "'/></bsdf>";
-  // Listed from its shallow end the chain is harmless to the walk, so it is entered at its deep end.
-  EXPECT_NE(errorIn("<shape type='sphere'><ref id='b9999'/></shape>" + chain).find("nested more than"),
+  // Whichever end it is entered at, and whatever else is wrong.
+  const std::string user = "<shape type='sphere'><ref id='b9999'/></shape>";
+  EXPECT_NE(errorIn(user + chain).find("nested more than"), std::string::npos);
+  EXPECT_NE(errorIn(chain + user).find("nested more than"), std::string::npos);
+  EXPECT_NE(errorIn(chain + user + "<ref id='b10000'/>").find("'b10000'"), std::string::npos);
+
+  std::string blends = "<bsdf type='diffuse' id='b0'/>";
+  for (int i = 1; i < 100; ++i) {
+    const std::string before = "<ref id='b" + std::to_string(i - 1) + "'/>";
+    blends += "<bsdf type='blendbsdf' id='b" + std::to_string(i) + "'>" + before + before + "</bsdf>";
+  }
+  EXPECT_NE(errorIn(blends).find("made of more than 1000 others"), std::string::npos);
+  EXPECT_NE(errorIn("<shape type='merge' id='a'/><shape type='merge'><ref id='a'/></shape>")
+                .find("reference to the merge 'a'"),
             std::string::npos);
 
   std::string doubling = "<default name='v0' value='xxxxxxxx'/>";
@@ -145,7 +157,12 @@ TEST(Errors, StopWhatGrowsWithoutEnd) {
     const std::string before = "${v" + std::to_string(i - 1) + "}";
     doubling += "<default name='v" + std::to_string(i) + "' value='" + before + before + "'/>";
   }
-  EXPECT_NE(errorIn(doubling).find("longer than"), std::string::npos);
+  EXPECT_NE(errorIn(doubling).find("longer than 16 MiB"), std::string::npos);
+
+  // Each value is allowed, all of them together are not.
+  std::string many = "<default name='v' value='" + std::string(1 << 20, 'x') + "'/>";
+  for (int i = 0; i < 300; ++i) many += "<bsdf type='$v' id='b" + std::to_string(i) + "'/>";
+  EXPECT_NE(errorIn(many).find("longer than 256 MiB"), std::string::npos);
 }
 
 TEST(Errors, OfParametersOfTheWrongType) {

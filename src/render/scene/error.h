@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <stdexcept>
 #include <string>
+#include <unordered_set>
 #include <vector>
 
 namespace odis::render {
@@ -42,15 +43,14 @@ class OptionError : public std::runtime_error {
 class Warnings {
  public:
   void add(const SourceLocation& at, const std::string& message) {
-    const std::string text = at.file.empty() ? message : at.text() + ": " + message;
-    for (const std::string& known : m_texts)
-      if (known == text) return;
-    m_texts.push_back(text);
+    std::string text = at.file.empty() ? message : at.text() + ": " + message;
+    if (m_known.insert(text).second) m_texts.push_back(std::move(text));
   }
   const std::vector<std::string>& texts() const { return m_texts; }
 
  private:
   std::vector<std::string> m_texts;
+  std::unordered_set<std::string> m_known;
 };
 
 }  // namespace odis::render

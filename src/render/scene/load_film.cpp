@@ -1,11 +1,12 @@
 #include "render/scene/load_film.h"
 
+#include "render/image/limits.h"
 #include "render/scene/names.h"
 
 namespace odis::render {
 namespace {
 
-constexpr int64_t kMaxSize = 65536;  // pixels a side
+constexpr int64_t kMaxSize = kMaxImageSide;
 
 const SourceLocation& placeOf(const Properties& node, const std::string& name) {
   const auto found = node.parameters.find(name);
@@ -29,6 +30,16 @@ std::string cropFault(const FilmSettings& film, int64_t x, int64_t y, int64_t wi
   return "found a crop of " + std::to_string(width) + "x" + std::to_string(height) + " pixels at (" +
          std::to_string(x) + ", " + std::to_string(y) + "), expected one within the " +
          std::to_string(film.width) + "x" + std::to_string(film.height) + " pixels of the film";
+}
+
+// What is allocated is the crop.
+bool tooLarge(const Crop& crop) {
+  return uint64_t(crop.width) * uint64_t(crop.height) > kMaxImagePixels;
+}
+
+std::string sizeFault(const Crop& crop) {
+  return "found an image of " + std::to_string(crop.width) + "x" + std::to_string(crop.height) +
+         " pixels, expected at most " + std::to_string(kMaxImagePixels) + " in all";
 }
 
 float positive(const Properties& node, const std::string& name, float fallback) {
@@ -91,6 +102,10 @@ FilmSettings loadFilm(const Properties* node, const LoadOptions& options, Warnin
     const std::string fault = cropFault(result, x, y, width, height);
     if (!fault.empty()) throw SceneError(film.location, fault);
     result.crop = {int(x), int(y), int(width), int(height)};
+  }
+  if (tooLarge(result.crop)) {
+    if (options.crop || options.resolution) throw OptionError(sizeFault(result.crop));
+    throw SceneError(film.location, sizeFault(result.crop));
   }
   return result;
 }

@@ -1,5 +1,7 @@
 #include "render/scene/scene.h"
 
+#include <unordered_set>
+
 #include "render/scene/intersector.h"
 #include "render/shape/surface_math.h"
 
@@ -74,10 +76,9 @@ Ray Scene::spawn(const SurfacePoint& at, const Vec3& direction, float distance) 
 uint64_t Scene::bytes() const {
   uint64_t bytes = m_intersector ? m_intersector->bytes() : 0;
   for (const ShapePtr& shape : m_shapes) bytes += shape->bytes();
-  std::vector<const void*> counted;
+  std::unordered_set<const void*> counted;
   for (const Instance& instance : m_instances) {
-    if (std::find(counted.begin(), counted.end(), instance.group.get()) != counted.end()) continue;
-    counted.push_back(instance.group.get());
+    if (!counted.insert(instance.group.get()).second) continue;
     for (const ShapePtr& shape : *instance.group) bytes += shape->bytes();
   }
   return bytes;

@@ -5,8 +5,9 @@
 namespace odis::render {
 namespace {
 
-// Defaults may hold other defaults; without a limit a few lines could ask for all memory.
-constexpr size_t kMaxLength = 16u << 20;
+// Defaults may hold other defaults; without limits a few lines could ask for all memory.
+constexpr size_t kMaxLength = 16u << 20;        // of a value
+constexpr size_t kMaxTotalLength = 256u << 20;  // of all that variables were filled into
 
 bool isNameCharacter(char c) {
   return c == '_' || std::isalnum(static_cast<unsigned char>(c));
@@ -55,6 +56,9 @@ std::string Variables::substitute(const std::string& text, const SourceLocation&
     if (result.size() > kMaxLength)
       throw SceneError(at, "the value is longer than 16 MiB once its variables are filled in");
   }
+  if (result.size() > text.size()) m_filledIn += result.size();
+  if (m_filledIn > kMaxTotalLength)
+    throw SceneError(at, "the values are longer than 256 MiB once their variables are filled in");
   return result;
 }
 

@@ -30,6 +30,7 @@ class Variables {
   std::map<std::string, std::string> m_values;
   std::map<std::string, std::string> m_given;
   std::set<std::string> m_used;
+  size_t m_filledIn = 0;  // bytes of all values that held variables
 };
 
 }  // namespace odis::render

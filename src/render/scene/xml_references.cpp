@@ -1,5 +1,7 @@
 #include "render/scene/xml_references.h"
 
+#include <algorithm>
+
 #include "render/scene/names.h"
 
 namespace odis::render {
@@ -7,6 +9,12 @@ namespace {
 
 // Chains of references end up as nested calls of whoever builds the scene.
 constexpr int kMaxDepth = 200;
+// A BSDF that blends two of which each blends the same two, and so on, takes for ever to evaluate.
+constexpr uint64_t kMaxParts = 1000;
+
+bool isMaterial(const Properties& node) {
+  return node.tag == "bsdf" || node.tag == "texture";
+}
 
 }  // namespace
 
@@ -58,33 +66,45 @@ SourceLocation XmlReferences::placeOf(const Properties& owner, size_t child) con
   return owner.children[child].node->location;
 }
 
-void XmlReferences::rejectCycles(const Properties& node, std::map<const Properties*, bool>& finished,
-                                 int depth) const {
-  finished[&node] = false;
+XmlReferences::Extent XmlReferences::rejectEndless(const Properties& node, Extents& extents,
+                                                   int depth) const {
+  extents[&node] = {};
+  Extent own{0, 1, true};
   for (size_t i = 0; i < node.children.size(); ++i) {
     const Properties& child = *node.children[i].node;
-    const auto known = finished.find(&child);
-    if (known != finished.end() && !known->second)
+    const auto known = extents.find(&child);
+    if (known != extents.end() && !known->second.finished)
       throw SceneError(placeOf(node, i),
                        "the element '" + (child.id.empty() ? child.tag : child.id) +
                            "' holds a reference to itself, expected references without a cycle");
-    if (depth >= kMaxDepth)
+    if (depth >= kMaxDepth || (known != extents.end() && known->second.height >= kMaxDepth))
       throw SceneError(placeOf(node, i),
                        "references are nested more than " + std::to_string(kMaxDepth) + " deep");
-    if (known == finished.end()) rejectCycles(child, finished, depth + 1);
+    const Extent below = known == extents.end() ? rejectEndless(child, extents, depth + 1) : known->second;
+    own.height = std::max(own.height, below.height + 1);
+    if (isMaterial(node) && isMaterial(child)) own.parts += below.parts;
+    if (own.parts > kMaxParts)
+      throw SceneError(placeOf(node, i), "the " + node.tag + " is made of more than " +
+                                             std::to_string(kMaxParts) + " others, expected fewer");
   }
-  finished[&node] = true;
+  return extents[&node] = own;
 }
 
 void XmlReferences::resolve(const Properties& root) {
-  for (const Reference& reference : m_references)
-    reference.owner->children[reference.child].node = find(reference.id, reference.at);
-  for (const auto& [as, alias] : m_aliases) find(as, alias.at);
   try {
-    std::map<const Properties*, bool> finished;
-    rejectCycles(root, finished, 0);
+    for (const Reference& reference : m_references) {
+      const std::shared_ptr<Properties> target = find(reference.id, reference.at);
+      // A merge of merges that are used again and again would be endless.
+      if (reference.owner->tag == "shape" && target->type == "merge")
+        throw SceneError(reference.at, "found a reference to the merge '" + reference.id + "' in a " +
+                                           reference.owner->type + ", expected the shapes themselves");
+      reference.owner->children[reference.child].node = target;
+    }
+    for (const auto& [as, alias] : m_aliases) find(as, alias.at);
+    Extents extents;
+    rejectEndless(root, extents, 0);
   } catch (...) {
-    // Elements that own each other would never be freed.
+    // Elements that own each other would never be freed, long chains of them not without recursion.
     for (const Reference& reference : m_references) reference.owner->children[reference.child].node.reset();
     throw;
   }
