@@ -112,6 +112,12 @@ TEST(Ply, RefusesWhatCannotBe) {
   EXPECT_NE(failure("ply\nformat ascii 1.0\nelement vertex 3\n").find("end_header"), std::string::npos);
   EXPECT_NE(failure("ply\nformat morse 1.0\nend_header\n").find("unknown format"), std::string::npos);
   EXPECT_NE(failure("ply\nformat ascii 1.0\nproperty float x\nend_header\n"), "");
+  // Vertices with normals and vertices without would not go together.
+  EXPECT_NE(failure(head + z + "property float nx\nproperty float ny\nproperty float nz\n" +
+                    "element vertex 3\n" + "property float x\nproperty float y\n" + z + faces("1") +
+                    "0 0 0 0 0 1\n1 0 0 0 0 1\n" + "0 1 0 0 0 1\n" + vertices + "3 3 4 5\n")
+                .find("a second element \"vertex\""),
+            std::string::npos);
   EXPECT_NE(failure("solid stl\n").find("not a PLY file"), std::string::npos);
   EXPECT_NE(failure("").find("not a PLY file"), std::string::npos);
 }

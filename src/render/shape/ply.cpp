@@ -155,10 +155,12 @@ class PlyReader {
   }
 
   void readVertices(const Element& element) {
+    if (!m_data.positions.empty()) fail("a second element \"vertex\", expected one");
     if (!element.has(Role::x) || !element.has(Role::y) || !element.has(Role::z))
       fail("the vertices have no x, y and z");
     const bool hasNormals = element.has(Role::nx) && element.has(Role::ny) && element.has(Role::nz);
     const bool hasUvs = element.has(Role::u) && element.has(Role::v);
+    if (element.count > UINT32_MAX) fail(fmt::format("{} vertices, expected less than 2^32", element.count));
     m_data.positions.reserve(element.count);
     if (hasNormals) m_data.normals.reserve(element.count);
     if (hasUvs) m_data.uvs.reserve(element.count);
