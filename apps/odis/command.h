@@ -5,6 +5,8 @@
 #include <stdexcept>
 #include <string>
 
+#include "render/image/replace_file.h"
+
 namespace CLI {
 class App;
 }
@@ -17,7 +19,8 @@ enum ExitCode {
   kUsageError = 2,
   kSceneError = 3,  // a scene or an image that cannot be read
   kWriteError = 4,
-  kInterrupted = 130  // by Ctrl-C; what was there is written
+  kInterrupted = 130,  // by Ctrl-C; what was there is written
+  kTerminated = 143    // the same by SIGTERM
 };
 
 // A command line that makes no sense.
@@ -27,10 +30,7 @@ class UsageError : public std::runtime_error {
 };
 
 // An output that cannot be written.
-class WriteError : public std::runtime_error {
- public:
-  using std::runtime_error::runtime_error;
-};
+using render::WriteError;
 
 struct Command {
   CLI::App* app;

@@ -2,11 +2,15 @@
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>
 
+#include <csignal>
 #include <cstdio>
+#include <iostream>
 #include <new>
+#include <system_error>
 #include <vector>
 
 #include "command.h"
+#include "console.h"
 #include "eval/image_file.h"
 #include "odis_version.h"
 #include "render/scene/error.h"
@@ -16,10 +20,10 @@ namespace odis::app {
 
 static constexpr const char* kExitCodes =
     "Exit codes: 0 all went well, 1 internal error, 2 wrong usage, 3 a scene or image can't be read,\n"
-    "4 an output can't be written, 130 interrupted by Ctrl-C (what was rendered is written).";
+    "4 an output can't be written, 130 interrupted by Ctrl-C, 143 by SIGTERM (what was rendered is written).";
 
 static int fail(ExitCode code, const std::string& message) {
-  fmt::print(stderr, "error: {}\n", message);
+  say(fmt::format("error: {}\n", message));
   return code;
 }
 
@@ -39,7 +43,16 @@ static int reportUsage(const CLI::App& app, const CLI::ParseError& error) {
   return fail(kUsageError, message + "\nRun `" + name + " --help` for what there is.");
 }
 
+// What was printed may still wait to be written.
+static int flushed(int code) {
+  std::cout.flush();
+  if (std::fflush(stdout) == 0 && std::cout) return code;
+  return code == kOk ? fail(kWriteError, "what was printed can't be written") : code;
+}
+
 int runCommandLine(int argc, char** argv) {
+  // A file that may not grow any more is an error like a full disk, not the end of the program.
+  std::signal(SIGXFSZ, SIG_IGN);
   CLI::App app{"ODIS: offline deep importance sampling for path tracing", "odis"};
   app.footer(kExitCodes);
   app.set_version_flag("--version", std::string("odis ") + ODIS_VERSION_STRING);
@@ -56,10 +69,10 @@ int runCommandLine(int argc, char** argv) {
   try {
     app.parse(argc, argv);
     for (const Command& command : commands)
-      if (command.app->parsed()) return command.run();
+      if (command.app->parsed()) return flushed(command.run());
     return kUsageError;
   } catch (const CLI::Success& success) {  // --help, --version
-    return app.exit(success);
+    return flushed(app.exit(success));
   } catch (const CLI::ParseError& error) {
     return reportUsage(app, error);
   } catch (const UsageError& error) {
@@ -71,6 +84,8 @@ int runCommandLine(int argc, char** argv) {
   } catch (const eval::ImageError& error) {
     return fail(kSceneError, error.what());
   } catch (const WriteError& error) {
+    return fail(kWriteError, error.what());
+  } catch (const std::system_error& error) {  // of files and folders, and of printing
     return fail(kWriteError, error.what());
   } catch (const std::bad_alloc&) {
     return fail(kInternalError, "out of memory");

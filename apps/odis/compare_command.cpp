@@ -34,7 +34,7 @@ class ConsoleObserver : public eval::CompareObserver {
   void start(const std::string& what) override { m_progress.setTitle(what); }
   void warnings(const render::Warnings& warnings) override {
     for (const std::string& text : warnings.texts())
-      if (!m_quiet) fmt::print(stderr, "warning: {}\n", text);
+      if (!m_quiet) say(fmt::format("warning: {}\n", text));
   }
   render::Progress& progress() override { return m_progress; }
 
@@ -91,7 +91,7 @@ static int run(Arguments& a) {
   writeText(settings.folder + "/comparison.md", table);
   writeText(settings.folder + "/comparison.json", eval::jsonText(rows, measurements));
   fmt::print("{}", table);
-  return InterruptScope::interrupted() ? kInterrupted : kOk;
+  return InterruptScope::exitCode();
 }
 
 Command addCompareCommand(CLI::App& parent) {

@@ -11,22 +11,34 @@
 
 namespace odis::app {
 
-static volatile std::sig_atomic_t g_interrupts = 0;
+void say(const std::string& text) {
+  std::fputs(text.c_str(), stderr);
+  std::fflush(stderr);
+}
 
-static void onInterrupt(int) {
-  g_interrupts = g_interrupts + 1;
-  if (g_interrupts > 1) _exit(kInterrupted);
+static volatile std::sig_atomic_t g_signal = 0;  // the first that came
+
+static int codeOf(int signal) {
+  return signal == SIGTERM ? kTerminated : kInterrupted;
+}
+
+static void onSignal(int signal) {
+  if (g_signal != 0) _exit(codeOf(signal));
+  g_signal = signal;
 }
 
 InterruptScope::InterruptScope() {
-  g_interrupts = 0;
-  std::signal(SIGINT, onInterrupt);
+  g_signal = 0;
+  for (const int signal : {SIGINT, SIGTERM}) std::signal(signal, onSignal);
 }
 InterruptScope::~InterruptScope() {
-  std::signal(SIGINT, SIG_DFL);
+  for (const int signal : {SIGINT, SIGTERM}) std::signal(signal, SIG_DFL);
 }
 bool InterruptScope::interrupted() {
-  return g_interrupts > 0;
+  return g_signal != 0;
+}
+int InterruptScope::exitCode() {
+  return g_signal != 0 ? codeOf(g_signal) : kOk;
 }
 
 ConsoleProgress::ConsoleProgress(bool quiet) : m_quiet(quiet), m_terminal(isatty(STDERR_FILENO) == 1) {}
@@ -69,14 +81,13 @@ void ConsoleProgress::show(uint64_t done, bool last) {
       last ? durationText(seconds) : durationText(seconds * (1 - share) / share) + " left";
   const std::string rateText = fmt::format("{:.2f} Msamples/s, {}", rate * 1e-6, time);
   if (!m_terminal) {
-    fmt::print(stderr, "{} {:3.0f} %  {}\n", m_stage, 100 * share, rateText);
+    say(fmt::format("{} {:3.0f} %  {}\n", m_stage, 100 * share, rateText));
     return;
   }
   constexpr int kWidth = 30;
   const int filled = int(share * kWidth);
-  fmt::print(stderr, "\r\033[K{} [{}{}] {:3.0f} %  {}{}", m_stage, std::string(filled, '='),
-             std::string(kWidth - filled, ' '), 100 * share, rateText, last ? "\n" : "");
-  std::fflush(stderr);
+  say(fmt::format("\r\033[K{} [{}{}] {:3.0f} %  {}{}", m_stage, std::string(filled, '='),
+                  std::string(kWidth - filled, ' '), 100 * share, rateText, last ? "\n" : ""));
 }
 
 }  // namespace odis::app

@@ -1,4 +1,4 @@
-// Progress on the terminal, and Ctrl-C.
+// Messages and progress on the terminal, and Ctrl-C.
 #pragma once
 
 #include <atomic>
@@ -10,7 +10,12 @@
 
 namespace odis::app {
 
-// While one lives, the first Ctrl-C only sets a flag; the second ends the program at once.
+// Prints to stderr. Where that can't be printed to (a full disk, a terminal that is gone) work goes on in
+// silence.
+void say(const std::string& text);
+
+// While one lives, the first Ctrl-C (SIGINT) or SIGTERM only sets a flag; the second ends the program at
+// once.
 class InterruptScope {
  public:
   InterruptScope();
@@ -18,6 +23,8 @@ class InterruptScope {
   InterruptScope(const InterruptScope&) = delete;
   InterruptScope& operator=(const InterruptScope&) = delete;
   static bool interrupted();
+  // kOk, or how a program ends that was interrupted.
+  static int exitCode();
 };
 
 // A bar with rate and time left if stderr is a terminal, otherwise a line for every tenth that is done.

@@ -11,7 +11,7 @@
 #include <sstream>
 
 #include "command.h"
-#include "render/image/replace_file.h"
+#include "render/image/checked_stream.h"
 #include "render/image/write.h"
 
 namespace odis::app {
@@ -97,33 +97,20 @@ void writeLayers(const std::string& path, const Frame2D& frame, const FilmSettin
   if (layers.position) planes.add("P.", "XYZ", frame.position, false);
   if (layers.depth) planes.add("depth.Z", frame.depth, false);
   if (layers.roughness) planes.add("roughness.Y", frame.roughness, true);
-  try {
-    writeExr(path, {film.width, film.height, frame.x, frame.y, frame.width, frame.height}, planes.channels(),
-             metadata);
-  } catch (const std::runtime_error& error) {
-    throw WriteError(error.what());
-  }
+  writeExr(path, {film.width, film.height, frame.x, frame.y, frame.width, frame.height}, planes.channels(),
+           metadata);
 }
 
 void writePreview(const std::string& path, const Frame2D& frame, float exposure) {
-  try {
-    writePng(path, frame.width, frame.height, frame.color.data(), exposure);
-  } catch (const std::runtime_error& error) {
-    throw WriteError(error.what());
-  }
+  writePng(path, frame.width, frame.height, frame.color.data(), exposure);
 }
 
 void writeText(const std::string& path, const std::string& text) {
-  try {
-    replaceFile(path, [&](const std::string& temporary) {
-      std::ofstream stream(temporary, std::ios::binary);
-      stream << text;
-      stream.close();
-      if (!stream) throw std::runtime_error(std::strerror(errno));
-    });
-  } catch (const std::runtime_error& error) {
-    throw WriteError(error.what());
-  }
+  replaceFile(path, [&](const std::string& temporary) {
+    CheckedStream stream(temporary);
+    stream.write(text.data(), std::streamsize(text.size()));
+    stream.close();
+  });
 }
 
 }  // namespace odis::app

@@ -25,6 +25,7 @@ bool endsWith(const std::string& path, const std::string& ending);
 // Z, depth.Z, roughness.Y. Throws WriteError.
 void writeLayers(const std::string& path, const render::Frame2D& frame, const render::FilmSettings& film,
                  const Layers& layers, const std::map<std::string, std::string>& metadata);
+// Each throws WriteError.
 void writePreview(const std::string& path, const render::Frame2D& frame, float exposure);
 void writeText(const std::string& path, const std::string& text);
 

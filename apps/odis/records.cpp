@@ -3,11 +3,13 @@
 #include <fmt/format.h>
 
 #include <cstddef>
-#include <filesystem>
-#include <fstream>
-#include <stdexcept>
+
+#include "render/image/checked_stream.h"
+#include "render/image/replace_file.h"
 
 namespace odis::app {
+
+using namespace render;
 
 namespace {
 
@@ -80,20 +82,17 @@ std::string header(size_t count) {
 }  // namespace
 
 void writeRecords(const std::string& path, const std::vector<PilotVertex>& vertices) {
-  const std::string temporary = path + ".part";
-  std::ofstream file(temporary, std::ios::binary);
-  const std::string text = header(vertices.size());
-  const char size[2] = {char(text.size() & 0xff), char(text.size() >> 8)};
-  file.write("\x93NUMPY\x01\x00", 8).write(size, 2) << text;
-  file.write(reinterpret_cast<const char*>(vertices.data()),
-             std::streamsize(vertices.size() * sizeof(PilotVertex)));
-  file.close();
-  std::error_code failure;
-  if (file) std::filesystem::rename(temporary, path, failure);
-  if (!file || failure) {
-    std::filesystem::remove(temporary, failure);
-    throw std::runtime_error(fmt::format("{}: can't be written", path));
-  }
+  replaceFile(path, [&](const std::string& temporary) {
+    CheckedStream file(temporary);
+    const std::string text = header(vertices.size());
+    const char start[10] = {
+        '\x93', 'N', 'U', 'M', 'P', 'Y', 1, 0, char(text.size() & 0xff), char(text.size() >> 8)};
+    file.write(start, sizeof start);
+    file.write(text.data(), std::streamsize(text.size()));
+    file.write(reinterpret_cast<const char*>(vertices.data()),
+               std::streamsize(vertices.size() * sizeof(PilotVertex)));
+    file.close();
+  });
 }
 
 }  // namespace odis::app

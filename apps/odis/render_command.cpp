@@ -56,7 +56,7 @@ static void sendToTev(const RenderArguments& a, const Frame2D& frame) {
   try {
     TevClient(a.tev).send(a.output, frame.width, frame.height, frame.color.data());
   } catch (const std::exception& error) {  // the image is written all the same
-    fmt::print(stderr, "warning: {}\n", error.what());
+    say(fmt::format("warning: {}\n", error.what()));
   }
 }
 
@@ -80,19 +80,20 @@ static int run(RenderArguments& a) {
   RunStats stats;
   stats.secondsLoad = secondsSince(start);
   if (!a.quiet)
-    for (const std::string& text : warnings.texts()) fmt::print(stderr, "warning: {}\n", text);
+    for (const std::string& text : warnings.texts()) say(fmt::format("warning: {}\n", text));
   const RenderOptions options = renderOptions(a, *scene, layers);
   if (!a.replay.empty()) return printReplay(a, *scene, options);
   if (a.verbose)
-    fmt::print(stderr, "{}: {} shapes, {} lights, {}; loaded in {}\n", a.scene, scene->shapes().size(),
-               scene->emitters().size(), bytesText(double(scene->bytes())), durationText(stats.secondsLoad));
+    say(fmt::format("{}: {} shapes, {} lights, {}; loaded in {}\n", a.scene, scene->shapes().size(),
+                    scene->emitters().size(), bytesText(double(scene->bytes())),
+                    durationText(stats.secondsLoad)));
 
   const InterruptScope interruptible;
   ConsoleProgress progress(a.quiet);
   const RenderResult result = render::render(*scene, options, progress);
   if (result.stats.spp <= 0) {
-    fmt::print(stderr, "interrupted before there was an image; nothing is written\n");
-    return kInterrupted;
+    say("interrupted before there was an image; nothing is written\n");
+    return InterruptScope::exitCode();
   }
 
   stats.render = result.stats;
@@ -113,8 +114,8 @@ static int run(RenderArguments& a) {
   if (!a.tev.empty()) sendToTev(a, result.frame);
   if (!a.statsFile.empty()) writeText(a.statsFile, statsJson(stats));
   if (a.stats) fmt::print("{}", statsTable(stats));
-  if (a.verbose) fmt::print(stderr, "{}: written\n", a.output);
-  return InterruptScope::interrupted() ? kInterrupted : kOk;
+  if (a.verbose) say(fmt::format("{}: written\n", a.output));
+  return InterruptScope::exitCode();
 }
 
 Command addRenderCommand(CLI::App& parent, const std::string& commandLine) {

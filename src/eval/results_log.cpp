@@ -4,7 +4,8 @@
 #include <fstream>
 #include <limits>
 #include <nlohmann/json.hpp>
-#include <stdexcept>
+
+#include "render/image/replace_file.h"
 
 namespace odis::eval {
 
@@ -71,7 +72,7 @@ void ResultsLog::add(const Measurement& measurement) {
   std::ofstream stream(m_path, std::ios::app);
   stream << toJson(measurement).dump() << '\n';
   stream.close();
-  if (!stream) throw std::runtime_error(m_path + ": cannot be written");
+  if (!stream) throw render::WriteError("cannot write \"" + m_path + "\"");
   m_byKey[measurement.key] = measurement;
 }
 

@@ -1,10 +1,13 @@
 // Round trips of EXR and PNG.
 #include <gtest/gtest.h>
+#include <sys/wait.h>
 
+#include <csignal>
 #include <fstream>
 
 #include "render/film/tonemap.h"
 #include "render/image/image.h"
+#include "render/image/replace_file.h"
 #include "render/image/write.h"
 #include "support/temporary_folder.h"
 
@@ -86,6 +89,26 @@ TEST(WriteExr, ReplacesAnOldFile) {
   const std::string path = folder.path("a.exr");
   for (float value : {1.0f, 2.0f}) writeExr(path, {1, 1, 0, 0, 1, 1}, {{"R", &value}}, {});
   EXPECT_EQ(readExr(path).channels.at("R")[0], 2.0f);
+}
+
+// A program that is killed while it writes leaves the old file, and beside it the part that it wrote.
+TEST(ReplaceFile, KeepsTheOldFileIfKilled) {
+  const test::TemporaryFolder folder;
+  const std::string path = folder.path("a.txt");
+  std::ofstream(path) << "old";
+  const pid_t child = fork();
+  if (child == 0) {
+    replaceFile(path, [](const std::string& temporary) {
+      std::ofstream(temporary) << "ne";
+      raise(SIGKILL);
+    });
+    _exit(0);
+  }
+  int status = 0;
+  ASSERT_EQ(waitpid(child, &status, 0), child);
+  EXPECT_TRUE(WIFSIGNALED(status));
+  std::ifstream stream(path);
+  EXPECT_EQ(std::string(std::istreambuf_iterator<char>(stream), {}), "old");
 }
 
 TEST(WritePng, StoresTheToneMappedImage) {

@@ -5,24 +5,34 @@
 
 #include <atomic>
 #include <filesystem>
+#include <new>
 #include <stdexcept>
 #include <string>
 
 namespace odis::render {
 
-// Calls write(temporaryName) and renames what it wrote to `path`; removes it if that fails. Throws
-// std::runtime_error with path and reason.
+// An output that cannot be written.
+class WriteError : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+// Calls write(temporaryName) and renames what it wrote to `path`; removes it if that fails. Throws WriteError
+// with path and reason.
 template <class Write>
 void replaceFile(const std::string& path, Write&& write) {
   static std::atomic<unsigned> counter{0};
   const std::string temporary = path + ".part-" + std::to_string(getpid()) + "-" + std::to_string(counter++);
+  std::error_code ignored;
   try {
     write(temporary);
     std::filesystem::rename(temporary, path);
-  } catch (const std::exception& e) {
-    std::error_code ignored;
+  } catch (const std::bad_alloc&) {
     std::filesystem::remove(temporary, ignored);
-    throw std::runtime_error("cannot write \"" + path + "\": " + e.what());
+    throw;
+  } catch (const std::exception& e) {
+    std::filesystem::remove(temporary, ignored);
+    throw WriteError("cannot write \"" + path + "\": " + e.what());
   }
 }
 

@@ -24,7 +24,7 @@ struct ImageWindow {
 };
 
 // Writes one single-part EXR (zip) under a temporary name and renames it, so nothing half-written is left
-// behind. Throws std::runtime_error with path and reason.
+// behind. Throws WriteError (replace_file.h) with path and reason.
 void writeExr(const std::string& path, const ImageWindow& window, const std::vector<ImageChannel>& channels,
               const std::map<std::string, std::string>& metadata);
 // Writes an 8-bit sRGB PNG of linear `pixels` (width * height) scaled by 2^exposure, highlights rolled off by

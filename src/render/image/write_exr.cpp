@@ -1,6 +1,7 @@
 #include <ImfChannelList.h>
 #include <ImfFrameBuffer.h>
 #include <ImfHeader.h>
+#include <ImfIO.h>
 #include <ImfOutputFile.h>
 #include <ImfStringAttribute.h>
 #include <fmt/format.h>
@@ -8,6 +9,7 @@
 
 #include <stdexcept>
 
+#include "render/image/checked_stream.h"
 #include "render/image/limits.h"
 #include "render/image/replace_file.h"
 #include "render/image/write.h"
@@ -24,6 +26,21 @@ std::vector<half> toHalf(const float* data, size_t count) {
         half(std::isfinite(data[i]) ? std::clamp(data[i], -float(HALF_MAX), float(HALF_MAX)) : data[i]);
   return result;
 }
+
+// OpenEXR's own output ignores what fails when it is closed: on a full disk a broken file would pass for a
+// good one.
+class ExrStream final : public Imf::OStream {
+ public:
+  explicit ExrStream(const std::string& path) : OStream(path.c_str()), m_stream(path) {}
+
+  void write(const char bytes[], int count) override { m_stream.write(bytes, count); }
+  uint64_t tellp() override { return m_stream.tell(); }
+  void seekp(uint64_t at) override { m_stream.seek(at); }
+  void close() { m_stream.close(); }
+
+ private:
+  CheckedStream m_stream;
+};
 
 }  // namespace
 
@@ -58,9 +75,13 @@ void writeExr(const std::string& path, const ImageWindow& window, const std::vec
       }
       frame.insert(channel.name, Imf::Slice::Make(type, data, origin, window.width, window.height));
     }
-    Imf::OutputFile file(temporary.c_str(), header);
-    file.setFrameBuffer(frame);
-    file.writePixels(window.height);
+    ExrStream stream(temporary);
+    {
+      Imf::OutputFile file(stream, header);
+      file.setFrameBuffer(frame);
+      file.writePixels(window.height);
+    }  // here the table of offsets is written
+    stream.close();
   });
 }
 

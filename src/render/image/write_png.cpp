@@ -1,13 +1,11 @@
 #include <fmt/format.h>
 #include <stb_image_write.h>
 
-#include <cerrno>
 #include <cstdint>
-#include <cstring>
-#include <fstream>
 #include <stdexcept>
 
 #include "render/film/tonemap.h"
+#include "render/image/checked_stream.h"
 #include "render/image/limits.h"
 #include "render/image/replace_file.h"
 #include "render/image/write.h"
@@ -35,9 +33,9 @@ void writePng(const std::string& path, int width, int height, const Rgb* pixels,
     };
     if (!stbi_write_png_to_func(append, &encoded, width, height, 3, bytes.data(), 3 * width))
       throw std::runtime_error("the PNG encoder ran out of memory");
-    std::ofstream stream(temporary, std::ios::binary);
-    if (!stream.write(encoded.data(), std::streamsize(encoded.size())) || !stream.flush())
-      throw std::runtime_error(std::strerror(errno));
+    CheckedStream stream(temporary);
+    stream.write(encoded.data(), std::streamsize(encoded.size()));
+    stream.close();
   });
 }
 

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <map>
+#include <new>
 #include <stdexcept>
 
 #include "render/shape/embree.h"
@@ -14,6 +15,11 @@ namespace {
 bool countBytes(void* counter, ssize_t bytes, bool) {
   static_cast<std::atomic<int64_t>*>(counter)->fetch_add(bytes, std::memory_order_relaxed);
   return true;
+}
+
+[[noreturn]] void fail(const char* what, RTCError error) {
+  if (error == RTC_ERROR_OUT_OF_MEMORY) throw std::bad_alloc();
+  throw std::runtime_error(fmt::format("Embree cannot {} (error {})", what, int(error)));
 }
 
 RTCRay embreeRay(const Ray& ray) {
@@ -55,8 +61,7 @@ size_t fillPacket(RTCRay16& packet, int* valid, std::span<const Ray> rays) {
 
 Intersector::Intersector(const std::vector<ShapePtr>& shapes, const std::vector<Instance>& instances) {
   m_device = rtcNewDevice(nullptr);
-  if (!m_device)
-    throw std::runtime_error(fmt::format("Embree cannot start (error {})", int(rtcGetDeviceError(nullptr))));
+  if (!m_device) fail("start", rtcGetDeviceError(nullptr));
   rtcSetDeviceMemoryMonitorFunction(m_device, countBytes, &m_bytes);
 
   m_scene = makeScene(shapes, m_shapes);
@@ -81,7 +86,7 @@ Intersector::Intersector(const std::vector<ShapePtr>& shapes, const std::vector<
   rtcCommitScene(m_scene);
   if (const RTCError error = rtcGetDeviceError(m_device); error != RTC_ERROR_NONE) {
     release();
-    throw std::runtime_error(fmt::format("Embree cannot build the scene (error {})", int(error)));
+    fail("build the scene", error);
   }
 }
 

@@ -14,7 +14,7 @@ namespace odis::render {
 class Intersector {
  public:
   // Builds the acceleration structure on all cores. The shapes must outlive the intersector. Throws
-  // std::runtime_error if Embree fails, for example for want of memory.
+  // std::bad_alloc for want of memory, std::runtime_error if Embree fails otherwise.
   Intersector(const std::vector<ShapePtr>& shapes, const std::vector<Instance>& instances);
   ~Intersector();
   Intersector(const Intersector&) = delete;

@@ -1,0 +1,94 @@
+// What goes wrong around the program: full disks, no memory, signals. One message, the right exit code, and
+// no file that is neither the old one nor the new one.
+#include "command_runner.h"
+#include "render/image/write.h"
+
+namespace {
+
+namespace fs = std::filesystem;
+using odis::test::Outcome;
+
+// Sanitizers need terabytes of addresses. GCC tells by macros, Clang by a question.
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+constexpr bool kSanitized = true;
+#elif defined(__has_feature)
+constexpr bool kSanitized = __has_feature(address_sanitizer) || __has_feature(thread_sanitizer);
+#else
+constexpr bool kSanitized = false;
+#endif
+
+class Failures : public odis::test::Odis {
+ protected:
+  // Runs `odis` after a shell command that limits it.
+  Outcome runLimited(const std::string& limit, const std::string& arguments) const {
+    return runShell(limit + "; '" ODIS_COMMAND "' " + arguments);
+  }
+  std::string contentOf(const std::string& name) const {
+    std::ifstream stream(file(name), std::ios::binary);
+    return {std::istreambuf_iterator<char>(stream), {}};
+  }
+  size_t fileCount() const {
+    return size_t(std::distance(fs::directory_iterator(m_folder), fs::directory_iterator()));
+  }
+  void expectOne(const Outcome& outcome, int code, const std::string& message) const {
+    EXPECT_EQ(outcome.code, code) << outcome.text;
+    EXPECT_EQ(outcome.text.rfind("error: ", 0), 0u) << outcome.text;
+    EXPECT_NE(outcome.text.find(message), std::string::npos) << outcome.text;
+    EXPECT_EQ(std::count(outcome.text.begin(), outcome.text.end(), '\n'), 1) << outcome.text;
+  }
+};
+
+// The smallest limit, one block, stands in for a full disk. A small image stays in the stream's buffer until
+// that is closed, a large one does not.
+TEST_F(Failures, FullDiskIsFourAndKeepsTheOldFile) {
+  for (const char* name : {"image.exr", "image.png"})
+    for (const char* size : {"24x16", "200x200"}) {
+      write(name, "old");
+      const std::string noise =
+          "render room.xml --integrator path -q -D radiance=0.5 --aov position --resolution ";
+      expectOne(runLimited("ulimit -f 0", noise + size + " -o " + name), 4, name);
+      EXPECT_EQ(contentOf(name), "old") << name << " " << size;
+      EXPECT_EQ(fileCount(), 2u) << name << " " << size;  // this and the scene
+      fs::remove(file(name));
+    }
+  expectOne(runLimited("ulimit -f 1", "render room.xml -q -o i.png --records r.npy --resolution 8x8"), 4,
+            "r.npy");
+  EXPECT_FALSE(exists("r.npy"));
+}
+
+TEST_F(Failures, WhatIsPrintedMustArrive) {
+  EXPECT_EQ(run("--version > /dev/full").code, 4);
+  EXPECT_EQ(run("scene info room.xml > /dev/full").code, 4);
+  // Progress is no output: an image is worth more.
+  EXPECT_EQ(run("render room.xml 2> /dev/full").code, 0);
+  EXPECT_TRUE(exists("room.exr"));
+  EXPECT_EQ(run("render nowhere.xml 2> /dev/full").code, 3);
+}
+
+TEST_F(Failures, FolderThatIsNone) {
+  expectOne(run("render room.xml -q -o room.xml/image.exr"), 4, "no such folder");
+  expectOne(run("compare room.xml -q -o room.xml/out"), 4, "room.xml/out");
+}
+
+TEST_F(Failures, NoMemory) {
+  if (kSanitized) GTEST_SKIP();
+  const Outcome outcome = runLimited("ulimit -v 1000000", "render room.xml -q --resolution 16384x16384");
+  expectOne(outcome, 1, "out of memory");
+  EXPECT_EQ(fileCount(), 1u);
+  expectFailure("render room.xml --resolution 65536x65536", 2, "at most 268435456");
+}
+
+// The pilot is done within no time, the rest would take for ever.
+TEST_F(Failures, SignalsEndWithAnImage) {
+  for (const auto& [signal, code] : {std::pair("INT", 130), std::pair("TERM", 143)}) {
+    const Outcome outcome = runShell("'" ODIS_COMMAND
+                                     "' render room.xml --spp 16000000 2> log & until grep -q "
+                                     "pilot log; do sleep 0.02; done; kill -" +
+                                     std::string(signal) + " $!; wait $!");
+    EXPECT_EQ(outcome.code, code) << outcome.text;
+    EXPECT_EQ(odis::render::readExr(file("room.exr").string()).metadata.at("odis:interrupted"), "yes");
+    fs::remove(file("room.exr"));
+  }
+}
+
+}  // namespace
