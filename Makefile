@@ -2,8 +2,9 @@
 PRESET ?= release
 BUILD := build/$(PRESET)
 JOBS ?= $(shell nproc)
+SECONDS ?= 60
 
-.PHONY: help setup build demo test agreement format format-check lint clean
+.PHONY: help setup build demo test agreement fuzz format format-check lint clean
 
 help:                ## Show this list
 	@sed -n 's/^\([a-z-]*\):.*## /  make \1\t/p' Makefile | expand -t 24
@@ -25,6 +26,11 @@ test: build          ## Build and run all tests
 
 agreement: build     ## Test `path` against other renderers' images: SCENES=DIR REFERENCES=DIR
 	@scripts/agreement $(BUILD)/apps/odis/odis "$(SCENES)" "$(REFERENCES)" $(SPP)
+
+fuzz:                ## Feed damaged input to all readers, SECONDS=60 each; needs `scripts/setup --dev`
+	@cmake --preset fuzz $(CMAKE_FLAGS) > /dev/null
+	@cmake --build build/fuzz --parallel $(JOBS)
+	@scripts/fuzz build/fuzz $(SECONDS)
 
 format:              ## Format the C++ sources in place
 	@scripts/format
