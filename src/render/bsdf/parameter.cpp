@@ -11,10 +11,9 @@ namespace odis::render {
 
 RgbParameter readReflectance(const Properties& properties, Builder& builder, const std::string& name,
                              float fallback) {
-  const RgbParameter result(builder.texture(properties, name, Rgb(fallback)));
+  const RgbParameter result(builder.texture(properties, name, Rgb(fallback)), true);
   if (!result.isConstant()) return result;
-  Rgb clamped;
-  for (int i = 0; i < 3; ++i) clamped[i] = std::min(std::max(0.0f, result.mean()[i]), 1.0f);
+  const Rgb clamped = clampUnit(result.mean());
   if (clamped == result.mean()) return result;
   builder.warn(properties.location,
                fmt::format("\"{}\" of {} is outside [0, 1] and was clamped", name, properties.type));

@@ -11,19 +11,32 @@ namespace odis::render {
 
 class Builder;
 
+// Each channel clamped to [0, 1]; 0 if it is not a number.
+inline Rgb clampUnit(const Rgb& c) {
+  const auto clamp = [](float x) { return std::min(std::max(0.0f, x), 1.0f); };
+  return {clamp(c.x), clamp(c.y), clamp(c.z)};
+}
+
 class RgbParameter {
  public:
   RgbParameter(const Rgb& constant = Rgb(0.0f)) : m_mean(constant) {}
-  explicit RgbParameter(const TexturePtr& texture)
-      : m_texture(texture->isConstant() ? nullptr : texture), m_mean(texture->mean()) {}
+  explicit RgbParameter(const TexturePtr& texture, bool clamped = false)
+      : m_texture(texture->isConstant() ? nullptr : texture), m_mean(texture->mean()), m_clamped(clamped) {
+    if (m_texture && clamped) m_mean = clampUnit(m_mean);
+  }
 
-  Rgb operator()(const SurfacePoint& at) const { return m_texture ? m_texture->rgb(at.uv) : m_mean; }
+  Rgb operator()(const SurfacePoint& at) const {
+    if (!m_texture) return m_mean;
+    const Rgb value = m_texture->rgb(at.uv);
+    return m_clamped ? clampUnit(value) : value;
+  }
   const Rgb& mean() const { return m_mean; }
   bool isConstant() const { return !m_texture; }
 
  private:
   TexturePtr m_texture;
   Rgb m_mean;
+  bool m_clamped = false;  // to [0, 1]
 };
 
 class ScalarParameter {
@@ -44,7 +57,8 @@ class ScalarParameter {
   float m_mean;
 };
 
-// A reflectance or transmittance: a constant outside [0, 1] is clamped, with a warning.
+// A reflectance or transmittance: a constant outside [0, 1] is clamped, with a warning, a texture at every
+// look-up.
 RgbParameter readReflectance(const Properties& properties, Builder& builder, const std::string& name,
                              float fallback);
 ScalarParameter readScalar(const Properties& properties, Builder& builder, const std::string& name,
@@ -100,10 +114,6 @@ inline BsdfSample discreteSample(const Vec3& wi, const Rgb& weight, float probab
   result.eta = eta;
   result.lobe = lobe;
   return result;
-}
-
-inline Rgb clampUnit(const Rgb& c) {
-  return {std::clamp(c.x, 0.0f, 1.0f), std::clamp(c.y, 0.0f, 1.0f), std::clamp(c.z, 0.0f, 1.0f)};
 }
 
 }  // namespace odis::render
