@@ -57,7 +57,7 @@ enum class Sides : uint8_t { reflection, both };
 // A map times the cosine at one vertex: a density over directions, constant within each texel, with respect
 // to solid angle, and positive everywhere. Only what a vertex asks for is computed: a block is chosen by its
 // sums, a texel within it by its own value. Where a block lies on one side of the horizon this is exactly the
-// product of the texels with max(cos, 0) + e at their centres, or |cos| + e for `both`, e = 0.02 (kRim).
+// product of the texels with max(cos, 0) + e at their centres, or |cos| + e for `both`, e = 0.0001 (kRim).
 // Blocks that the horizon crosses get a little less: what lies below counts negative in their sums.
 class VertexMap {
  public:

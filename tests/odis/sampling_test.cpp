@@ -176,7 +176,7 @@ TEST(VertexMap, IsTheProductAwayFromTheHorizon) {
       if (above != 0 && above != kBlockTexels) texels.texels[t] = 0;
       const float cosine = dot(texelDirection(t), normal);
       const float kept = sides == Sides::both ? std::abs(cosine) : std::max(cosine, 0.0f);
-      total += product[t] = texels.texels[t] * (kept + 0.02);
+      total += product[t] = texels.texels[t] * (kept + 1e-4);
     }
     texels.update();
     VertexMap map;
@@ -191,6 +191,16 @@ TEST(VertexMap, IsTheProductAwayFromTheHorizon) {
     EXPECT_NEAR(found, 1, 1e-4);
     EXPECT_LT(largest, 0.01 / kMapTexels);
   }
+}
+
+TEST(VertexMap, ABrightTexelBelowTheHorizonDrawsLittle) {
+  const SamplingMap texels = makeMap(Content::oneHot);
+  const Float3 bright = texelDirection(137);
+  VertexMap map;
+  map.prepare(texels, bright * -1, Sides::reflection);
+  EXPECT_LT(map.texelPdf(137) * 4 * M_PI / kMapTexels, 0.15);
+  map.prepare(texels, bright, Sides::reflection);
+  EXPECT_GT(map.texelPdf(137) * 4 * M_PI / kMapTexels, 0.99);
 }
 
 TEST(VertexMap, NothingToSampleIsEmpty) {

@@ -5,9 +5,9 @@ namespace odis {
 
 namespace {
 
-// What is added to every cosine, so that the rim of texels whose centre lies below the horizon can be
-// sampled.
-constexpr float kRim = 0.02f;
+// What is added to every cosine: something, so that blocks wholly below the horizon have a density too, but
+// so little that even the one bright texel of a dark map attracts next to nothing from below.
+constexpr float kRim = 1e-4f;
 
 // Which of four weights a number u uniform in [0, 1) falls into; u becomes its place within that weight. No
 // branches: they would be mispredicted every other time.
