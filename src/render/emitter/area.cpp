@@ -51,11 +51,6 @@ EmitterSample AreaLight::sample(uint32_t part, const Vec3& ref, const Vec2& u) c
           .delta = false};
 }
 
-// One side of the surface emits the same radiance over a hemisphere whose projected solid angle is pi.
-float AreaLight::power() const {
-  return kPi * m_shape.area() * average(m_radiance->mean());
-}
-
 Rgb AreaLight::radiance(const SurfacePoint& at, const Vec3& wo) const {
   if (!(dot(at.shading.n, wo) > 0)) return {0, 0, 0};
   return m_radiance->rgb(at.uv);

@@ -14,7 +14,6 @@ class AreaLight final : public SurfaceEmitter {
   uint32_t partCount() const override;
   LightBounds bounds(uint32_t part) const override;
   EmitterSample sample(uint32_t part, const Vec3& ref, const Vec2& u) const override;
-  float power() const override;
   Rgb radiance(const SurfacePoint& at, const Vec3& wo) const override;
   uint32_t part(const SurfacePoint& at) const override { return m_whole ? 0 : at.primitive; }
   float pdf(const Vec3& ref, const SurfacePoint& at) const override;
