@@ -282,20 +282,25 @@ TEST(LightSampler, NoLightIsNone) {
   EXPECT_EQ(LightSampler(indexed({&dark})).sample(ref, 0.5f).emitter, nullptr);
 }
 
-// A tenth evenly, the rest by power; an unknown power counts as the largest that is known.
-TEST(LightSampler, DistantLightsAreChosenByPower) {
+// A tenth evenly, the rest by irradiance; an absurd one leaves the others their tenth.
+TEST(LightSampler, DistantLightsAreChosenByIrradiance) {
   DirectionalLight weak({0, 0, -1}, Rgb(1, 1, 1)), strong({0, 0, -1}, Rgb(3, 3, 3)),
       endless({0, 0, -1}, Rgb(kInfinity, 1, 1));
   const LightReference ref{{0, 0, 0}, {0, 0, 1}, false};
   const LightSampler two(indexed({&weak, &strong}));
   EXPECT_NEAR(two.probability(ref, weak, 0), 0.05 + 0.9 * 0.25, 1e-6);
   EXPECT_NEAR(two.probability(ref, strong, 0), 0.05 + 0.9 * 0.75, 1e-6);
-  const LightSampler unknown(indexed({&strong, &endless}));
-  EXPECT_NEAR(unknown.probability(ref, endless, 0), 0.5, 1e-6);
-  // Half of the choices fall to each half of u, and what is left of u serves the tree.
+  const LightSampler absurd(indexed({&strong, &endless}));
+  EXPECT_NEAR(absurd.probability(ref, strong, 0), 0.05, 1e-6);
+
+  // Near a lamp the lamp is chosen, far away the sky, and one of them always.
   PointLight a({1, 0, 1}, Rgb(1, 1, 1)), b({-1, 0, 1}, Rgb(1, 1, 1));
   const auto emitters = indexed({&weak, &a, &b});
   const LightSampler mixed(emitters);
+  const LightReference near{{1, 0, 0.99f}, {0, 0, 1}, false}, far{{0, 0, -100}, {0, 0, 1}, false};
+  EXPECT_GT(mixed.probability(near, a, 0), 0.8f);
+  EXPECT_GT(mixed.probability(far, weak, 0), 0.9f);
+  EXPECT_EQ(mixed.probability({{0, 0, 5}, {0, 0, 1}, false}, weak, 0), 1);
   EXPECT_NEAR(totalProbability(mixed, emitters, ref), 1, 1e-6);
   EXPECT_NEAR(mixed.probability(ref, a, 0), mixed.probability(ref, b, 0), 1e-6);
   double counts[3] = {};

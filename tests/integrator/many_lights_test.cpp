@@ -49,6 +49,19 @@ std::vector<std::string> lights() {
       "<shape type=\"sphere\"><point name=\"center\" x=\"0\" y=\"2\" z=\"-1\"/><float name=\"radius\" "
       "value=\"0.3\"/><bsdf type=\"diffuse\"/>" +
       emission(1) + "</shape>");
+  // A wide panel and a box close by, which directions find as often as the choice among lights does.
+  for (const char* placed :
+       {"rectangle\"><transform name=\"to_world\"><scale value=\"1.5\"/><rotate y=\"1\" "
+        "angle=\"60\"/><translate "
+        "x=\"-2.5\" y=\"1\" z=\"-1\"/>",
+        "cube\"><transform name=\"to_world\"><scale value=\"0.5\"/><translate x=\"2.5\" y=\"0.8\" z=\"0\"/>"})
+    result.push_back("<shape type=\"" + std::string(placed) +
+                     "</transform><bsdf type=\"diffuse\"/><emitter type=\"area\"><rgb name=\"radiance\" "
+                     "value=\"2\"/></emitter></shape>");
+  // One that grazes the floor.
+  result.push_back(
+      "<emitter type=\"point\"><point name=\"position\" x=\"0\" y=\"0.2\" z=\"2\"/><rgb name=\"intensity\" "
+      "value=\"20\"/></emitter>");
   result.push_back(
       "<emitter type=\"point\"><point name=\"position\" x=\"2\" y=\"2\" z=\"1\"/><rgb name=\"intensity\" "
       "value=\"3\"/></emitter>");

@@ -1,3 +1,4 @@
+#include "render/emitter/constant.h"
 #include "shape/support.h"
 
 namespace odis::test {
@@ -142,30 +143,18 @@ TEST(Intersector, CountsItsMemory) {
   EXPECT_GT(large, small);
 }
 
-// An environment that remembers the bounds it was told.
-class Recorder final : public EnvironmentEmitter {
- public:
-  EmitterSample sample(uint32_t, const Vec3&, const Vec2&) const override { return {}; }
-  float power() const override { return 1; }
-  void setSceneBounds(const SceneBounds& b) override { bounds = b; }
-  Rgb radiance(const Vec3&) const override { return {1, 1, 1}; }
-  float pdf(const Vec3&, const Vec3&) const override { return 0; }
-  SceneBounds bounds;
-};
-
 TEST(SceneBounds, EncloseShapesAndInstances) {
   Scene scene;
   scene.addShape(sphereOf({0, 0, 0}, 1));
   scene.addInstance(
       {std::make_shared<const std::vector<ShapePtr>>(std::vector<ShapePtr>{meshOf(rectangleMesh())}),
        translation({0, 0, 5})});
-  const auto emitter = std::make_shared<Recorder>();
-  scene.addEmitter(emitter);
+  scene.addEmitter(std::make_shared<ConstantEnvironment>(Rgb(1, 1, 1)));
   scene.finish();
-  EXPECT_TRUE(near(emitter->bounds.min, {-1, -1, -1}, 1e-4f));
-  EXPECT_TRUE(near(emitter->bounds.max, {1, 1, 5}, 1e-4f));
-  EXPECT_TRUE(near(emitter->bounds.center, {0, 0, 2}, 1e-4f));
-  EXPECT_NEAR(emitter->bounds.radius, std::sqrt(11.0f), 1e-3);
+  EXPECT_TRUE(near(scene.bounds().min, {-1, -1, -1}, 1e-4f));
+  EXPECT_TRUE(near(scene.bounds().max, {1, 1, 5}, 1e-4f));
+  EXPECT_TRUE(near(scene.bounds().center, {0, 0, 2}, 1e-4f));
+  EXPECT_NEAR(scene.bounds().radius, std::sqrt(11.0f), 1e-3);
   EXPECT_EQ(scene.environments().size(), 1u);
   EXPECT_EQ(scene.emitters().size(), 1u);
 }

@@ -2,11 +2,12 @@
 #pragma once
 
 #include "render/emitter/emitter.h"
+#include "render/shape/shape.h"
 #include "render/texture/texture.h"
 
 namespace odis::render {
 
-class AreaLight final : public SurfaceEmitter {
+class AreaLight : public SurfaceEmitter {
  public:
   // The shape owns the light, so it outlives it.
   AreaLight(const Shape& shape, TexturePtr radiance);
@@ -14,10 +15,14 @@ class AreaLight final : public SurfaceEmitter {
   uint32_t partCount() const override;
   LightBounds bounds(uint32_t part) const override;
   EmitterSample sample(uint32_t part, const Vec3& ref, const Vec2& u) const override;
-  float power() const override;
   Rgb radiance(const SurfacePoint& at, const Vec3& wo) const override;
   uint32_t part(const SurfacePoint& at) const override { return m_whole ? 0 : at.primitive; }
   float pdf(const Vec3& ref, const SurfacePoint& at) const override;
+
+ protected:
+  const Shape& shape() const { return m_shape; }
+  const Texture& texture() const { return *m_radiance; }
+  EmitterSample emitterSample(const ShapeSample& point) const;
 
  private:
   const Shape& m_shape;

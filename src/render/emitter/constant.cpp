@@ -22,11 +22,6 @@ EmitterSample ConstantEnvironment::sample(uint32_t, const Vec3&, const Vec2& u) 
           .delta = false};
 }
 
-// What passes through a disk of the scene's radius, from every direction.
-float ConstantEnvironment::power() const {
-  return kPi * sqr(m_sceneRadius) * kSphereSolidAngle * average(m_radiance);
-}
-
 float ConstantEnvironment::pdf(const Vec3&, const Vec3&) const {
   return 1 / kSphereSolidAngle;
 }

@@ -10,14 +10,12 @@ class ConstantEnvironment final : public EnvironmentEmitter {
   explicit ConstantEnvironment(const Rgb& radiance) : m_radiance(radiance) {}
 
   EmitterSample sample(uint32_t part, const Vec3& ref, const Vec2& u) const override;
-  float power() const override;
-  void setSceneBounds(const SceneBounds& bounds) override { m_sceneRadius = bounds.radius; }
+  float meanIrradiance() const override { return kPi * average(m_radiance); }
   Rgb radiance(const Vec3&) const override { return m_radiance; }
   float pdf(const Vec3& ref, const Vec3& wi) const override;
 
  private:
   Rgb m_radiance;
-  float m_sceneRadius = 1;
 };
 
 }  // namespace odis::render

@@ -12,14 +12,11 @@ class DirectionalLight final : public Emitter {
       : m_wi(-direction), m_irradiance(irradiance) {}
 
   EmitterSample sample(uint32_t part, const Vec3& ref, const Vec2& u) const override;
-  // What passes through a disk of the scene's radius.
-  float power() const override { return kPi * sqr(m_sceneRadius) * average(m_irradiance); }
-  void setSceneBounds(const SceneBounds& bounds) override { m_sceneRadius = bounds.radius; }
+  float meanIrradiance() const override { return average(m_irradiance) / 4; }
 
  private:
   Vec3 m_wi;
   Rgb m_irradiance;
-  float m_sceneRadius = 1;
 };
 
 }  // namespace odis::render

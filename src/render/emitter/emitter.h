@@ -18,13 +18,6 @@ struct EmitterSample {
   bool delta = false;     // point, spot, directional: cannot be hit, so the MIS weight is one
 };
 
-// The axis-aligned box and the sphere around everything that a ray can hit.
-struct SceneBounds {
-  Vec3 min, max;
-  Vec3 center;
-  float radius = 0;
-};
-
 class Emitter {
  public:
   virtual ~Emitter() = default;
@@ -36,10 +29,9 @@ class Emitter {
   virtual LightBounds bounds(uint32_t /*part*/) const { return {}; }
   // Samples light arriving at `ref` from one part.
   virtual EmitterSample sample(uint32_t part, const Vec3& ref, const Vec2& u) const = 0;
-  // Emitted power in watts (average over channels), for choosing among lights. Approximate is fine.
-  virtual float power() const = 0;
-  // Called once before rendering, when the extent of the scene is known.
-  virtual void setSceneBounds(const SceneBounds&) {}
+  // What an emitter infinitely far away gives a surface, on average over all ways to face (W/m^2, average
+  // over channels), for choosing among lights. Approximate is fine.
+  virtual float meanIrradiance() const { return 0; }
 
   // The emitter's place among those of its scene.
   uint32_t index() const { return m_index; }

@@ -15,8 +15,8 @@ class EnvironmentMap final : public EnvironmentEmitter {
   EnvironmentMap(std::vector<Rgb> pixels, int width, int height, const Matrix4& toWorld, float horizon = 1);
 
   EmitterSample sample(uint32_t part, const Vec3& ref, const Vec2& u) const override;
-  float power() const override;
-  void setSceneBounds(const SceneBounds& bounds) override { m_sceneRadius = bounds.radius; }
+  // A surface faces each direction with a mean cosine of 1/4, that of those behind it taken as zero.
+  float meanIrradiance() const override { return average(m_integral) / 4; }
   Rgb radiance(const Vec3& wi) const override;
   float pdf(const Vec3& ref, const Vec3& wi) const override;
   uint64_t bytes() const { return m_pixels.size() * sizeof(Rgb) + m_table.bytes(); }
@@ -33,7 +33,6 @@ class EnvironmentMap final : public EnvironmentEmitter {
   float m_determinant;          // of m_toWorld's linear part, absolute
   Rgb m_integral{0, 0, 0};      // of the radiance over all directions
   PiecewiseConstant2D m_table;  // over the patches between four pixel centres
-  float m_sceneRadius = 1;
 };
 
 }  // namespace odis::render

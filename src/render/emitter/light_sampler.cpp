@@ -8,22 +8,14 @@ namespace odis::render {
 
 namespace {
 
-// The share of choices that is spread evenly over the environments and the tree.
-constexpr double kUniformShare = 0.1;
+// The share of each choice that is spread evenly.
+constexpr float kUniformShare = 0.1f;
 
-// W/sr; of more than this no sum could be kept.
-constexpr float kMostPhi = 1e28f;
+// No weight is more than this, so that sums can be kept.
+constexpr float kMostWeight = 1e28f;
 
-// Those that are not finite become the largest that is, so that such a light is neither starved nor the only
-// one chosen.
-void replaceNonFinite(std::span<double> powers) {
-  double largest = 0;
-  for (double& power : powers) {
-    power = std::max(power, 0.0);
-    if (std::isfinite(power)) largest = std::max(largest, power);
-  }
-  for (double& power : powers)
-    if (!std::isfinite(power)) power = largest > 0 ? largest : 1;
+float usable(float weight) {
+  return weight > 0 ? std::min(weight, kMostWeight) : 0.0f;
 }
 
 }  // namespace
@@ -32,58 +24,55 @@ LightSampler::LightSampler(const std::vector<const Emitter*>& emitters)
     : m_emitters(emitters), m_probability(emitters.size(), 0.0f) {
   // What is somewhere goes into the tree.
   std::vector<LightBounds> lights;
-  std::vector<double> powers;
+  std::vector<float> weights;
   for (uint32_t i = 0; i < emitters.size(); ++i) {
     m_firstLight.push_back(uint32_t(lights.size()));
     const uint32_t parts = emitters[i]->partCount();
     for (uint32_t part = 0; part < parts; ++part) {
       lights.push_back(emitters[i]->bounds(part));
-      lights.back().phi = std::min(lights.back().phi, kMostPhi);
+      lights.back().phi = usable(lights.back().phi);
       m_emitterOf.push_back(i);
     }
     if (parts > 0) continue;
     m_infinite.push_back(i);
-    powers.push_back(emitters[i]->power());
+    weights.push_back(usable(emitters[i]->meanIrradiance()));
+    m_infiniteIrradiance += weights.back();
   }
   m_tree = LightTree(lights);
+  if (m_infinite.empty()) return;
 
-  // The tree is chosen against what is not.
-  double treePower = 0;
-  for (const LightBounds& light : lights) treePower += double(light.phi) * M_PI;
-  if (!m_tree.empty()) powers.push_back(treePower);
-  replaceNonFinite(powers);
-  double total = 0;
-  for (double power : powers) total += power;
-  std::vector<float> weights;
-  for (double power : powers)
-    weights.push_back(
-        float((1 - kUniformShare) * (total > 0 ? power / total : 0) + kUniformShare / double(powers.size())));
+  const float even = 1 / float(weights.size());
+  for (float& weight : weights)
+    weight = lerp(kUniformShare, m_infiniteIrradiance > 0 ? weight / m_infiniteIrradiance : even, even);
   m_cdf.resize(weights.size() + 1);
   buildCdf(weights, m_cdf);
-  if (!m_tree.empty()) m_treeProbability = m_cdf.back() - m_cdf[m_infinite.size()];
   for (size_t i = 0; i < m_infinite.size(); ++i) m_probability[m_infinite[i]] = m_cdf[i + 1] - m_cdf[i];
 }
 
+float LightSampler::treeProbability(const LightReference& ref) const {
+  if (m_infinite.empty()) return 1;
+  const float irradiance = m_tree.irradiance(ref);
+  if (irradiance == 0) return 0;
+  return lerp(kUniformShare, irradiance / (irradiance + m_infiniteIrradiance), 0.5f);
+}
+
 LightSampler::Choice LightSampler::sample(const LightReference& ref, float u) const {
-  float within = u;
-  if (!m_infinite.empty()) {
-    const uint32_t chosen = findCell(m_cdf, u);
-    if (chosen < m_infinite.size()) {
-      const uint32_t emitter = m_infinite[chosen];
-      return {m_emitters[emitter], 0, m_probability[emitter]};
-    }
-    within = std::min((u - m_cdf[chosen]) / m_treeProbability, kOneMinusEpsilon);
+  const float treeProbability = this->treeProbability(ref);
+  if (u >= treeProbability) {
+    const float rest = 1 - treeProbability;
+    const uint32_t emitter = m_infinite[findCell(m_cdf, (u - treeProbability) / rest)];
+    return {m_emitters[emitter], 0, rest * m_probability[emitter]};
   }
-  const LightTree::Choice light = m_tree.sample(ref, within);
+  const LightTree::Choice light = m_tree.sample(ref, std::min(u / treeProbability, kOneMinusEpsilon));
   if (light.light == LightTree::kNone) return {};
   const uint32_t emitter = m_emitterOf[light.light];
-  return {m_emitters[emitter], light.light - m_firstLight[emitter], m_treeProbability * light.probability};
+  return {m_emitters[emitter], light.light - m_firstLight[emitter], treeProbability * light.probability};
 }
 
 float LightSampler::probability(const LightReference& ref, const Emitter& emitter, uint32_t part) const {
   const uint32_t index = emitter.index();
-  if (m_probability[index] > 0) return m_probability[index];
-  return m_treeProbability * m_tree.probability(ref, m_firstLight[index] + part);
+  if (m_probability[index] > 0) return (1 - treeProbability(ref)) * m_probability[index];
+  return treeProbability(ref) * m_tree.probability(ref, m_firstLight[index] + part);
 }
 
 uint64_t LightSampler::bytes() const {

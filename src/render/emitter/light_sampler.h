@@ -8,9 +8,9 @@
 
 namespace odis::render {
 
-// Chooses among the parts of all emitters that are somewhere by a tree, and among those infinitely far away,
-// the tree itself one of them, in proportion to power, mixed with a uniform share so that none is starved by
-// a bad estimate.
+// Chooses among the parts of all emitters that are somewhere by a tree, and among those infinitely far away
+// by their mean irradiance. Between the two the irradiance decides that the tree may give the reference. A
+// tenth of both choices is spread evenly, so that none is starved by a bad estimate.
 class LightSampler {
  public:
   LightSampler() = default;
@@ -31,14 +31,17 @@ class LightSampler {
   uint64_t bytes() const;
 
  private:
+  // The probability of choosing from the tree.
+  float treeProbability(const LightReference& ref) const;
+
   std::vector<const Emitter*> m_emitters;
   std::vector<uint32_t> m_firstLight;  // of each emitter: the number of its part 0 in the tree
   std::vector<uint32_t> m_emitterOf;   // of each light of the tree
   LightTree m_tree;
-  float m_treeProbability = 0;
   std::vector<uint32_t> m_infinite;  // emitters outside of the tree
   std::vector<float> m_cdf;          // of these, size n + 1
-  std::vector<float> m_probability;  // of each emitter that is outside of the tree; 0 for others
+  std::vector<float> m_probability;  // of each emitter, among those outside of the tree; 0 for others
+  float m_infiniteIrradiance = 0;    // the sum of their mean irradiances
 };
 
 }  // namespace odis::render

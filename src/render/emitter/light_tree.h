@@ -35,6 +35,9 @@ class LightTree {
   // nothing, because they or it look away.
   float probability(const LightReference& ref, uint32_t light) const;
 
+  // An estimate of what all lights together give the reference, in W/m^2; zero only if nothing.
+  float irradiance(const LightReference& ref) const { return empty() ? 0 : importance(m_rootNode, ref); }
+
   bool empty() const { return m_root == kNone; }
   // 72 bytes a light.
   uint64_t bytes() const {
@@ -63,6 +66,7 @@ class LightTree {
   // The probability of the first child; negative if neither gives anything.
   static float firstProbability(const Pair& pair, const LightReference& ref);
 
+  Node m_rootNode;
   std::vector<Pair> m_pairs;
   std::vector<uint64_t> m_trails;  // for each light its turns from the root, the first in the lowest bit,
                                    // ended by a one; 0 if it is left out

@@ -27,7 +27,9 @@ class LightTree::Build {
     m_tree.m_trails.assign(lights.size(), 0);
     if (m_items.empty()) return;
     m_tree.m_pairs.reserve(m_items.size() - 1);
-    m_tree.m_root = node(0, m_items.size(), 0, 0).link;
+    const Subtree root = node(0, m_items.size(), 0, 0);
+    m_tree.m_root = root.link;
+    m_tree.m_rootNode = pack(root.bounds, root.link);
   }
 
  private:

@@ -10,7 +10,7 @@
 namespace odis::render {
 
 LightBounds PointLight::bounds(uint32_t) const {
-  return {.min = m_position, .max = m_position, .thetaO = kPi, .phi = power() / kPi};
+  return {.min = m_position, .max = m_position, .thetaO = kPi, .phi = 4 * average(m_intensity)};
 }
 
 EmitterSample PointLight::sample(uint32_t, const Vec3& ref, const Vec2&) const {

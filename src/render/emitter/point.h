@@ -12,7 +12,6 @@ class PointLight final : public Emitter {
   uint32_t partCount() const override { return 1; }
   LightBounds bounds(uint32_t part) const override;
   EmitterSample sample(uint32_t part, const Vec3& ref, const Vec2& u) const override;
-  float power() const override { return 4 * kPi * average(m_intensity); }
 
  private:
   Vec3 m_position;

@@ -49,11 +49,6 @@ EmitterSample SpotLight::sample(uint32_t, const Vec3& ref, const Vec2&) const {
           .delta = true};
 }
 
-// The solid angle of the beam, and half of the ring in which the light falls off.
-float SpotLight::power() const {
-  return 2 * kPi * (1 - 0.5f * (m_cosBeam + m_cosCutoff)) * average(m_intensity);
-}
-
 std::vector<EmitterPtr> makeSpot(const Properties& node, Builder& builder) {
   const Matrix4 toWorld = node.transform("to_world");
   const float cutoff = node.number("cutoff_angle", 20.0f);

@@ -14,7 +14,6 @@ class SpotLight final : public Emitter {
   uint32_t partCount() const override { return 1; }
   LightBounds bounds(uint32_t part) const override;
   EmitterSample sample(uint32_t part, const Vec3& ref, const Vec2& u) const override;
-  float power() const override;
 
  private:
   Vec3 m_position, m_axis;

@@ -13,9 +13,7 @@ class SunDisc final : public EnvironmentEmitter {
 
   // Uniform over the disc.
   EmitterSample sample(uint32_t part, const Vec3& ref, const Vec2& u) const override;
-  // What passes through a disk of the scene's radius.
-  float power() const override { return kPi * sqr(m_sceneRadius) * solidAngle() * average(m_radiance); }
-  void setSceneBounds(const SceneBounds& bounds) override { m_sceneRadius = bounds.radius; }
+  float meanIrradiance() const override { return solidAngle() * average(m_radiance) / 4; }
   Rgb radiance(const Vec3& wi) const override { return covers(wi) ? m_radiance : Rgb(0, 0, 0); }
   float pdf(const Vec3&, const Vec3& wi) const override { return covers(wi) ? 1 / solidAngle() : 0.0f; }
 
@@ -28,7 +26,6 @@ class SunDisc final : public EnvironmentEmitter {
   Frame m_frame;
   float m_chord;
   Rgb m_radiance;
-  float m_sceneRadius = 1;
 };
 
 }  // namespace odis::render

@@ -32,13 +32,11 @@ void Scene::addEmitter(EmitterPtr emitter) {
 
 void Scene::finish() {
   m_intersector = std::make_unique<Intersector>(m_shapes, m_instances);
-  // A scene of lights alone still has an extent, so that they may divide by it.
+  // A scene of lights alone still has an extent, so that it may be divided by.
   if (!m_intersector->box(m_bounds.min, m_bounds.max)) m_bounds.min = m_bounds.max = Vec3(0, 0, 0);
   m_bounds.center = (m_bounds.min + m_bounds.max) * 0.5f;
   m_bounds.radius = length(m_bounds.max - m_bounds.center);
   if (!(m_bounds.radius > 0)) m_bounds.radius = 1;
-  // Surface emitters know their extent from their shape.
-  for (const EmitterPtr& emitter : m_ownedEmitters) emitter->setSceneBounds(m_bounds);
 }
 
 bool Scene::intersect(const Ray& ray, SurfacePoint& at) const {

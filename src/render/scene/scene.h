@@ -28,6 +28,13 @@ struct FilmSettings {
   std::shared_ptr<const Filter> filter;
 };
 
+// The axis-aligned box and the sphere around everything that a ray can hit.
+struct SceneBounds {
+  Vec3 min, max;
+  Vec3 center;
+  float radius = 0;
+};
+
 // What the file asks for and the command line may override.
 struct IntegratorSettings {
   std::string type = "odis";  // as named by the file, "" if it names none

@@ -92,6 +92,11 @@ float Cylinder::pdf(const Vec3& ref, const SurfacePoint& at) const {
   return uniformAreaPdf(ref, at, area());
 }
 
+SurfacePoint Cylinder::pointAtUv(const Vec2& uv) const {
+  const double phi = 2 * M_PI * uv.x;
+  return pointAt(std::cos(phi), std::sin(phi), uv.y);
+}
+
 PrimitiveExtent Cylinder::extent(uint32_t) const {
   const Imath::Box3d box = bounds();
   return {.min = roundedDown(box.min), .max = roundedUp(box.max), .area = area()};

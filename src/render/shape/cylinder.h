@@ -19,6 +19,8 @@ class Cylinder final : public Shape {
   float area() const override { return float(2 * M_PI * m_radius * m_length); }
   ShapeSample sample(const Vec3& ref, const Vec2& u) const override;  // uniform by area
   float pdf(const Vec3& ref, const SurfacePoint& at) const override;
+  SurfacePoint pointAtUv(const Vec2& uv) const override;
+  float areaElement(const Vec2&) const override { return area(); }
   PrimitiveExtent extent(uint32_t primitive) const override;
   uint64_t bytes() const override { return sizeof(*this); }
 

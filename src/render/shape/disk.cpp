@@ -74,6 +74,11 @@ float Disk::pdf(const Vec3& ref, const SurfacePoint& at) const {
   return uniformAreaPdf(ref, at, m_area);
 }
 
+SurfacePoint Disk::pointAtUv(const Vec2& uv) const {
+  const double phi = 2 * M_PI * uv.y;
+  return pointAt(uv.x * std::cos(phi), uv.x * std::sin(phi));
+}
+
 PrimitiveExtent Disk::extent(uint32_t) const {
   const Imath::Box3d box = bounds();
   return {.min = roundedDown(box.min),

@@ -17,6 +17,8 @@ class Disk final : public Shape {
   float area() const override { return m_area; }
   ShapeSample sample(const Vec3& ref, const Vec2& u) const override;  // uniform by area
   float pdf(const Vec3& ref, const SurfacePoint& at) const override;
+  SurfacePoint pointAtUv(const Vec2& uv) const override;
+  float areaElement(const Vec2& uv) const override { return 2 * m_area * uv.x; }
   PrimitiveExtent extent(uint32_t primitive) const override;
   uint64_t bytes() const override { return sizeof(*this); }
 

@@ -44,6 +44,7 @@ class Mesh final : public Shape {
   float primitivePdf(const Vec3& ref, const SurfacePoint& at) const override;
   uint64_t bytes() const override;
 
+  float triangleArea(uint32_t triangle) const;
   // The point with barycentric coordinates (b1, b2) on a triangle, in the space of the mesh. dpdu
   // and dpdv stay zero, and the shading frame is any about its normal, if the BSDF does not ask for more.
   SurfacePoint pointOn(uint32_t triangle, const Vec2& barycentric) const;
@@ -55,7 +56,6 @@ class Mesh final : public Shape {
     Vec2 uv{0, 0};
   };
   Imath::V3d areaVector(const Triangle& t) const;  // twice the area along the normal
-  float triangleArea(uint32_t triangle) const;
 
   Mesh(MeshData data, const MeshOptions& options);
   void findTangents(SurfacePoint& at, const Triangle& t) const;

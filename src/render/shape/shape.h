@@ -60,6 +60,10 @@ class Shape {
   // Density with respect to solid angle with which sample(ref, .) gives the direction to `at`.
   virtual float pdf(const Vec3& ref, const SurfacePoint& at) const = 0;
   virtual uint64_t primitiveCount() const { return 1; }
+  // The point with texture coordinates in [0, 1]^2; only of shapes that are one primitive.
+  virtual SurfacePoint pointAtUv(const Vec2& /*uv*/) const { return {}; }
+  // The area there of an element of uv, per its size.
+  virtual float areaElement(const Vec2& /*uv*/) const { return 0; }
   virtual PrimitiveExtent extent(uint32_t primitive) const = 0;
   // The same for one primitive: samples it, and the density with which it gives the direction to `at`, on it.
   virtual ShapeSample samplePrimitive(uint32_t /*primitive*/, const Vec3& ref, const Vec2& u) const {

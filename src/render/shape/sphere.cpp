@@ -115,6 +115,12 @@ float Sphere::pdf(const Vec3& ref, const SurfacePoint& at) const {
   return height < 0 ? uniformAreaPdf(ref, at, area()) : float(1 / (2 * M_PI * height));
 }
 
+SurfacePoint Sphere::pointAtUv(const Vec2& uv) const {
+  const double phi = 2 * M_PI * uv.x, theta = M_PI * uv.y, sinTheta = std::sin(theta);
+  return pointToward(m_axes[0] * (std::cos(phi) * sinTheta) + m_axes[1] * (std::sin(phi) * sinTheta) +
+                     m_axes[2] * std::cos(theta));
+}
+
 PrimitiveExtent Sphere::extent(uint32_t) const {
   const Imath::Box3d box = bounds();
   return {.min = roundedDown(box.min), .max = roundedUp(box.max), .area = area()};

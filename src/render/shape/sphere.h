@@ -20,6 +20,8 @@ class Sphere final : public Shape {
   // Uniform in the cone of directions that the sphere subtends; uniform by area as seen from its inside.
   ShapeSample sample(const Vec3& ref, const Vec2& u) const override;
   float pdf(const Vec3& ref, const SurfacePoint& at) const override;
+  SurfacePoint pointAtUv(const Vec2& uv) const override;
+  float areaElement(const Vec2& uv) const override { return area() * (kPi / 2) * std::sin(kPi * uv.y); }
   PrimitiveExtent extent(uint32_t primitive) const override;
   uint64_t bytes() const override { return sizeof(*this); }
 
