@@ -1,4 +1,7 @@
 // The code of stb_image and stb_image_write, compiled once, for the formats that scenes use.
+#if defined(__GNUC__) && !defined(__clang__)
+#pragma GCC diagnostic ignored "-Wmaybe-uninitialized"  // GCC 14 does not follow stb's PNG reader
+#endif
 #define STB_IMAGE_IMPLEMENTATION
 #define STBI_ONLY_PNG
 #define STBI_ONLY_TGA
