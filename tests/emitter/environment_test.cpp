@@ -4,6 +4,7 @@
 #include "render/emitter/constant.h"
 #include "render/emitter/daylight.h"
 #include "render/emitter/environment_map.h"
+#include "render/emitter/sky_dome.h"
 #include "render/emitter/sun_disc.h"
 #include "render/math/warp.h"
 #include "support/chi2.h"
@@ -264,6 +265,58 @@ TEST(ConstantEnvironment, SamplesItsDensity) {
   // A surface under a sky of average radiance 2 receives 2 pi.
   const Estimate found = sampledIrradiance(light, {0, 0, 1}, 200000);
   EXPECT_NEAR(found.mean, 2 * M_PI, 4 * found.deviation);
+}
+
+namespace {
+
+const Vec3 kToSun = normalize(Vec3(0.8f, 0.3f, 0.4f));
+const Sky kSky(3, std::acos(kToSun.y), Rgb(0.3f));
+
+}  // namespace
+
+TEST(SkyDome, SamplesItsDensity) {
+  Chi2Options options;
+  options.quadrature = 80;  // what is left of the mean ends in corners within cells
+  for (float stretch : {1.0f, 1.3f}) {
+    const SkyDome dome(kSky, kToSun, 1, stretch, 16, someRotation());
+    EXPECT_TRUE(samplesItsDensity(dome, options)) << stretch;
+    expectConsistent(SkyDome(kSky, kToSun, 1, stretch, 512, someRotation()));
+  }
+}
+
+TEST(SkyDome, IrradianceAgreesWithQuadrature) {
+  for (int width : {4, 512}) {
+    const SkyDome dome(kSky, kToSun, 2, 1, width, someRotation());
+    Vec3 up, n;
+    someRotation().multDirMatrix(Vec3(0, 1, 0), up);
+    n = normalize(up + Vec3(0.3f, 0.2f, -0.5f));
+    const Estimate found = sampledIrradiance(dome, n, 200000);
+    const double expected = integratedIrradiance(dome, n, up, M_PI / 2, 400);
+    EXPECT_NEAR(found.mean, expected, 4 * found.deviation + 1e-3 * expected) << width;
+    if (width == 512) {
+      EXPECT_LT(found.deviation, 0.002 * expected) << "importance sampling does not find the sky";
+    }
+  }
+}
+
+// A table would smooth the horizon, where the radiance changes most quickly.
+TEST(SkyDome, IsExactDownToTheHorizon) {
+  for (float stretch : {1.0f, 1.5f}) {
+    const SkyDome dome(kSky, kToSun, 3, stretch, 64, someRotation());
+    for (float theta : {0.1f, 0.7f, 1.4f, 1.55f, 1.57f, 1.58f, 3.0f})
+      for (float phi : {0.0f, 1.0f, 4.0f}) {
+        const Vec3 local(std::sin(theta * stretch) * std::cos(phi), std::cos(theta * stretch),
+                         std::sin(theta * stretch) * std::sin(phi));
+        const Vec3 before(std::sin(theta) * std::cos(phi), std::cos(theta), std::sin(theta) * std::sin(phi));
+        if (theta * stretch > kPi) continue;
+        Vec3 world;
+        someRotation().multDirMatrix(local, world);
+        const Rgb expected = kSky.radiance(before.y, std::acos(dot(before, kToSun))) * 3,
+                  found = dome.radiance(world);
+        for (int c = 0; c < 3; ++c)
+          EXPECT_NEAR(found[c], expected[c], 1e-3f * expected[c]) << stretch << " " << theta << " " << phi;
+      }
+  }
 }
 
 TEST(SunDisc, SamplesItsDensity) {

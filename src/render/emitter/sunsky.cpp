@@ -1,6 +1,6 @@
 // sun, sky, sunsky: daylight under a clear sky, by place and time or by the direction of the sun.
 //
-//   turbidity          number         haze, 1 (arctic) to 10; default 3. The sky of less than 2 is that of 2.
+//   turbidity          number         haze, 1 (arctic) to 10; default 3
 //   sun_direction      vector         towards the sun, in world space; not together with time or place
 //   year, month, day   integers       default 2010, 7, 10
 //   hour, minute, second   numbers    local time; default 15, 0, 0
@@ -13,7 +13,7 @@
 //   sun_radius_scale   number         widens the sun without changing its power; default 1; 0 makes it a
 //                                     directional light
 //   stretch            number         1 to 2; pulls the sky below the horizon; default 1
-//   resolution         integer        width of the image that the sky is tabulated in; default 512
+//   resolution         integer        width of the table that the sky is sampled by; default 512
 //   sun_aperture       number         of Mitsuba 3: the sun's apparent diameter in degrees, in place of
 //                                     sun_radius_scale; default 0.5358
 //
@@ -21,12 +21,12 @@
 // as soon as a parameter is given that only Mitsuba 3 knows: sun_aperture or complex_sun (true is drawn as
 // false).
 //
-// Sun and sky are two lights, the sun an exact disc rather than pixels of the sky's image. Colours and units:
-// daylight.h.
+// Sun and sky are two lights, the sky exactly the model's, the sun a disc of constant radiance. Colours and
+// units: daylight.h.
 #include "render/emitter/daylight.h"
 #include "render/emitter/directional.h"
-#include "render/emitter/environment_map.h"
 #include "render/emitter/factories.h"
+#include "render/emitter/sky_dome.h"
 #include "render/emitter/sun_disc.h"
 #include "render/emitter/sun_position.h"
 
@@ -39,7 +39,7 @@ constexpr float kSunDiameter = 0.5358f;  // degrees
 
 // What sun and sky have in common.
 struct Daylight {
-  Matrix4 toWorld;      // from the image's space, where up is +Y
+  Matrix4 toWorld;      // from the sky's space, where up is +Y
   Vec3 sunDirection;    // in that space
   float sunZenith = 0;  // radians, before the stretch
   float turbidity = 3;
@@ -47,7 +47,7 @@ struct Daylight {
   Rgb albedo;
 };
 
-// The axes of Mitsuba 3's sky in those of the image.
+// The axes of Mitsuba 3's sky in those of ours.
 const Matrix4 kZUp(1, 0, 0, 0, 0, 0, 1, 0, 0, -1, 0, 0, 0, 0, 0, 1);
 
 Vec3 directionFromTime(const Properties& node, bool zUp) {
@@ -108,21 +108,9 @@ EmitterPtr skyLight(const Properties& node, const Daylight& daylight, float scal
   if (width < 4 || width > 16384)
     throw SceneError(node.location, "the resolution of \"" + node.type + "\" is " + std::to_string(width) +
                                         "; expected 4 to 16384");
-  const int rows = int(width) / 4 * 2 + 1;  // one of them is the horizon if nothing is stretched
-  const float horizon = daylight.stretch / 2;
-  const int lit = int(std::ceil(horizon * float(rows - 1))) + 1;
   const Sky sky(daylight.turbidity, daylight.sunZenith, daylight.albedo);
-  std::vector<Rgb> pixels(size_t(width) * size_t(rows));
-  for (int y = 0; y < lit; ++y)
-    for (int x = 0; x < width; ++x) {
-      const float theta = kPi * float(y) / float(rows - 1) / daylight.stretch;
-      const float phi = 2 * kPi * (float(x) + 0.5f) / float(width), sinTheta = std::sin(theta);
-      const Vec3 direction(std::sin(phi) * sinTheta, std::cos(theta), -std::cos(phi) * sinTheta);
-      const float gamma = std::acos(std::clamp(dot(direction, daylight.sunDirection), -1.0f, 1.0f));
-      pixels[size_t(y) * size_t(width) + size_t(x)] =
-          sky.radiance(std::max(0.0f, direction.y), gamma) * scale;
-    }
-  return std::make_shared<EnvironmentMap>(std::move(pixels), int(width), rows, daylight.toWorld, horizon);
+  return std::make_shared<SkyDome>(sky, daylight.sunDirection, scale, daylight.stretch, int(width),
+                                   daylight.toWorld);
 }
 
 EmitterPtr sunLight(const Properties& node, const Daylight& daylight, float scale) {

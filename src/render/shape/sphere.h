@@ -21,7 +21,9 @@ class Sphere final : public Shape {
   ShapeSample sample(const Vec3& ref, const Vec2& u) const override;
   float pdf(const Vec3& ref, const SurfacePoint& at) const override;
   SurfacePoint pointAtUv(const Vec2& uv) const override;
-  float areaElement(const Vec2& uv) const override { return area() * (kPi / 2) * std::sin(kPi * uv.y); }
+  float areaElement(const Vec2& uv) const override {
+    return area() * (kPi / 2) * std::max(std::sin(kPi * uv.y), 0.0f);
+  }
   PrimitiveExtent extent(uint32_t primitive) const override;
   uint64_t bytes() const override { return sizeof(*this); }
 

@@ -1,0 +1,35 @@
+// The clear sky as a light.
+#pragma once
+
+#include "render/emitter/daylight.h"
+#include "render/emitter/environment_map.h"
+
+namespace odis::render {
+
+// Its radiance is that of the model for every direction; a table of it drives the sampling.
+class SkyDome final : public EnvironmentEmitter {
+ public:
+  // `sunDirection`, unit, is in the sky's space, where up is +Y; so is the sky before it is stretched: what is
+  // at an angle from the zenith moves to `stretch` (1 to 2) times that angle. The linear part of toWorld must
+  // have an inverse. The table has `width` >= 4 columns.
+  SkyDome(const Sky& sky, const Vec3& sunDirection, float scale, float stretch, int width,
+          const Matrix4& toWorld);
+
+  // By the table, see EnvironmentMap.
+  EmitterSample sample(uint32_t part, const Vec3& ref, const Vec2& u) const override;
+  float meanIrradiance() const override { return m_table.meanIrradiance(); }
+  Rgb radiance(const Vec3& wi) const override;
+  float pdf(const Vec3& ref, const Vec3& wi) const override { return m_table.pdf(ref, wi); }
+
+ private:
+  std::vector<Rgb> tabulate(int width, int rows) const;
+  Rgb unstretchedRadiance(const Vec3& direction) const;
+
+  Sky m_sky;
+  Vec3 m_sunDirection;
+  float m_scale, m_stretch;
+  Matrix4 m_toLocal;
+  EnvironmentMap m_table;
+};
+
+}  // namespace odis::render
