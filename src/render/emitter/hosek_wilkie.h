@@ -4,9 +4,9 @@
 
 namespace odis::render::hosek_wilkie {
 
-constexpr int kTurbidities = 10;     // of 1 to 10
-constexpr int kAlbedos = 2;          // of the ground, 0 and 1
-constexpr int kControlPoints = 6;    // of Bézier curves over the cube root of the sun's elevation / 90 degrees
+constexpr int kTurbidities = 10;   // of 1 to 10
+constexpr int kAlbedos = 2;        // of the ground, 0 and 1
+constexpr int kControlPoints = 6;  // of Bézier curves over the cube root of the sun's elevation / 90 degrees
 constexpr int kShapeParameters = 9;  // of the paper's F(theta, gamma): A to G, I, H
 
 // F's parameters, and the radiance that F is a share of, integrated with the CIE 1931 observer to linear RGB:
