@@ -125,8 +125,8 @@ class LightTree::Build {
     };
     sweep(0, kBins - 1, 1, 0);
     sweep(kBins - 1, 0, -1, -1);
-    const auto best = std::min_element(costs, costs + kBins - 1);
-    return {int(best - costs), *best};
+    const auto best = std::min_element(std::begin(costs), std::end(costs));
+    return {int(best - std::begin(costs)), *best};
   }
 
   LightTree& m_tree;
