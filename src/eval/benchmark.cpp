@@ -1,7 +1,8 @@
 #include "eval/benchmark.h"
 
-#include <algorithm>
 #include <ctime>
+
+#include "eval/median.h"
 
 namespace odis::eval {
 
@@ -15,13 +16,6 @@ double cpuSeconds() {
 
 double seconds(const RenderStats& s) {
   return s.secondsPilot + s.secondsBuild + s.secondsGuided;
-}
-
-double median(std::vector<double> values) {
-  if (values.empty()) return 0;
-  std::sort(values.begin(), values.end());
-  const size_t middle = values.size() / 2;
-  return values.size() % 2 == 1 ? values[middle] : 0.5 * (values[middle - 1] + values[middle]);
 }
 
 }  // namespace

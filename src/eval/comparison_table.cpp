@@ -6,17 +6,12 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "eval/median.h"
 #include "odis_version.h"
 
 namespace odis::eval {
 
 static constexpr const char* kAllScenes = "geometric mean";
-
-static double median(std::vector<double> values) {
-  std::sort(values.begin(), values.end());
-  const size_t half = values.size() / 2;
-  return values.size() % 2 == 1 ? values[half] : 0.5 * (values[half - 1] + values[half]);
-}
 
 static ComparisonRow summarizeOne(const std::vector<const Measurement*>& runs) {
   const auto medianOf = [&](auto&& field) {
