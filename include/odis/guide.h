@@ -15,6 +15,7 @@
 #include <algorithm>
 #include <memory>
 #include <span>
+#include <vector>
 
 #include "odis/pilot.h"
 #include "odis/sampling.h"
@@ -35,6 +36,12 @@ struct GuideOptions {
   float floor = 0.03f;   // share of the uniform distribution in every map
   float clamp = 20;      // a sample counts at most this many times the mean of its neighbourhood (maps only)
   float fixedAlpha = 0;  // > 0: this selection probability everywhere instead of the one by variance and cost
+};
+
+// What the pilot predicts of a sample of one of its pixels, relative to the pixel's value squared.
+struct PixelPrediction {
+  float variance = 0;  // without guiding
+  float saved = 0;     // of it, by guiding
 };
 
 // What a cell tells a path.
@@ -64,12 +71,21 @@ class Guide {
   uint64_t bytes() const;
   // The variance that the pilot predicts of a guided sample, as a ratio to an unguided one; 1 before build().
   float predictedVarianceRatio() const;
+  // The same for each pixel that build() got the value of; zeros where it did not look. 8 bytes a pixel. They
+  // are made from single samples: pilotWeights() averages them.
+  std::span<const PixelPrediction> predictions() const;
 
  private:
   friend class GuideBuilder;
   struct Data;
   std::unique_ptr<Data> m_data;
 };
+
+// How much a pilot sample should weigh in the mean of a pixel's samples, as a ratio to a guided one: by the
+// inverse of their variances. `predictions` are those of an image of `width` pixels a row. A pixel's weight
+// is made from the blocks of 8 x 8 pixels around its own without that block, and from all other blocks where
+// those have seen little: it does not depend on the pixel's own samples, so the weighted mean is unbiased.
+std::vector<float> pilotWeights(std::span<const PixelPrediction> predictions, int width);
 
 // Gathers pilot vertices and builds guides from them. Results do not depend on the number of threads.
 class GuideBuilder {

@@ -14,7 +14,7 @@ struct Guide::Data {
   CellGrid grid;
   CellIndex index;
   std::vector<Cell> cells;
-  float predictedVarianceRatio = 1;
+  AlphaPrediction predicted;
 };
 
 Guide::Guide() = default;
@@ -38,7 +38,11 @@ uint64_t Guide::bytes() const {
   return m_data ? m_data->cells.size() * sizeof(Cell) + m_data->index.bytes() : 0;
 }
 float Guide::predictedVarianceRatio() const {
-  return m_data ? m_data->predictedVarianceRatio : 1;
+  return m_data ? m_data->predicted.varianceRatio : 1;
+}
+std::span<const PixelPrediction> Guide::predictions() const {
+  return m_data ? std::span<const PixelPrediction>(m_data->predicted.pixels)
+                : std::span<const PixelPrediction>();
 }
 
 struct GuideBuilder::Data {
@@ -113,8 +117,7 @@ Guide GuideBuilder::build(PilotParts parts, std::span<const float> pixelValues) 
   if (options.fixedAlpha > 0)
     for (Cell& cell : result) std::fill(cell.alpha, cell.alpha + kMaterialClasses, options.fixedAlpha);
   else
-    guide.m_data->predictedVarianceRatio =
-        chooseAlphas(result, m_data->store, cells, distributions, parts, pixelValues);
+    guide.m_data->predicted = chooseAlphas(result, m_data->store, cells, distributions, parts, pixelValues);
   return guide;
 }
 

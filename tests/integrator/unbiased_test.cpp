@@ -158,7 +158,8 @@ TEST_F(UnbiasedTest, AdversarialMaps) {
     RenderOptions options = guidedOptions();
     options.guideOptions.model = std::make_shared<AdversarialModel>(kind);
     options.guideOptions.fixedAlpha = 0.3f;
-    expectSameExpectation(*s_path, renderSeeds(*s_scene, options, 96, 1), kTests);
+    // Twice as many seeds as elsewhere: where a map hardly looks at the light, tails are heavy.
+    expectSameExpectation(*s_path, renderSeeds(*s_scene, options, 192, 1), kTests);
   }
 }
 

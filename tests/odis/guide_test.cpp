@@ -223,6 +223,60 @@ TEST(Guide, DividesByPixelValues) {
   EXPECT_NE(relative.predictedVarianceRatio(), builder.build(vertices).predictedVarianceRatio());
 }
 
+TEST(Guide, PredictionsOfPixelsAddUpToThatOfTheImage) {
+  std::vector<PilotVertex> vertices = floorUnderPatch(kBright, 20000, 3);
+  for (size_t i = 0; i < vertices.size(); ++i) {
+    vertices[i].pixel = uint32_t(i % 1000);
+    if (i % 2 == 0) vertices[i].guidableProbability = vertices[i].guidablePdf = 0;
+  }
+  GuideBuilder builder;
+  builder.add(vertices);
+  EXPECT_TRUE(builder.build(vertices).predictions().empty());
+  const Guide guide = builder.build(vertices, std::vector<float>(1000, 1.0f));
+  ASSERT_EQ(guide.predictions().size(), 1000u);
+  double variance = 0, saved = 0;
+  for (const PixelPrediction& p : guide.predictions()) {
+    variance += p.variance;
+    saved += p.saved;
+  }
+  EXPECT_NEAR(1 - saved / variance, guide.predictedVarianceRatio(), 1e-3);
+}
+
+// An image of 64 x 64 pixels whose left half guiding helps (a tenth of the variance is left) and whose right
+// half it does not.
+std::vector<PixelPrediction> halfHelped() {
+  std::vector<PixelPrediction> predictions(64 * 64);
+  for (size_t i = 0; i < predictions.size(); ++i) predictions[i] = {2, i % 64 < 32 ? 1.8f : 0.0f};
+  return predictions;
+}
+
+TEST(PilotWeights, FollowWhatIsPredictedNearby) {
+  const std::vector<float> weights = pilotWeights(halfHelped(), 64);
+  ASSERT_EQ(weights.size(), 64u * 64u);
+  EXPECT_NEAR(weights[32 * 64 + 4], 0.1f, 0.02f);
+  EXPECT_NEAR(weights[32 * 64 + 60], 1.0f, 0.02f);
+}
+
+TEST(PilotWeights, DoNotLookAtTheirOwnBlock) {
+  const std::vector<PixelPrediction> before = halfHelped();
+  std::vector<PixelPrediction> after = before;
+  const size_t pixel = 20 * 64 + 20;
+  after[pixel] = {1e6f, 9e5f};
+  const std::vector<float> a = pilotWeights(before, 64), b = pilotWeights(after, 64);
+  EXPECT_EQ(a[pixel], b[pixel]);
+  EXPECT_EQ(a[16 * 64 + 23], b[16 * 64 + 23]);  // the block's corner
+  EXPECT_NE(a[15 * 64 + 23], b[15 * 64 + 23]);  // across its edge
+}
+
+TEST(PilotWeights, FallBackOnTheImageWhereNothingIsKnown) {
+  std::vector<PixelPrediction> predictions = halfHelped();
+  for (size_t i = 0; i < predictions.size(); ++i)
+    if (i / 64 >= 24) predictions[i] = {};
+  EXPECT_NEAR(pilotWeights(predictions, 64)[60 * 64 + 30], 0.55f, 1e-3f);
+  // An image smaller than a block has nothing but itself to look at.
+  EXPECT_EQ(pilotWeights(std::vector<PixelPrediction>(12, {2, 1}), 4), std::vector<float>(12, 1.0f));
+}
+
 TEST(Selection, WhatIsNoNumberCountsAsTheLimit) {
   CellSelection sums;
   PilotVertex v;

@@ -30,15 +30,18 @@ struct BatchSelection {
   std::vector<const PilotVertex*> vertices;
   std::vector<uint32_t> cellOf;
   SelectionTotals totals;
+  std::vector<std::pair<uint32_t, float>> variances;  // pixels and theirs
 };
 
 // The image's variance and rays are those of the first vertices.
-void addToTotals(SelectionTotals& totals, const PilotVertex& v, float scale) {
+void addToTotals(BatchSelection& batch, const PilotVertex& v, float scale) {
   const float emission = v.emission * (v.discrete ? 1.0f : powerHeuristic(v.pdf, v.emissionLightPdf));
   const float light = v.lightPdf > 0 ? v.light * powerHeuristic(v.lightPdf, v.lightBsdfPdf) : v.light;
   const double value = (v.indirect + emission + light) * scale;
-  if (std::isfinite(value)) totals.variance += std::min((value - 1) * (value - 1), 2500.0);
-  totals.rays += v.raysAfter;
+  const double variance = std::isfinite(value) ? std::min((value - 1) * (value - 1), 2500.0) : 0;
+  batch.totals.variance += variance;
+  batch.totals.rays += v.raysAfter;
+  batch.variances.emplace_back(v.pixel, float(variance));
 }
 
 BatchSelection select(const PilotBatch& batch, uint32_t stride, const PixelScale& scale,
@@ -47,7 +50,7 @@ BatchSelection select(const PilotBatch& batch, uint32_t stride, const PixelScale
   for (const std::span<const PilotVertex> piece : batch)
     for (const PilotVertex& v : piece) {
       if (!isChosen(v, stride)) continue;
-      if (v.depth == 1) addToTotals(result.totals, v, scale(v));
+      if (v.depth == 1) addToTotals(result, v, scale(v));
       if (!v.discrete && !isUsable(v)) continue;
       const uint32_t cell = store.index().find(store.grid().key(v.position, v.normal, 0));
       if (cell == kNoCell) continue;
@@ -69,8 +72,8 @@ float shareOfOthers(const PilotVertex& v, int texel, const CellStatistics& cell,
 }
 
 // Adds a vertex, judged by its cell's map without its own sample.
-void addJudged(CellSelection& sums, const PilotVertex& v, float scale, const SamplingMap& map,
-               const CellStatistics& cell, const DirectionDistribution& distribution, float limit) {
+SecondMoments addJudged(CellSelection& sums, const PilotVertex& v, float scale, const SamplingMap& map,
+                        const CellStatistics& cell, const DirectionDistribution& distribution, float limit) {
   float mapPdf = 0, lightMapPdf = 0;
   if (v.guidableProbability > 0) {
     VertexMap vertexMap;
@@ -81,7 +84,7 @@ void addJudged(CellSelection& sums, const PilotVertex& v, float scale, const Sam
     }
     if (v.lightPdf > 0) lightMapPdf = vertexMap.pdf(v.lightDirection);
   }
-  addVertex(sums, v, mapPdf, lightMapPdf, scale);
+  return addVertex(sums, v, mapPdf, lightMapPdf, scale);
 }
 
 template <class Body>
@@ -93,9 +96,10 @@ void forEachCell(size_t count, const Body& body) {
 
 }  // namespace
 
-float chooseAlphas(std::vector<Cell>& result, const CellStore& store, std::span<const CellStatistics> cells,
-                   std::span<const DirectionDistribution> distributions, PilotParts parts,
-                   std::span<const float> pixelValues) {
+AlphaPrediction chooseAlphas(std::vector<Cell>& result, const CellStore& store,
+                             std::span<const CellStatistics> cells,
+                             std::span<const DirectionDistribution> distributions, PilotParts parts,
+                             std::span<const float> pixelValues) {
   // Choose vertices and sort them by cell.
   const uint32_t stride = uint32_t(std::max<size_t>(1, countVertices(parts) / kSelectionVertices));
   const PixelScale scale(pixelValues);
@@ -117,12 +121,14 @@ float chooseAlphas(std::vector<Cell>& result, const CellStore& store, std::span<
 
   // Predicted second moments and rays of each cell, then of the coarser levels and of the image.
   std::vector<CellSelection> sums(cells.size());
+  std::vector<SecondMoments> moments(order.items.size());
   forEachCell(cells.size(), [&](size_t c) {
     if (order.of(c).empty()) return;
     const CellStatistics& parent = cells[cells[c].parent];
     const float limit = parent.count > 0 ? store.clamp() * float(parent.sum / parent.count) : 0;
+    SecondMoments* next = &moments[order.begin[c]];
     forEachItem(order.of(c), [&](const PilotVertex& v) {
-      addJudged(sums[c], v, scale(v), result[c].map, cells[c], distributions[c], limit);
+      *next++ = addJudged(sums[c], v, scale(v), result[c].map, cells[c], distributions[c], limit);
     });
   });
   CellSelection image;
@@ -134,21 +140,34 @@ float chooseAlphas(std::vector<Cell>& result, const CellStore& store, std::span<
       }
 
   // A cell's sums are backed by its parent's, those by the parent's parent's, and so on up to the whole
-  // image. Choices, and the variance that they predict.
+  // image. They choose; the cell's own vertices tell what that saves each pixel.
+  AlphaPrediction prediction;
+  prediction.pixels.resize(pixelValues.size());
   std::vector<CellSelection> backed(cells.size());
   double saved = 0;
   for (int level = kCellLevels - 1; level >= 0; --level)
     for (size_t c = 0; c < cells.size(); ++c) {
       if (cells[c].level != level) continue;
       const CellSelection& coarser = cells[c].parent == kNoCell ? image : backed[cells[c].parent];
+      size_t choices[kMaterialClasses];
       for (int m = 0; m < kMaterialClasses; ++m) {
         backed[c][m] = back(sums[c][m], coarser[m]);
-        const size_t choice = chooseAlpha(backed[c][m], totals);
-        result[c].alpha[m] = kAlphas[choice];
-        if (level == 0) saved += sums[c][m].secondMoment[0] - sums[c][m].secondMoment[choice];
+        choices[m] = chooseAlpha(backed[c][m], totals);
+        result[c].alpha[m] = kAlphas[choices[m]];
+      }
+      for (uint32_t i = order.begin[c]; i < order.begin[c + 1]; ++i) {
+        const PilotVertex& v = *order.items[i];
+        const float gain = moments[i][0] - moments[i][choices[int(materialClass(v.roughness))]];
+        saved += gain;
+        if (!pixelValues.empty()) prediction.pixels[v.pixel].saved += gain;
       }
     }
-  return totals.variance > 0 ? std::clamp(float(1 - saved / totals.variance), 0.1f, 1.5f) : 1;
+  if (!pixelValues.empty())
+    for (const BatchSelection& batch : batches)
+      for (const auto& [pixel, variance] : batch.variances) prediction.pixels[pixel].variance += variance;
+  if (totals.variance > 0)
+    prediction.varianceRatio = std::clamp(float(1 - saved / totals.variance), 0.1f, 1.5f);
+  return prediction;
 }
 
 }  // namespace odis

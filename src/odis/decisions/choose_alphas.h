@@ -10,11 +10,17 @@
 
 namespace odis {
 
+// What is predicted of the guided samples.
+struct AlphaPrediction {
+  float varianceRatio = 1;              // of a guided sample to an unguided one, over the whole image
+  std::vector<PixelPrediction> pixels;  // one for each pixel value
+};
+
 // Fills the alphas of `result`, whose maps are there, from (a part of) the vertices that the maps were made
-// from. Contributions are divided by `pixelValues`, if there are any. Returns the variance that is predicted
-// of a guided sample, as a ratio to an unguided one.
-float chooseAlphas(std::vector<Cell>& result, const CellStore& store, std::span<const CellStatistics> cells,
-                   std::span<const DirectionDistribution> distributions, PilotParts parts,
-                   std::span<const float> pixelValues);
+// from. Contributions are divided by `pixelValues`, if there are any.
+AlphaPrediction chooseAlphas(std::vector<Cell>& result, const CellStore& store,
+                             std::span<const CellStatistics> cells,
+                             std::span<const DirectionDistribution> distributions, PilotParts parts,
+                             std::span<const float> pixelValues);
 
 }  // namespace odis

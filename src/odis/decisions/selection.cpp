@@ -34,7 +34,9 @@ void SelectionSums::add(const SelectionSums& other, double scale) {
 // With D the direction's contribution at the pilot's density b and q the mixture's density, the second moment
 // of the contribution under q is E_b[D^2 b / q]; next-event estimate N and direction are independent given
 // the vertex, so their cross term is E[N] E[D] whatever q is. MIS weights depend on q and are made anew.
-void addVertex(CellSelection& sums, const PilotVertex& v, float mapPdf, float lightMapPdf, float scale) {
+SecondMoments addVertex(CellSelection& sums, const PilotVertex& v, float mapPdf, float lightMapPdf,
+                        float scale) {
+  SecondMoments moments;
   SelectionSums& s = sums[int(materialClass(v.roughness))];
   s.count += 1;
   // A discrete lobe is as likely under every candidate. Anything over infinity is nothing: no weight is lost
@@ -54,9 +56,11 @@ void addVertex(CellSelection& sums, const PilotVertex& v, float mapPdf, float li
         limited(indirect + emission / (1 + emissionRatio * emissionRatio), kContributionLimit);
     const float lightRatio = (v.lightBsdfPdf + guided * lightGain) / lightPdf;
     const float direct = limited(light / (1 + lightRatio * lightRatio), kContributionLimit);
-    s.secondMoment[a] += direct * direct + 2 * direct * direction + direction * direction * ratio;
+    moments[a] = direct * direct + 2 * direct * direction + direction * direction * ratio;
+    s.secondMoment[a] += moments[a];
     s.rays[a] += v.raysAfter / std::max(ratio, 0.05f);
   }
+  return moments;
 }
 
 SelectionSums back(const SelectionSums& own, const SelectionSums& prior) {

@@ -25,11 +25,14 @@ struct SelectionSums {
 };
 using CellSelection = std::array<SelectionSums, kMaterialClasses>;
 
+// The second moments of one vertex, one for each candidate.
+using SecondMoments = std::array<float, kAlphas.size()>;
+
 // Adds one vertex, whose density under its cell's map (with the vertex's own sample taken out) is `mapPdf`
 // for its direction and `lightMapPdf` for the direction of its next-event estimate. What it adds to its pixel
-// is multiplied by `scale`.
-void addVertex(CellSelection& sums, const PilotVertex& vertex, float mapPdf, float lightMapPdf,
-               float scale = 1);
+// is multiplied by `scale`. Returns what it added to the second moments.
+SecondMoments addVertex(CellSelection& sums, const PilotVertex& vertex, float mapPdf, float lightMapPdf,
+                        float scale = 1);
 
 // What the sums are weighed against: those of the whole image.
 struct SelectionTotals {

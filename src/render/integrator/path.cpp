@@ -63,14 +63,15 @@ class VertexGuide {
   }
 
   // Samples the mixture: draws from smooth lobes are replaced by draws from the map with probability 1 -
-  // alpha, all others stay as they are.
+  // alpha, all others stay as they are. One number decides and, stretched again, draws: the parts of a
+  // stratified set stay stratified.
   BsdfSample sample(const SurfacePoint& at, const Vec3& wo, Sampler& sampler) const {
     const Bsdf& bsdf = at.shape->bsdf();
     const float uLobe = sampler.get1D();
-    const Vec2 u = sampler.get2D();
+    Vec2 u = sampler.get2D();
     if (!m_active) return bsdf.sample(at, wo, uLobe, u);
-    const float uChoice = sampler.get1D();
-    const bool fromMap = uChoice >= m_alpha;
+    const bool fromMap = u.x >= m_alpha;
+    u.x = fromMap ? std::min((u.x - m_alpha) / (1 - m_alpha), 0x1.fffffep-1f) : u.x / m_alpha;
     BsdfSample result;
     if (!fromMap || m_guidable < 1) {
       result = bsdf.sample(at, wo, uLobe, u);

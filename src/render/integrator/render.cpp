@@ -236,8 +236,14 @@ class Renderer {
     m_stats.secondsGuided = secondsSince(start);
   }
 
-  // The best constant weights of pilot and guided samples in expectation: by the inverse of their variances,
-  // whose ratio the pilot predicts. They don't look at the pixel's own values, so the mean stays unbiased.
+  // What a pilot sample weighs in each pixel, a guided one weighing 1. It does not look at the pixel's own
+  // values, so the mean stays unbiased.
+  std::vector<float> pilotWeights() const {
+    if (m_options.pilotWeight >= 0) return std::vector<float>(m_pixels, float(m_options.pilotWeight));
+    if (m_guide.predictions().empty()) return std::vector<float>(m_pixels, 1);
+    return odis::pilotWeights(m_guide.predictions(), m_scene.film().crop.width);
+  }
+
   Frame2D combine() {
     const Crop& crop = m_scene.film().crop;
     Frame2D frame;
@@ -247,9 +253,9 @@ class Renderer {
     frame.height = crop.height;
     frame.color.resize(m_pixels);
     if (m_options.variance) frame.variance.resize(m_pixels);
-    const double ratio =
-        m_options.pilotWeight >= 0 ? m_options.pilotWeight : double(m_guide.predictedVarianceRatio());
+    const std::vector<float> ratios = pilotWeights();
     for (size_t pixel = 0; pixel < m_pixels; ++pixel) {
+      const double ratio = ratios[pixel];
       const PixelSums &pilot = m_pilot[pixel], &guided = m_guided[pixel];
       m_stats.samples += pilot.count + guided.count;
       m_stats.pilotSamples += pilot.count;
@@ -262,17 +268,18 @@ class Renderer {
       frame.color[pixel] = Rgb(float(mean.x), float(mean.y), float(mean.z));
       if (m_options.variance) frame.variance[pixel] = varianceOfMean(pilot, guided, ratio);
     }
-    m_stats.pilotWeight = pilotShare(ratio);
+    m_stats.pilotWeight = pilotShare(ratios);
     m_stats.spp = double(m_stats.samples) / double(std::max<size_t>(m_pixels, 1));
     if (m_options.features) writeFeatures(frame);
     return frame;
   }
 
-  double pilotShare(double ratio) const {
+  double pilotShare(std::span<const float> ratios) const {
     double pilot = 0, all = 0;
     for (size_t pixel = 0; pixel < m_pixels; ++pixel) {
-      pilot += m_pilot[pixel].count * ratio;
-      all += m_pilot[pixel].count * ratio + m_guided[pixel].count;
+      const double weight = m_pilot[pixel].count * double(ratios[pixel]);
+      pilot += weight;
+      all += weight + m_guided[pixel].count;
     }
     return all > 0 ? pilot / all : 0;
   }
