@@ -18,8 +18,8 @@ using namespace render;
 void MethodArguments::addTo(CLI::App& app) {
   const std::string group = "Method";
   app.add_option("--integrator", integrator,
-                 "path: plain path tracing; odis: guided by a pilot; ppg: practical path guiding")
-      ->check(CLI::IsMember({"path", "odis", "ppg"}))
+                 "path: plain path tracing; odis: guided by a pilot; ppg, openpgl: docs/rivals.md")
+      ->check(CLI::IsMember({"path", "odis", "ppg", "openpgl"}))
       ->capture_default_str()
       ->group(group);
   app.add_option("--guide", guide,
@@ -76,9 +76,10 @@ void MethodArguments::addCellsTo(CLI::App& app) {
 }
 
 void MethodArguments::apply(RenderOptions& options) const {
-  options.integrator = integrator == "path"  ? IntegratorKind::path
-                       : integrator == "ppg" ? IntegratorKind::ppg
-                                             : IntegratorKind::odis;
+  options.integrator = integrator == "path"      ? IntegratorKind::path
+                       : integrator == "ppg"     ? IntegratorKind::ppg
+                       : integrator == "openpgl" ? IntegratorKind::openpgl
+                                                 : IntegratorKind::odis;
   options.sampler = sampler == "sobol" ? SamplerKind::sobol : SamplerKind::independent;
   options.guide = guide == "oracle" ? GuideKind::oracle : GuideKind::histogram;
   options.guideBounces = guideBounces;

@@ -9,6 +9,7 @@
 
 #include "render/integrator/combine.h"
 #include "render/rivals/inverse_variance.h"
+#include "render/rivals/open_pgl.h"
 #include "render/rivals/ppg.h"
 
 namespace odis::render {
@@ -31,6 +32,7 @@ constexpr int kOracleSelectionPasses = 2;
 
 std::unique_ptr<Rival> makeRival(const RenderOptions& options) {
   if (options.integrator == IntegratorKind::ppg) return std::make_unique<PracticalPathGuiding>(options.ppg);
+  if (options.integrator == IntegratorKind::openpgl) return makeOpenPgl();
   return nullptr;
 }
 

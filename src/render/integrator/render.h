@@ -14,7 +14,7 @@
 
 namespace odis::render {
 
-enum class IntegratorKind { path, odis, ppg };
+enum class IntegratorKind { path, odis, ppg, openpgl };
 enum class SamplerKind { sobol, independent };
 enum class GuideKind { histogram, oracle };
 
