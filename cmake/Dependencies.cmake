@@ -14,6 +14,9 @@ if(NOT embree_FOUND)
   find_package(embree 3 REQUIRED)
 endif()
 
+# Optional, packaged by neither: docs/rivals.md.
+find_package(openpgl 0.6 QUIET)
+
 # stb is used as headers, which lie in a folder of its own on Debian, not everywhere.
 find_path(STB_INCLUDE_DIR stb_image.h PATH_SUFFIXES stb REQUIRED)
 mark_as_advanced(STB_INCLUDE_DIR)

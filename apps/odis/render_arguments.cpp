@@ -17,8 +17,9 @@ using namespace render;
 
 void MethodArguments::addTo(CLI::App& app) {
   const std::string group = "Method";
-  app.add_option("--integrator", integrator, "path: plain path tracing; odis: guided by a pilot")
-      ->check(CLI::IsMember({"path", "odis"}))
+  app.add_option("--integrator", integrator,
+                 "path: plain path tracing; odis: guided by a pilot; ppg, openpgl: docs/rivals.md")
+      ->check(CLI::IsMember({"path", "odis", "ppg", "openpgl"}))
       ->capture_default_str()
       ->group(group);
   app.add_option("--guide", guide,
@@ -43,6 +44,7 @@ void MethodArguments::addTo(CLI::App& app) {
       ->capture_default_str()
       ->group(group);
   addCellsTo(app);
+  ppg.addTo(app);
 }
 
 void MethodArguments::addCellsTo(CLI::App& app) {
@@ -74,7 +76,10 @@ void MethodArguments::addCellsTo(CLI::App& app) {
 }
 
 void MethodArguments::apply(RenderOptions& options) const {
-  options.integrator = integrator == "path" ? IntegratorKind::path : IntegratorKind::odis;
+  options.integrator = integrator == "path"      ? IntegratorKind::path
+                       : integrator == "ppg"     ? IntegratorKind::ppg
+                       : integrator == "openpgl" ? IntegratorKind::openpgl
+                                                 : IntegratorKind::odis;
   options.sampler = sampler == "sobol" ? SamplerKind::sobol : SamplerKind::independent;
   options.guide = guide == "oracle" ? GuideKind::oracle : GuideKind::histogram;
   options.guideBounces = guideBounces;
@@ -82,6 +87,7 @@ void MethodArguments::apply(RenderOptions& options) const {
   options.oracleSpp = oracleSpp;
   options.pilotWeight = pilotWeight;
   options.guideOptions = cells;
+  options.ppg = ppg.options();
   std::copy(trust.begin(), trust.end(), options.guideOptions.trust);
 }
 

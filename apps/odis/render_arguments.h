@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "render/integrator/render.h"
+#include "rival_arguments.h"
 
 namespace CLI {
 class App;
@@ -19,6 +20,7 @@ struct MethodArguments {
   int guideBounces = -1, oracleSpp = 64;
   double pilotSpp = 1, pilotWeight = -1;
   GuideOptions cells;
+  PpgArguments ppg;
   std::vector<float> trust{std::begin(cells.trust), std::end(cells.trust)};
 
   void addTo(CLI::App& app);

@@ -65,8 +65,8 @@ static int run(RenderArguments& a) {
   if (a.output.empty()) a.output = std::filesystem::path(a.scene).stem().string() + ".exr";
   const Layers layers = parseLayers(a.aov);
   const LoadOptions load = a.part.loadOptions();
-  if (!a.recordsFile.empty() && a.method.integrator == "path")
-    throw UsageError("--records: plain path tracing has no pilot to record; use --integrator odis");
+  if (!a.recordsFile.empty() && a.method.integrator != "odis")
+    throw UsageError("--records: only --integrator odis has a pilot to record");
   if (a.replay.empty()) {
     checkWritable(a.output, {".exr", ".png"});
     if (!a.png.empty()) checkWritable(a.png, {".png"});

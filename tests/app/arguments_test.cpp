@@ -55,6 +55,23 @@ TEST(Arguments, MethodOfAComparison) {
   EXPECT_THROW(parseMethod("--guide-bounce 3"), UsageError);
 }
 
+TEST(Arguments, PracticalPathGuiding) {
+  const RenderOptions improved = parseMethod("--integrator ppg"),
+                      first = parseMethod("--integrator ppg --ppg 2017"),
+                      mixed =
+                          parseMethod("--integrator ppg --ppg 2017 --ppg-share learned --ppg-spatial box");
+  EXPECT_EQ(improved.integrator, IntegratorKind::ppg);
+  EXPECT_EQ(improved.ppg.share, PpgOptions::Share::learned);
+  EXPECT_EQ(improved.ppg.threshold, 4000);
+  EXPECT_EQ(first.ppg.combine, PpgOptions::Combine::last);
+  EXPECT_EQ(first.ppg.threshold, 12000);
+  EXPECT_EQ(mixed.ppg.share, PpgOptions::Share::learned);
+  EXPECT_EQ(mixed.ppg.spatial, PpgOptions::Spatial::box);
+  EXPECT_EQ(mixed.ppg.directional, QuadtreeFilter::nearest);
+  EXPECT_THROW(parseMethod("--ppg 2018"), UsageError);
+  EXPECT_THROW(parseMethod("--ppg-share 0.5"), UsageError);
+}
+
 TEST(Suggest, FindsTheNearestWord) {
   EXPECT_EQ(nearest("--ssp", {"--spp", "--seed", "--stats"}), "--spp");
   EXPECT_EQ(nearest("rendr", {"render", "metrics"}), "render");

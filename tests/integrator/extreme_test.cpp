@@ -218,9 +218,12 @@ TEST_P(Extreme, ThousandsOfShapesAndLights) {
   EXPECT_GT(meanOf(render(*scene, 4)), 0.01);
 }
 
-INSTANTIATE_TEST_SUITE_P(Integrators, Extreme, testing::Values(IntegratorKind::path, IntegratorKind::odis),
+INSTANTIATE_TEST_SUITE_P(Integrators, Extreme,
+                         testing::Values(IntegratorKind::path, IntegratorKind::odis, IntegratorKind::ppg),
                          [](const auto& info) {
-                           return info.param == IntegratorKind::path ? "path" : "odis";
+                           return info.param == IntegratorKind::path   ? "path"
+                                  : info.param == IntegratorKind::odis ? "odis"
+                                                                       : "ppg";
                          });
 
 }  // namespace

@@ -3,12 +3,14 @@
 
 #include <random>
 
+#include "integrator/same_expectation.h"
 #include "integrator/test_scenes.h"
 #include "odis/decisions/direction_model.h"
-#include "support/chi2.h"
 
 namespace odis::render {
 namespace {
+
+using test::expectSameExpectation, test::PixelStatistics, test::renderSeeds;
 
 // Maps that a broken or malicious model might make.
 class AdversarialModel : public DirectionModel {
@@ -46,59 +48,6 @@ class AdversarialModel : public DirectionModel {
  private:
   Kind m_kind;
 };
-
-struct PixelStatistics {
-  std::vector<Rgbd> sum, squares;
-  int count = 0;
-  void add(const std::vector<Rgb>& image) {
-    sum.resize(image.size(), Rgbd(0, 0, 0));
-    squares.resize(image.size(), Rgbd(0, 0, 0));
-    for (size_t i = 0; i < image.size(); ++i) {
-      const Rgbd c(image[i].x, image[i].y, image[i].z);
-      sum[i] += c;
-      squares[i] += c * c;
-    }
-    ++count;
-  }
-  double mean(size_t i, int c) const { return sum[i][c] / count; }
-  double varianceOfMean(size_t i, int c) const {
-    return std::max(0.0, squares[i][c] / count - mean(i, c) * mean(i, c)) / (count - 1);
-  }
-};
-
-PixelStatistics renderSeeds(const Scene& scene, RenderOptions options, int seeds, uint64_t firstSeed) {
-  PixelStatistics result;
-  for (int s = 0; s < seeds; ++s) {
-    options.seed = firstSeed + uint64_t(s);
-    result.add(test::renderScene(scene, options).frame.color);
-  }
-  return result;
-}
-
-// Per-pixel z-scores must look standard normal: none beyond the Šidák-corrected bound, their squares a
-// chi-squared variable, and the image's mean within its own standard error.
-void expectSameExpectation(const PixelStatistics& a, const PixelStatistics& b, int testCount) {
-  const size_t pixels = a.sum.size();
-  double squares = 0, difference = 0, variance = 0, worst = 0;
-  int used = 0;
-  for (size_t i = 0; i < pixels; ++i) {
-    const double d = a.mean(i, 1) - b.mean(i, 1), v = a.varianceOfMean(i, 1) + b.varianceOfMean(i, 1);
-    difference += d;
-    variance += v;
-    if (v <= 0) continue;
-    squares += d * d / v;
-    worst = std::max(worst, std::abs(d) / std::sqrt(v));
-    ++used;
-  }
-  ASSERT_GT(used, int(pixels / 2));
-  const double significance = 1 - std::pow(0.99, 1.0 / testCount);
-  // Means of 32 and more values have light enough tails for a normal bound with some slack; chi-squared over
-  // all pixels has standard deviation sqrt(2 n), inflated by a quarter for estimated variances.
-  EXPECT_LT(worst, 6.0);
-  EXPECT_LT(squares / used, 1 + 5 * 1.25 * std::sqrt(2.0 / used) + 0.1);
-  const double z = std::abs(difference) / std::sqrt(variance);
-  EXPECT_GT(std::erfc(z / std::sqrt(2.0)), significance) << "z of the image's mean is " << z;
-}
 
 class UnbiasedTest : public ::testing::Test {
  protected:

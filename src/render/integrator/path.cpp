@@ -38,20 +38,28 @@ LightEstimate sampleLight(const PathSettings& settings, const SurfacePoint& at, 
   return result;
 }
 
-// The directional guide at a vertex: the cell's map times the cosine, mixed with the BSDF.
+// The directional guide at a vertex, mixed with the BSDF: the cell's map times the cosine, or a rival's.
 class VertexGuide {
  public:
   VertexGuide(const PathSettings& settings, int depth, const SurfacePoint& at, const Vec3& wo) {
-    if (!settings.guide || (settings.guideBounces >= 0 && depth > settings.guideBounces)) return;
+    if (!settings.guide && !settings.rival) return;
+    if (settings.guideBounces >= 0 && depth > settings.guideBounces) return;
     const Bsdf& bsdf = at.shape->bsdf();
     m_guidable = bsdf.guidableProbability(at, wo);
     if (!(m_guidable > 0)) return;
     const Vec3 normal = wo.z < 0 ? -at.shading.n : at.shading.n;
+    const Sides sides = bsdf.traits().transmissive ? Sides::both : Sides::reflection;
+    if (settings.rival) {
+      m_rival = settings.rival->at(at.p, normal, sides);
+      if (m_rival) m_alpha = m_rival->bsdfShare();
+      m_active = m_alpha < 1;
+      return;
+    }
     const Cell* cell = settings.guide->find(toOdis(at.p), toOdis(normal));
     if (!cell || !cell->guidesAny()) return;
     m_alpha = cell->alpha[int(materialClass(bsdf.features(at, wo).roughness))];
     if (m_alpha >= 1) return;
-    m_map.prepare(cell->map, toOdis(normal), bsdf.traits().transmissive ? Sides::both : Sides::reflection);
+    m_map.prepare(cell->map, toOdis(normal), sides);
     m_active = !m_map.empty();
   }
 
@@ -59,7 +67,8 @@ class VertexGuide {
   // The density of the mixture in a direction whose BSDF densities are these.
   float pdf(float bsdfPdf, float guidablePdf, const Vec3& wiWorld) const {
     if (!m_active) return bsdfPdf;
-    return mixturePdf(bsdfPdf, guidablePdf, m_guidable, m_alpha, m_map.pdf(toOdis(wiWorld)));
+    const float guidePdf = m_rival ? m_rival->pdf(wiWorld) : m_map.pdf(toOdis(wiWorld));
+    return mixturePdf(bsdfPdf, guidablePdf, m_guidable, m_alpha, guidePdf);
   }
 
   // Samples the mixture: draws from smooth lobes are replaced by draws from the map with probability 1 -
@@ -78,7 +87,7 @@ class VertexGuide {
       if (isDiscrete(result.lobe)) return result;
     }
     if (fromMap && (m_guidable >= 1 || result.lobe != Lobe::nearDelta)) {
-      const VertexMap::Sample sample = m_map.sample(u.x, u.y);
+      const VertexMap::Sample sample = m_rival ? m_rival->sample(u) : m_map.sample(u.x, u.y);
       result.wi = at.shading.toLocal(fromOdis(sample.wi));
       const BsdfValue value = bsdf.evaluate(at, wo, result.wi);
       result.pdf = mixturePdf(value.pdf, value.guidablePdf, m_guidable, m_alpha, sample.pdf);
@@ -97,6 +106,7 @@ class VertexGuide {
  private:
   bool m_active = false;
   float m_guidable = 0, m_alpha = 1;
+  const DirectionSampler* m_rival = nullptr;
   VertexMap m_map;
 };
 

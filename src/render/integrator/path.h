@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "render/emitter/light_sampler.h"
+#include "render/integrator/direction_guide.h"
 #include "render/sampler/sampler.h"
 #include "render/scene/scene.h"
 
@@ -19,9 +20,10 @@ struct PathSettings {
   const LightSampler* lights = nullptr;
   int maxDepth = -1;  // -1: unlimited
   int rrDepth = 5;
-  const Guide* guide = nullptr;  // null: BSDF sampling only
-  int guideBounces = -1;         // -1: all
-  bool features = false;         // fill Path::first
+  const Guide* guide = nullptr;           // null, and no rival: BSDF sampling only
+  const DirectionGuide* rival = nullptr;  // guides in the place of `guide`
+  int guideBounces = -1;                  // -1: all
+  bool features = false;                  // fill Path::first
 };
 
 // Features at the first vertex whose sampled lobe is not discrete.

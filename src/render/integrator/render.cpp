@@ -5,8 +5,12 @@
 #include <tbb/info.h>
 
 #include <chrono>
+#include <memory>
 
-#include "render/integrator/pass.h"
+#include "render/integrator/combine.h"
+#include "render/rivals/inverse_variance.h"
+#include "render/rivals/open_pgl.h"
+#include "render/rivals/ppg.h"
 
 namespace odis::render {
 
@@ -21,8 +25,16 @@ double secondsSince(Clock::time_point start) {
 constexpr uint64_t kOracleSeed = 0x6f7261636c65ull;
 // How many samples per pixel a pass takes at most, so that there is progress and an end in sight.
 constexpr uint32_t kSamplesPerPass = 8;
+// How many iterations of a rival are combined by their variances, as Müller 2019 does.
+constexpr size_t kIterationsCombined = 4;
 // The oracle's selection probabilities come from this many of its passes.
 constexpr int kOracleSelectionPasses = 2;
+
+std::unique_ptr<Rival> makeRival(const RenderOptions& options) {
+  if (options.integrator == IntegratorKind::ppg) return std::make_unique<PracticalPathGuiding>(options.ppg);
+  if (options.integrator == IntegratorKind::openpgl) return makeOpenPgl();
+  return nullptr;
+}
 
 class Renderer {
  public:
@@ -37,21 +49,26 @@ class Renderer {
         m_guided(m_pixels) {
     if (options.features) m_features.resize(m_pixels);
     if (options.records) m_emitted.assign(m_pixels, Rgb(0, 0, 0));
+    m_rival = makeRival(options);
   }
 
   RenderResult run() {
-    if (m_options.integrator == IntegratorKind::odis) {
-      runPilot();
-      buildGuide();
+    if (m_rival) {
+      runRival(uint32_t(m_options.spp));
+    } else {
+      if (m_options.integrator == IntegratorKind::odis) {
+        runPilot();
+        buildGuide();
+      }
+      runRemaining();
     }
-    runRemaining();
     RenderResult result;
     result.frame = combine();
     result.stats = m_stats;
     result.stats.bytesLights = m_lights.bytes();
     result.stats.interrupted = m_stopped;
     if (m_options.records) {
-      const std::vector<float> estimates = pixelEstimates();
+      const std::vector<float> estimates = pixelEstimates(m_pilot, m_scene.film().crop.width);
       for (const std::vector<PilotVertex>& tile : m_records)
         for (PilotVertex v : tile) result.records.push_back(divided(v, estimates[v.pixel]));
       result.pilotEmitted = std::move(m_emitted);
@@ -64,7 +81,10 @@ class Renderer {
     const Crop& crop = m_scene.film().crop;
     const uint32_t index = uint32_t(pixel.y - crop.y) * uint32_t(crop.width) + uint32_t(pixel.x - crop.x);
     PathSettings settings = pathSettings();
-    if (m_options.integrator == IntegratorKind::odis && sample >= pilotCount(index)) {
+    if (m_rival) {
+      runRival(sample);
+      settings.rival = m_rival.get();
+    } else if (m_options.integrator == IntegratorKind::odis && sample >= pilotCount(index)) {
       runPilot();
       buildGuide();
       settings.guide = &m_guide;
@@ -110,7 +130,7 @@ class Renderer {
   // How many of the pixel's samples belong to the pilot: n for every pixel, or one pixel of each block,
   // chosen by hash.
   uint32_t pilotCount(uint32_t pixel) const {
-    if (m_options.integrator == IntegratorKind::path) return 0;
+    if (m_options.integrator != IntegratorKind::odis) return 0;
     const uint32_t spp = uint32_t(m_options.spp);
     if (m_options.pilotSpp >= 1) return std::min(spp, uint32_t(std::lround(m_options.pilotSpp)));
     const uint32_t block = uint32_t(std::lround(1 / std::sqrt(m_options.pilotSpp)));
@@ -141,35 +161,6 @@ class Renderer {
     return count;
   }
 
-  // An estimate of each pixel's luminance, to measure contributions by: the mean over its block of the pilot,
-  // with a little of the image's mean so that nothing is divided by almost nothing.
-  std::vector<float> pixelEstimates() const {
-    constexpr int kBlock = 8;
-    const int width = m_scene.film().crop.width, height = m_scene.film().crop.height;
-    const int blocksX = (width + kBlock - 1) / kBlock, blocksY = (height + kBlock - 1) / kBlock;
-    std::vector<double> sum(size_t(blocksX) * blocksY, 0.0), count(sum.size(), 0.0);
-    double total = 0, samples = 0;
-    const auto blockOf = [&](size_t pixel) {
-      return (pixel / width / kBlock) * size_t(blocksX) + pixel % width / kBlock;
-    };
-    for (size_t pixel = 0; pixel < m_pixels; ++pixel) {
-      const Rgbd& s = m_pilot[pixel].sum;
-      const double value = luminance(Rgb(float(s.x), float(s.y), float(s.z)));
-      sum[blockOf(pixel)] += value;
-      count[blockOf(pixel)] += m_pilot[pixel].count;
-      total += value;
-      samples += m_pilot[pixel].count;
-    }
-    const double mean = samples > 0 ? total / samples : 1;
-    std::vector<float> result(m_pixels);
-    for (size_t pixel = 0; pixel < m_pixels; ++pixel) {
-      const size_t block = blockOf(pixel);
-      const double value = count[block] > 0 ? sum[block] / count[block] : mean;
-      result[pixel] = float(std::max(value + 0.1 * mean, 1e-20));
-    }
-    return result;
-  }
-
   // A record whose contributions are relative to its pixel's value.
   static PilotVertex divided(PilotVertex v, float estimate) {
     v.indirect /= estimate;
@@ -185,7 +176,7 @@ class Renderer {
   void buildGuide() {
     if (m_stopped) return;
     const Clock::time_point start = Clock::now();
-    const std::vector<float> estimates = pixelEstimates();
+    const std::vector<float> estimates = pixelEstimates(m_pilot, m_scene.film().crop.width);
     GuideBuilder builder(m_options.guideOptions);
     if (m_options.guide == GuideKind::oracle) {
       m_progress.begin("oracle", m_pixels * uint64_t(m_options.oracleSpp));
@@ -236,12 +227,79 @@ class Renderer {
     m_stats.secondsGuided = secondsSince(start);
   }
 
-  // What a pilot sample weighs in each pixel, a guided one weighing 1. It does not look at the pixel's own
-  // values, so the mean stays unbiased.
+  // The first so many samples of every pixel, one after another: the rival learns from each what it guides the
+  // next ones with. Those that nothing is learnt from are rendered several at a time.
+  void runRival(uint32_t samples) {
+    const Clock::time_point start = Clock::now();
+    const uint32_t spp = uint32_t(m_options.spp);
+    m_progress.begin("guided", m_pixels * uint64_t(samples));
+    for (uint32_t done = 0; done < samples && !stop();) {
+      const uint32_t end = m_rival->iterationEnd(done, spp);
+      const bool learns = end < spp;
+      beginIteration();
+      while (done < std::min(end, samples) && !stop()) {
+        const uint32_t count = learns ? 1 : std::min(samples - done, kSamplesPerPass);
+        Pass pass = basicPass();
+        pass.path.rival = m_rival.get();
+        pass.samples = [done, count](uint32_t) { return std::pair(done, count); };
+        pass.image = &m_iterations.back();
+        Records records;
+        pass.records = learns ? &records : nullptr;
+        run(pass);
+        if (learns && !stop()) learnFrom(records, done);
+        done += count;
+      }
+      if (learns && done == end && !stop()) m_rival->endIteration();
+    }
+    m_progress.end();
+    m_stats.secondsGuided = secondsSince(start) - m_stats.secondsBuild;
+    m_stats.bytesMaps = m_rival->bytes();
+  }
+
+  void learnFrom(const Records& records, uint32_t sample) {
+    const Clock::time_point start = Clock::now();
+    m_rival->learn(records, sample);
+    uint64_t bytes = m_rival->bytes();
+    for (const std::vector<PilotVertex>& tile : records) bytes += tile.size() * sizeof(PilotVertex);
+    m_stats.bytesBuild = std::max(m_stats.bytesBuild, bytes);
+    m_stats.secondsBuild += secondsSince(start);
+  }
+
+  // Makes room for the samples of an iteration, and forgets those that won't be part of the image.
+  void beginIteration() {
+    const Rival::Combination combination = m_rival->combination();
+    if (combination == Rival::Combination::all && !m_iterations.empty()) return;
+    const size_t kept = combination == Rival::Combination::last ? 2 : kIterationsCombined;
+    if (m_iterations.size() == kept) {
+      for (const PixelSums& s : m_iterations.front()) m_stats.samples += s.count;
+      m_iterations.erase(m_iterations.begin());
+    }
+    m_iterations.emplace_back(m_pixels);
+  }
+
+  // What a pilot sample weighs in each pixel, a guided one weighing 1: by the inverse of their variances as the
+  // pilot predicts them. It does not look at the pixel's own values, so the mean stays unbiased.
   std::vector<float> pilotWeights() const {
     if (m_options.pilotWeight >= 0) return std::vector<float>(m_pixels, float(m_options.pilotWeight));
     if (m_guide.predictions().empty()) return std::vector<float>(m_pixels, 1);
     return odis::pilotWeights(m_guide.predictions(), m_scene.film().crop.width);
+  }
+
+  // What the image is made of.
+  std::vector<WeightedImage> weightedImages() {
+    if (m_rival && m_rival->combination() == Rival::Combination::inverseVariance)
+      return weighByVariance(m_iterations, m_scene.film().crop.width);
+    if (m_rival) {
+      // The last iteration that every pixel has a sample of, should the time have been short.
+      const auto complete = std::find_if(m_iterations.rbegin(), m_iterations.rend(), [](const auto& image) {
+        return std::all_of(image.begin(), image.end(), [](const PixelSums& s) { return s.count > 0; });
+      });
+      if (complete == m_iterations.rend()) return {};
+      return {{&*complete, {}}};
+    }
+    std::vector<float> weights = pilotWeights();
+    m_stats.pilotWeight = pilotShare(weights);
+    return {{&m_pilot, std::move(weights)}, {&m_guided, {}}};
   }
 
   Frame2D combine() {
@@ -251,24 +309,16 @@ class Renderer {
     frame.y = crop.y;
     frame.width = crop.width;
     frame.height = crop.height;
-    frame.color.resize(m_pixels);
-    if (m_options.variance) frame.variance.resize(m_pixels);
-    const std::vector<float> ratios = pilotWeights();
+    frame.color.resize(m_pixels, Rgb(0, 0, 0));
+    if (m_options.variance) frame.variance.resize(m_pixels, Rgb(0, 0, 0));
+    const std::vector<WeightedImage> images = weightedImages();
+    render::combine(images, frame.color, m_options.variance ? &frame.variance : nullptr);
+    for (const std::vector<PixelSums>& image : m_iterations)
+      for (const PixelSums& s : image) m_stats.samples += s.count;
     for (size_t pixel = 0; pixel < m_pixels; ++pixel) {
-      const double ratio = ratios[pixel];
-      const PixelSums &pilot = m_pilot[pixel], &guided = m_guided[pixel];
-      m_stats.samples += pilot.count + guided.count;
-      m_stats.pilotSamples += pilot.count;
-      const double weight = pilot.count * ratio + guided.count;
-      if (!(weight > 0)) {
-        frame.color[pixel] = Rgb(0, 0, 0);
-        continue;
-      }
-      const Rgbd mean = (pilot.sum * ratio + guided.sum) / weight;
-      frame.color[pixel] = Rgb(float(mean.x), float(mean.y), float(mean.z));
-      if (m_options.variance) frame.variance[pixel] = varianceOfMean(pilot, guided, ratio);
+      m_stats.samples += m_pilot[pixel].count + m_guided[pixel].count;
+      m_stats.pilotSamples += m_pilot[pixel].count;
     }
-    m_stats.pilotWeight = pilotShare(ratios);
     m_stats.spp = double(m_stats.samples) / double(std::max<size_t>(m_pixels, 1));
     if (m_options.features) writeFeatures(frame);
     return frame;
@@ -282,20 +332,6 @@ class Renderer {
       all += weight + m_guided[pixel].count;
     }
     return all > 0 ? pilot / all : 0;
-  }
-
-  // With s2 the variance of a guided sample, a pilot sample has s2 / ratio, and the mean's variance is
-  // s2 (ratio n_p + n_g) / (ratio n_p + n_g)^2. s2 is pooled from deviations within either set and, weighted
-  // alike, between the two.
-  static Rgb varianceOfMean(const PixelSums& pilot, const PixelSums& guided, double ratio) {
-    const double weight = ratio * pilot.count + guided.count;
-    const uint32_t samples = pilot.count + guided.count;
-    if (samples < 2 || !(ratio > 0)) return Rgb(0, 0, 0);
-    const Rgbd mean = (pilot.sum * ratio + guided.sum) / weight;
-    const Rgbd squares = pilot.sumSquares * ratio + guided.sumSquares - mean * mean * weight;
-    const Rgbd variance = squares / double(samples - 1) / weight;
-    return Rgb(float(std::max(variance.x, 0.0)), float(std::max(variance.y, 0.0)),
-               float(std::max(variance.z, 0.0)));
   }
 
   void writeFeatures(Frame2D& frame) const {
@@ -322,6 +358,8 @@ class Renderer {
   Records m_records;
   std::vector<Rgb> m_emitted;
   Guide m_guide;
+  std::unique_ptr<Rival> m_rival;                    // null: path, odis
+  std::vector<std::vector<PixelSums>> m_iterations;  // of the rival, as far as they make the image
   RenderStats m_stats;
   std::atomic<bool> m_stopped{false};
 };

@@ -9,11 +9,12 @@
 
 #include <odis/guide.h>
 
+#include "render/rivals/ppg_options.h"
 #include "render/scene/scene.h"
 
 namespace odis::render {
 
-enum class IntegratorKind { path, odis };
+enum class IntegratorKind { path, odis, ppg, openpgl };
 enum class SamplerKind { sobol, independent };
 enum class GuideKind { histogram, oracle };
 
@@ -29,11 +30,13 @@ struct RenderOptions {
   bool variance = false;  // also estimate the variance of each pixel
   bool features = false;  // also write albedo, normals, position, depth, roughness
 
+  int guideBounces = -1;  // how many vertices of a path are guided; -1: all, 1: the first
+  PpgOptions ppg;         // ppg only
+
   // odis only
   GuideKind guide = GuideKind::histogram;
-  double pilotSpp = 1;    // samples per pixel of the pilot; 0.25 is one sample per 2x2 pixels
-  int guideBounces = -1;  // how many vertices of a path are guided; -1: all, 1: the first
-  int oracleSpp = 64;     // samples per pixel that the oracle's maps are made from
+  double pilotSpp = 1;  // samples per pixel of the pilot; 0.25 is one sample per 2x2 pixels
+  int oracleSpp = 64;   // samples per pixel that the oracle's maps are made from
   GuideOptions guideOptions;
   double pilotWeight = -1;  // of a pilot sample relative to a guided one; -1: by predicted variance
   bool records = false;     // keep the pilot's vertices in the result, for those who want to learn from them
@@ -61,7 +64,8 @@ struct Frame2D {
 };
 
 struct RenderStats {
-  double secondsPilot = 0, secondsBuild = 0, secondsGuided = 0;  // path: all of it in secondsGuided
+  double secondsPilot = 0, secondsBuild = 0,
+         secondsGuided = 0;  // without a pilot: all but the build in the last
   uint64_t samples = 0, pilotSamples = 0, rays = 0, shadowRays = 0;
   uint64_t pilotVertices = 0, cells = 0;
   uint64_t bytesBuild = 0;  // held at most until the guide is built: pilot vertices and what is made of them

@@ -1,0 +1,82 @@
+#include "render/rivals/inverse_variance.h"
+
+#include <array>
+
+namespace odis::render {
+
+namespace {
+
+// Which of the two colours of a checkerboard a pixel has.
+int checkerboard(size_t pixel, int width) {
+  return int((pixel / size_t(width) + pixel % size_t(width)) & 1);
+}
+
+// A pixel whose samples vary more than that, relative to its value squared, counts as if they varied so much.
+constexpr double kMostVariance = 1e4;
+
+double average(const Rgbd& c) {
+  return (c.x + c.y + c.z) / 3;
+}
+
+// The unbiased estimate of a sample's variance; at least two samples.
+double sampleVariance(const PixelSums& s) {
+  return average(s.sumSquares - s.sum * s.sum / double(s.count)) / (s.count - 1);
+}
+
+// The variance of a sample of `image`, relative to the pixels' values squared, over the pixels of either
+// colour. Not a number where there is nothing to tell it by.
+std::array<double, 2> relativeVariance(const std::vector<PixelSums>& image,
+                                       const std::vector<PixelSums>* next,
+                                       const std::vector<float>& estimates, int width) {
+  std::array<double, 2> sum{0, 0}, pixels{0, 0};
+  for (size_t pixel = 0; pixel < image.size(); ++pixel) {
+    const PixelSums& s = image[pixel];
+    double variance = 0;
+    if (s.count >= 2) {
+      variance = sampleVariance(s);
+    } else if (s.count == 1 && next && (*next)[pixel].count >= 2) {
+      const PixelSums& other = (*next)[pixel];
+      const Rgbd difference = s.sum - other.sum / double(other.count);
+      variance = average(difference * difference) - sampleVariance(other) / other.count;
+    } else {
+      continue;
+    }
+    const size_t colour = size_t(checkerboard(pixel, width));
+    sum[colour] += std::min(variance / (double(estimates[pixel]) * estimates[pixel]), kMostVariance);
+    pixels[colour] += 1;
+  }
+  return {sum[0] / pixels[0], sum[1] / pixels[1]};
+}
+
+}  // namespace
+
+std::vector<WeightedImage> weighByVariance(std::span<const std::vector<PixelSums>> images, int width) {
+  if (images.empty()) return {};
+  std::vector<PixelSums> all(images.front().size());
+  for (const std::vector<PixelSums>& image : images)
+    for (size_t pixel = 0; pixel < all.size(); ++pixel) {
+      all[pixel].sum += image[pixel].sum;
+      all[pixel].count += image[pixel].count;
+    }
+  const std::vector<float> estimates = pixelEstimates(all, width);
+  std::vector<std::array<double, 2>> ofColour;
+  for (size_t i = 0; i < images.size(); ++i) {
+    const auto [even, odd] =
+        relativeVariance(images[i], i + 1 < images.size() ? &images[i + 1] : nullptr, estimates, width);
+    // Without a variance to go by, a sample weighs as much as it would if it varied as much as its value.
+    const auto weight = [](double variance) { return variance > 1e-12 ? 1 / variance : 1; };
+    ofColour.push_back({weight(odd), weight(even)});
+  }
+  // In units of the last image's.
+  std::vector<WeightedImage> result;
+  for (size_t i = 0; i < images.size(); ++i) {
+    WeightedImage& image = result.emplace_back(WeightedImage{&images[i], std::vector<float>(all.size())});
+    for (size_t pixel = 0; pixel < all.size(); ++pixel) {
+      const size_t colour = size_t(checkerboard(pixel, width));
+      image.weights[pixel] = float(ofColour[i][colour] / ofColour.back()[colour]);
+    }
+  }
+  return result;
+}
+
+}  // namespace odis::render

@@ -1,0 +1,142 @@
+#include "render/rivals/open_pgl.h"
+
+#include <openpgl/cpp/OpenPGL.h>
+#include <tbb/enumerable_thread_specific.h>
+
+#include <cstring>
+
+#include "render/rivals/usable_vertex.h"
+#include "render/sampler/sampler.h"
+
+namespace odis::render {
+
+namespace {
+
+namespace pgl = openpgl::cpp;
+
+pgl_vec3f toPgl(const Vec3& v) {
+  return {v.x, v.y, v.z};
+}
+pgl_vec3f toPgl(const Float3& v) {
+  return {v.x, v.y, v.z};
+}
+
+// As Cycles uses the library: half of the draws for the guide, an update after the first sample and then
+// after every fourth, as soon as there are enough samples to fit, up to the 128th.
+constexpr float kBsdfShare = 0.5f;
+constexpr uint32_t kSamplesPerUpdate = 4, kTrainingSamples = 128;
+constexpr size_t kFewestSamples = 1024;
+// As the library's own PathSegmentStorage prepares samples.
+constexpr float kLeastPdf = 0.1f, kFarthest = 1e6f;
+
+PGL_DEVICE_TYPE deviceType() {
+  return __builtin_cpu_supports("avx2") ? PGL_DEVICE_TYPE_CPU_8 : PGL_DEVICE_TYPE_CPU_4;
+}
+
+// A thread's place for the distribution at a vertex.
+class PglVertex final : public DirectionSampler {
+ public:
+  explicit PglVertex(const pgl::Field* field) : m_distribution(field) {}
+
+  // Says whether there is a distribution.
+  bool prepare(const pgl::Field& field, const Vec3& position, const Vec3& normal, Sides sides) {
+    float random = randomOf(position);
+    if (!m_distribution.Init(&field, toPgl(position), random)) return false;
+    // What transmits receives light from both sides.
+    if (sides == Sides::reflection) m_distribution.ApplyCosineProduct(toPgl(normal));
+    return true;
+  }
+
+  VertexMap::Sample sample(const Vec2& u) const override {
+    pgl_vec3f wi;
+    const float pdf = m_distribution.SamplePDF({u.x, u.y}, wi);
+    return {{wi.x, wi.y, wi.z}, pdf};
+  }
+  float pdf(const Vec3& wi) const override { return m_distribution.PDF(toPgl(wi)); }
+  float bsdfShare() const override { return kBsdfShare; }
+
+ private:
+  // The library chooses among neighbouring mixtures by a random number: one that the place determines.
+  static float randomOf(const Vec3& position) {
+    uint64_t hash = 0;
+    for (int a = 0; a < 3; ++a) {
+      uint32_t bits;
+      std::memcpy(&bits, &position[a], sizeof(bits));
+      hash = mixBits(hash ^ bits);
+    }
+    return float(hash >> 40) * 0x1p-24f;
+  }
+
+  pgl::SurfaceSamplingDistribution m_distribution;
+};
+
+class OpenPgl final : public Rival {
+ public:
+  OpenPgl() : m_device(deviceType()) {
+    pgl::FieldConfig config;
+    config.Init(PGL_SPATIAL_STRUCTURE_KDTREE, PGL_DIRECTIONAL_DISTRIBUTION_PARALLAX_AWARE_VMM, true);
+    m_field = std::make_unique<pgl::Field>(&m_device, config);
+  }
+
+  const DirectionSampler* at(const Vec3& position, const Vec3& normal, Sides sides) const override {
+    if (!m_trained) return nullptr;
+    std::unique_ptr<PglVertex>& vertex = m_vertices.local();
+    if (!vertex) vertex = std::make_unique<PglVertex>(m_field.get());
+    return vertex->prepare(*m_field, position, normal, sides) ? vertex.get() : nullptr;
+  }
+
+  Combination combination() const override { return Combination::all; }
+
+  uint32_t iterationEnd(uint32_t done, uint32_t spp) const override {
+    if (done >= kTrainingSamples) return spp;
+    return std::min(done == 0 ? 1 : done + kSamplesPerUpdate, spp);
+  }
+
+  void learn(std::span<const std::vector<PilotVertex>> tiles, uint32_t) override {
+    std::vector<pgl::SampleData> samples;
+    for (const std::vector<PilotVertex>& tile : tiles)
+      for (const PilotVertex& v : tile) {
+        const float radiance = luminance(v.radiance);
+        if (!isUsable(v) || !(radiance > 0) || !(v.distance > 0)) continue;
+        pgl::SampleData& sample = samples.emplace_back();
+        sample.position = toPgl(v.position);
+        sample.direction = toPgl(v.wi);
+        sample.pdf = std::max(survivingPdf(v), kLeastPdf);
+        sample.weight = radiance / sample.pdf;
+        sample.distance = std::min(v.distance, kFarthest);
+        sample.flags = 0;
+      }
+    if (!samples.empty()) m_samples.AddSamples(samples.data(), samples.size());
+    m_peak = std::max(m_peak, m_samples.GetSizeSurface());
+  }
+
+  void endIteration() override {
+    if (m_samples.GetSizeSurface() < kFewestSamples) return;
+    m_field->Update(m_samples);
+    m_samples.Clear();
+    m_trained = true;
+  }
+
+  // Of the samples; the library does not tell what its field takes.
+  uint64_t bytes() const override { return m_peak * sizeof(pgl::SampleData); }
+
+ private:
+  pgl::Device m_device;
+  std::unique_ptr<pgl::Field> m_field;
+  pgl::SampleStorage m_samples;
+  mutable tbb::enumerable_thread_specific<std::unique_ptr<PglVertex>> m_vertices;
+  bool m_trained = false;
+  size_t m_peak = 0;
+};
+
+}  // namespace
+
+bool hasOpenPgl() {
+  return true;
+}
+
+std::unique_ptr<Rival> makeOpenPgl() {
+  return std::make_unique<OpenPgl>();
+}
+
+}  // namespace odis::render
