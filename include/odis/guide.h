@@ -53,6 +53,11 @@ struct Cell {
   bool guidesAny() const { return std::min({alpha[0], alpha[1], alpha[2]}) < 1; }
 };
 
+// Where a vertex is: its position and unit shading normal on the side of the outgoing direction.
+struct Place {
+  Float3 position, normal;
+};
+
 // Pilot vertices as they lie in memory: one array for each part of the image, say.
 using PilotParts = std::span<const std::span<const PilotVertex>>;
 
@@ -66,6 +71,10 @@ class Guide {
 
   // The finest cell there is for a vertex; null where the pilot saw nothing at all.
   const Cell* find(const Float3& position, const Float3& normal) const;
+  // The same for many vertices at once, which is faster: cells lie all over memory, and here none waits for the
+  // memory of another. What a vertex reads of its cell is on its way when this returns. `cells` has room for
+  // as many as there are `places`.
+  void find(std::span<const Place> places, std::span<const Cell*> cells) const;
 
   uint64_t cellCount() const;
   uint64_t bytes() const;

@@ -41,11 +41,11 @@ inline Float3 texelDirection(int texel) {
 }
 
 // A cell's map: relative incident radiance in 16 bits, at least 1 so that no direction is impossible. 768
-// bytes.
-struct SamplingMap {
-  std::array<uint16_t, kMapTexels> texels;
+// bytes, in whole cache lines: a vertex reads the sums, then a line of texels for each direction.
+struct alignas(64) SamplingMap {
   // Of each block: the sum over its texels of texel times direction, and of the texels.
   std::array<float, kMapBlocks> x, y, z, sum;
+  std::array<uint16_t, kMapTexels> texels;
 
   // Makes the sums. To be called when texels were written.
   void update();

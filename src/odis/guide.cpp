@@ -31,6 +31,27 @@ const Cell* Guide::find(const Float3& position, const Float3& normal) const {
   return nullptr;
 }
 
+void Guide::find(std::span<const Place> places, std::span<const Cell*> cells) const {
+  if (!m_data) {
+    std::fill_n(cells.begin(), places.size(), nullptr);
+    return;
+  }
+  thread_local std::vector<uint64_t> keys;
+  keys.clear();
+  for (const Place& place : places) {
+    keys.push_back(m_data->grid.key(place.position, place.normal, 0));
+    m_data->index.prefetch(keys.back());
+  }
+  for (size_t i = 0; i < places.size(); ++i) {
+    const uint32_t finest = m_data->index.find(keys[i]);
+    cells[i] = finest != kNoCell ? &m_data->cells[finest] : find(places[i].position, places[i].normal);
+    if (!cells[i]) continue;
+    __builtin_prefetch(cells[i]->alpha);
+    for (const auto* sums : {&cells[i]->map.x, &cells[i]->map.y, &cells[i]->map.z, &cells[i]->map.sum})
+      __builtin_prefetch(sums->data());
+  }
+}
+
 uint64_t Guide::cellCount() const {
   return m_data ? m_data->cells.size() : 0;
 }

@@ -223,6 +223,24 @@ TEST(Guide, DividesByPixelValues) {
   EXPECT_NE(relative.predictedVarianceRatio(), builder.build(vertices).predictedVarianceRatio());
 }
 
+TEST(Guide, FindsManyAsItFindsEach) {
+  const std::vector<PilotVertex> vertices = floorUnderPatch(kBright, 2000, 4);
+  GuideBuilder builder;
+  builder.add(vertices);
+  const Guide guide = builder.build(vertices);
+  std::vector<Place> places = {{{0.5f, 0.5f, 40}, {0, 0, -1}},
+                               {{NAN, 0, 0}, {0, 0, 1}}};  // nothing was seen there
+  for (const PilotVertex& v : vertices) places.push_back({v.position, v.normal});
+  std::vector<const Cell*> cells(places.size());
+  guide.find(places, cells);
+  for (size_t i = 0; i < places.size(); ++i)
+    EXPECT_EQ(cells[i], guide.find(places[i].position, places[i].normal));
+  EXPECT_EQ(cells[0], nullptr);
+  EXPECT_NE(cells[2], nullptr);
+  Guide().find(places, cells);
+  EXPECT_EQ(cells[2], nullptr);
+}
+
 TEST(Guide, PredictionsOfPixelsAddUpToThatOfTheImage) {
   std::vector<PilotVertex> vertices = floorUnderPatch(kBright, 20000, 3);
   for (size_t i = 0; i < vertices.size(); ++i) {

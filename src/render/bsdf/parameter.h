@@ -27,8 +27,11 @@ class RgbParameter {
 
   Rgb operator()(const SurfacePoint& at) const {
     if (!m_texture) return m_mean;
-    const Rgb value = m_texture->rgb(at.uv);
-    return m_clamped ? clampUnit(value) : value;
+    if (at.texture != m_texture.get()) {
+      at.texture = m_texture.get();
+      at.textureValue = m_texture->rgb(at.uv);
+    }
+    return m_clamped ? clampUnit(at.textureValue) : at.textureValue;
   }
   const Rgb& mean() const { return m_mean; }
   bool isConstant() const { return !m_texture; }

@@ -1,5 +1,6 @@
 #include "render/integrator/path.h"
 
+#include <new>
 #include <numeric>
 
 namespace odis::render {
@@ -15,9 +16,14 @@ struct LightEstimate {
   BsdfValue bsdf;
 };
 
+// The shading normal on the side that the path came from; `wo` in the shading frame.
+Vec3 facing(const SurfacePoint& at, const Vec3& wo) {
+  return wo.z < 0 ? -at.shading.n : at.shading.n;
+}
+
 // What of a vertex the choice among lights depends on.
 LightReference lightReference(const SurfacePoint& at, const Vec3& wo) {
-  return {at.p, wo.z < 0 ? -at.shading.n : at.shading.n, at.shape->bsdf().traits().transmissive};
+  return {at.p, facing(at, wo), at.shape->bsdf().traits().transmissive};
 }
 
 LightEstimate sampleLight(const PathSettings& settings, const SurfacePoint& at, const Vec3& wo,
@@ -38,16 +44,21 @@ LightEstimate sampleLight(const PathSettings& settings, const SurfacePoint& at, 
   return result;
 }
 
+// Whether the directions of vertices this deep are guided at all.
+bool guides(const PathSettings& settings, int depth) {
+  return (settings.guide || settings.rival) && (settings.guideBounces < 0 || depth <= settings.guideBounces);
+}
+
 // The directional guide at a vertex, mixed with the BSDF: the cell's map times the cosine, or a rival's.
 class VertexGuide {
  public:
-  VertexGuide(const PathSettings& settings, int depth, const SurfacePoint& at, const Vec3& wo) {
-    if (!settings.guide && !settings.rival) return;
-    if (settings.guideBounces >= 0 && depth > settings.guideBounces) return;
+  VertexGuide(const PathSettings& settings, int depth, const SurfacePoint& at, const Vec3& wo,
+              const Cell* cell) {
+    if (!guides(settings, depth) || (!settings.rival && (!cell || !cell->guidesAny()))) return;
     const Bsdf& bsdf = at.shape->bsdf();
     m_guidable = bsdf.guidableProbability(at, wo);
     if (!(m_guidable > 0)) return;
-    const Vec3 normal = wo.z < 0 ? -at.shading.n : at.shading.n;
+    const Vec3 normal = facing(at, wo);
     const Sides sides = bsdf.traits().transmissive ? Sides::both : Sides::reflection;
     if (settings.rival) {
       m_rival = settings.rival->at(at.p, normal, sides);
@@ -55,8 +66,6 @@ class VertexGuide {
       m_active = m_alpha < 1;
       return;
     }
-    const Cell* cell = settings.guide->find(toOdis(at.p), toOdis(normal));
-    if (!cell || !cell->guidesAny()) return;
     m_alpha = cell->alpha[int(materialClass(bsdf.features(at, wo).roughness))];
     if (m_alpha >= 1) return;
     m_map.prepare(cell->map, toOdis(normal), sides);
@@ -133,12 +142,21 @@ struct Errand {
   Rgb radiance;
 };
 
-// What the paths of a batch share while they are traced; kept from batch to batch for its memory. 48 + 28
-// bytes a path and 28 + 16 a shadow ray.
+// Where a path's ray met a surface, if it did (else there is no shape).
+struct Vertex {
+  SurfacePoint at;
+  Vec3 wo;  // towards where the path came from, in the shading frame
+};
+
+// What the paths of a batch share while they are traced; kept from batch to batch for its memory. 48 + 28 +
+// 216 bytes a path and 28 + 16 a shadow ray.
 struct Batch {
   std::vector<uint32_t> active;  // paths that have a ray to trace
   std::vector<Ray> rays;         // theirs
   std::vector<Hit> hits;         // what those met
+  std::vector<Vertex> vertices;  // the same as points on surfaces
+  std::vector<Place> places;     // and for the guide
+  std::vector<const Cell*> cells;
   std::vector<Errand> errands;
   std::vector<Ray> shadowRays;
   std::vector<uint8_t> hidden;
@@ -178,7 +196,7 @@ void record(Path& path, Batch& batch, const SurfacePoint& at, const Vec3& wo, co
   ++path.recorded;
   PilotVertex& v = p.vertex;
   v.position = toOdis(at.p);
-  v.normal = toOdis(wo.z < 0 ? -at.shading.n : at.shading.n);
+  v.normal = toOdis(facing(at, wo));
   v.wo = toOdis(-path.ray.direction);
   v.wi = toOdis(at.shading.toWorld(next.wi));
   v.direct = {direct.x, direct.y, direct.z};
@@ -199,16 +217,38 @@ void record(Path& path, Batch& batch, const SurfacePoint& at, const Vec3& wo, co
   v.both = bsdf.traits().transmissive;
 }
 
+// Turns this bounce's hits into vertices, and finds the cells that guide them.
+void findVertices(const PathSettings& settings, int depth, Batch& batch) {
+  batch.vertices.resize(batch.hits.size());
+  for (size_t i = 0; i < batch.hits.size(); ++i) {
+    const Hit& hit = batch.hits[i];
+    Vertex& vertex = batch.vertices[i];
+    vertex.at.shape = hit.shape;
+    if (!hit.shape) continue;
+    new (&vertex.at) SurfacePoint(hit.shape->surfacePoint(batch.rays[i], hit.raw));  // without a copy
+    vertex.wo = vertex.at.shading.toLocal(-batch.rays[i].direction);
+  }
+
+  batch.cells.assign(batch.hits.size(), nullptr);
+  if (!settings.guide || !guides(settings, depth)) return;
+  batch.places.clear();
+  for (const Vertex& vertex : batch.vertices)
+    batch.places.push_back(vertex.at.shape ? Place{toOdis(vertex.at.p), toOdis(facing(vertex.at, vertex.wo))}
+                                           : Place{});
+  settings.guide->find(batch.places, batch.cells);
+}
+
 // Takes a path to its next vertex: emission, next-event estimation, direction, roulette. Says whether there
 // is a ray to go on with, which is then path.ray; what next-event estimation would add becomes an errand.
-bool extend(const PathSettings& settings, Path& path, uint32_t index, const Hit& hit, int depth,
-            Batch& batch) {
+bool extend(const PathSettings& settings, Path& path, uint32_t index, const Vertex& vertex, const Cell* cell,
+            int depth, Batch& batch) {
   Sampler& sampler = path.sampler;
   sampler.startVertex(depth);
   ++path.counts.rays;
 
   // A ray that leaves the scene meets the environment.
-  if (!hit.shape) {
+  const auto& [at, wo] = vertex;
+  if (!at.shape) {
     for (const EnvironmentEmitter* environment : settings.scene->environments())
       addEmission(settings, path, batch, depth, environment->radiance(path.ray.direction), *environment, 0,
                   path.bySampling ? environment->pdf(path.previous.p, path.ray.direction) : 0);
@@ -216,18 +256,16 @@ bool extend(const PathSettings& settings, Path& path, uint32_t index, const Hit&
   }
 
   // Others meet a surface, which may emit.
-  const SurfacePoint at = hit.shape->surfacePoint(path.ray, hit.raw);
   const float length = odis::render::length(at.p - path.ray.origin);
   if (batch.recording && depth > 1) batch.records[path.lastRecord].vertex.distance = length;
-  if (const SurfaceEmitter* emitter = hit.shape->emitter())
+  if (const SurfaceEmitter* emitter = at.shape->emitter())
     addEmission(settings, path, batch, depth, emitter->radiance(at, -path.ray.direction), *emitter,
                 emitter->part(at), path.bySampling ? emitter->pdf(path.previous.p, at) : 0);
   if (settings.maxDepth >= 0 && depth >= settings.maxDepth) return false;
 
-  const Bsdf& bsdf = hit.shape->bsdf();
-  const Vec3 wo = at.shading.toLocal(-path.ray.direction);
+  const Bsdf& bsdf = at.shape->bsdf();
   path.distance += length;
-  const VertexGuide guide(settings, depth, at, wo);
+  const VertexGuide guide(settings, depth, at, wo, cell);
 
   // Next-event estimation, weighted against the mixture that directions are sampled from.
   LightEstimate light;
@@ -327,11 +365,13 @@ void tracePaths(const PathSettings& settings, std::span<Path> paths, std::vector
     for (const uint32_t index : batch.active) batch.rays.push_back(paths[index].ray);
     batch.hits.resize(batch.rays.size());
     settings.scene->intersect(batch.rays, batch.hits);
+    findVertices(settings, depth, batch);
 
     size_t left = 0;
     for (size_t i = 0; i < batch.active.size(); ++i) {
       const uint32_t index = batch.active[i];
-      if (extend(settings, paths[index], index, batch.hits[i], depth, batch)) batch.active[left++] = index;
+      if (extend(settings, paths[index], index, batch.vertices[i], batch.cells[i], depth, batch))
+        batch.active[left++] = index;
     }
     batch.active.resize(left);
     addDirectLight(*settings.scene, paths, batch);

@@ -8,6 +8,7 @@
 namespace odis::render {
 
 class Shape;
+class Texture;
 
 struct SurfacePoint {
   Vec3 p;           // world space
@@ -19,6 +20,10 @@ struct SurfacePoint {
   uint32_t primitive = 0;  // triangle of a mesh; 0 for analytic shapes
   Vec2 barycentric;        // (b1, b2) on a triangle
   float pError = 0;        // how far p may be off the surface, set by shapes for Scene::spawn()
+
+  // The latest look-up in a texture at this uv: light, direction and features ask for the same one.
+  mutable const Texture* texture = nullptr;
+  mutable Rgb textureValue;
 };
 
 }  // namespace odis::render
