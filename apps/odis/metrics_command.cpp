@@ -29,22 +29,21 @@ static int run(const Arguments& arguments) {
                                        reference.width, reference.height));
   eval::ErrorMetrics m;
   try {
-    m = eval::compareImages(image.pixels, reference.pixels);
+    m = eval::compareImages(image, reference);
   } catch (const std::invalid_argument& error) {
     throw eval::ImageError(fmt::format("{}: {}", arguments.reference, error.what()));
   }
   if (arguments.json) {
-    const nlohmann::ordered_json json = {{"relMse", m.relMse},
-                                         {"trimmedRelMse", m.trimmedRelMse},
-                                         {"smape", m.smape},
-                                         {"mse", m.mse},
-                                         {"nonFinitePixels", m.nonFinitePixels}};
+    const nlohmann::ordered_json json = {{"relMse", m.relMse}, {"trimmedRelMse", m.trimmedRelMse},
+                                         {"smape", m.smape},   {"flip", m.flip},
+                                         {"mse", m.mse},       {"nonFinitePixels", m.nonFinitePixels}};
     fmt::print("{}\n", json.dump(2));
     return kOk;
   }
   fmt::print(
-      "relMSE          {:.6g}\ntrimmed relMSE  {:.6g}\nSMAPE           {:.6g}\nMSE             {:.6g}\n",
-      m.relMse, m.trimmedRelMse, m.smape, m.mse);
+      "relMSE          {:.6g}\ntrimmed relMSE  {:.6g}\nSMAPE           {:.6g}\nMSE             {:.6g}\n"
+      "FLIP            {:.6g}\n",
+      m.relMse, m.trimmedRelMse, m.smape, m.mse, m.flip);
   if (m.nonFinitePixels > 0) fmt::print("not finite      {} pixels\n", m.nonFinitePixels);
   return kOk;
 }
@@ -55,7 +54,9 @@ Command addMetricsCommand(CLI::App& parent) {
       "Both images are divided by the mean luminance of REFERENCE. Averages over pixels and channels of\n"
       "  relMSE  (I - R)^2 / (R^2 + 0.01); trimmed: without the worst 0.1 % of the pixels\n"
       "  SMAPE   |I - R| / ((|I| + |R|) / 2 + 0.01)\n"
-      "  MSE     (I - R)^2");
+      "  MSE     (I - R)^2\n"
+      "FLIP is LDR-FLIP at 67 pixels per degree of both images as a screen shows them: exposed so that the\n"
+      "log-average luminance of REFERENCE is 0.18, highlights rolled off as in the PNGs of `odis render`.");
   const auto arguments = std::make_shared<Arguments>();
   app->add_option("IMAGE", arguments->image, "EXR file")->required();
   app->add_option("REFERENCE", arguments->reference, "EXR file")->required();

@@ -78,7 +78,7 @@ class SceneRun {
     m.seed = seed;
     m.key = key;
     if (result.stats.interrupted) return m;
-    m.error = compareImages(result.frame.color, m_reference.pixels);
+    m.error = compareImages({result.frame.width, result.frame.height, result.frame.color}, m_reference);
     m.seconds = result.stats.secondsPilot + result.stats.secondsBuild + result.stats.secondsGuided;
     m.spp = result.stats.spp;
     m.rays = result.stats.rays + result.stats.shadowRays;

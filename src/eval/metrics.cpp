@@ -5,11 +5,14 @@
 #include <limits>
 #include <stdexcept>
 
+#include "eval/exposure.h"
+#include "eval/flip.h"
+
 namespace odis::eval {
 
 using render::Rgb;
 
-static double exposureOf(const std::vector<Rgb>& reference) {
+static double scaleOf(const std::vector<Rgb>& reference) {
   double sum = 0;
   for (const Rgb& pixel : reference) {
     if (!render::isFinite(pixel)) throw std::invalid_argument("the reference has pixels that are not finite");
@@ -27,22 +30,49 @@ static double trimmedMean(std::vector<double>& values, double share) {
   return sum / double(kept);
 }
 
-ErrorMetrics compareImages(const std::vector<Rgb>& image, const std::vector<Rgb>& reference) {
-  if (image.size() != reference.size()) throw std::invalid_argument("the images differ in size");
-  if (image.empty()) throw std::invalid_argument("the images have no pixels");
+std::vector<float> displayedFlip(const ColorImage& image, const ColorImage& reference) {
+  const double exposure = autoExposure(reference);
+  std::vector<float> map = flipMap(displayed(image, exposure), displayed(reference, exposure));
+  for (size_t i = 0; i < map.size(); ++i)
+    if (!render::isFinite(image.pixels[i])) map[i] = 1;
+  return map;
+}
+
+ReferenceError referenceError(const ColorImage& reference, const std::vector<Rgb>& variance) {
+  if (variance.size() != reference.pixels.size()) throw std::invalid_argument("the images differ in size");
+  if (variance.empty()) throw std::invalid_argument("the images have no pixels");
+  const double scale = scaleOf(reference.pixels);
+  std::vector<double> relative(variance.size());
+  ReferenceError result;
+  for (size_t i = 0; i < variance.size(); ++i) {
+    for (int channel = 0; channel < 3; ++channel) {
+      const double truth = scale * reference.pixels[i][channel];
+      relative[i] += scale * scale * variance[i][channel] / (truth * truth + kRelMseEpsilon) / 3;
+    }
+    result.relMse += relative[i] / double(variance.size());
+  }
+  result.trimmedRelMse = trimmedMean(relative, kTrimmedShare);
+  return result;
+}
+
+ErrorMetrics compareImages(const ColorImage& image, const ColorImage& reference) {
+  if (image.width != reference.width || image.height != reference.height)
+    throw std::invalid_argument("the images differ in size");
+  if (image.pixels.empty()) throw std::invalid_argument("the images have no pixels");
 
   ErrorMetrics result;
-  const double exposure = exposureOf(reference);
-  std::vector<double> relative(image.size());
-  for (size_t i = 0; i < image.size(); ++i) {
-    if (!render::isFinite(image[i])) {
+  const double scale = scaleOf(reference.pixels);
+  const auto count = double(image.pixels.size());
+  std::vector<double> relative(image.pixels.size());
+  for (size_t i = 0; i < image.pixels.size(); ++i) {
+    if (!render::isFinite(image.pixels[i])) {
       constexpr double kInfinity = std::numeric_limits<double>::infinity();
       ++result.nonFinitePixels;
       relative[i] = result.mse = result.relMse = result.smape = kInfinity;
       continue;
     }
     for (int channel = 0; channel < 3; ++channel) {
-      const double value = exposure * image[i][channel], truth = exposure * reference[i][channel];
+      const double value = scale * image.pixels[i][channel], truth = scale * reference.pixels[i][channel];
       const double squared = (value - truth) * (value - truth);
       relative[i] += squared / (truth * truth + kRelMseEpsilon) / 3;
       result.mse += squared / 3;
@@ -50,11 +80,11 @@ ErrorMetrics compareImages(const std::vector<Rgb>& image, const std::vector<Rgb>
     }
     result.relMse += relative[i];
   }
-  const auto count = double(image.size());
   result.mse /= count;
   result.relMse /= count;
   result.smape /= count;
   result.trimmedRelMse = trimmedMean(relative, kTrimmedShare);
+  for (const float value : displayedFlip(image, reference)) result.flip += value / count;
   return result;
 }
 

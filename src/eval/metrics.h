@@ -8,12 +8,15 @@
 //   trimmedRelMse   relMse without the worst 0.1 % of the pixels, which are fireflies more often than not
 //   smape           |I - R| / ((|I| + |R|) / 2 + 0.01)
 // A pixel of the image that is not finite has an infinite error; only the trimmed metric can forget it.
+//
+//   flip            mean of LDR-FLIP (flip.h) at 67 pixels per degree, of both images as `displayed` shows them
+//                   (exposure.h) at the exposure of the reference; in [0, 1], pixels that are not finite count 1
 #pragma once
 
 #include <cstdint>
 #include <vector>
 
-#include "render/math/vec.h"
+#include "eval/image_file.h"
 
 namespace odis::eval {
 
@@ -22,11 +25,21 @@ inline constexpr double kSmapeEpsilon = 0.01;
 inline constexpr double kTrimmedShare = 0.001;
 
 struct ErrorMetrics {
-  double mse = 0, relMse = 0, trimmedRelMse = 0, smape = 0;
+  double mse = 0, relMse = 0, trimmedRelMse = 0, smape = 0, flip = 0;
   uint64_t nonFinitePixels = 0;  // of the image
 };
 
 // Throws std::invalid_argument if the sizes differ or are zero, or if the reference is not finite everywhere.
-ErrorMetrics compareImages(const std::vector<render::Rgb>& image, const std::vector<render::Rgb>& reference);
+ErrorMetrics compareImages(const ColorImage& image, const ColorImage& reference);
+
+// The part of relMSE and of its trimmed mean that a reference brings in itself, from the variance of its pixels:
+// the mean of variance / (R^2 + 0.01), everything scaled as above. Throws as above.
+struct ReferenceError {
+  double relMse = 0, trimmedRelMse = 0;
+};
+ReferenceError referenceError(const ColorImage& reference, const std::vector<render::Rgb>& variance);
+
+// FLIP of each pixel, as `flip` above averages it.
+std::vector<float> displayedFlip(const ColorImage& image, const ColorImage& reference);
 
 }  // namespace odis::eval

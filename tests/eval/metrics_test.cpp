@@ -6,7 +6,7 @@
 #include <limits>
 #include <stdexcept>
 
-using odis::eval::compareImages;
+using odis::eval::ColorImage;
 using odis::eval::ErrorMetrics;
 using odis::render::Rgb;
 
@@ -14,6 +14,11 @@ namespace {
 
 std::vector<Rgb> grey(size_t count, float value) {
   return std::vector<Rgb>(count, Rgb(value));
+}
+
+// Of images that are one row.
+ErrorMetrics compareImages(const std::vector<Rgb>& image, const std::vector<Rgb>& reference) {
+  return odis::eval::compareImages({int(image.size()), 1, image}, {int(reference.size()), 1, reference});
 }
 
 TEST(Metrics, AreZeroForTheReferenceItself) {
@@ -71,11 +76,43 @@ TEST(Metrics, PixelsThatAreNotFiniteAreInfinitelyWrong) {
   EXPECT_TRUE(std::isinf(m.relMse));
   EXPECT_TRUE(std::isinf(m.smape));
   EXPECT_EQ(m.trimmedRelMse, 0);
+  EXPECT_GT(m.flip, 0.001);  // the pixel itself counts 1
+  EXPECT_LT(m.flip, 0.1);
 }
 
 TEST(Metrics, BlackReferenceIsNotScaled) {
   const ErrorMetrics m = compareImages({Rgb(0.1f)}, {Rgb(0)});
   EXPECT_NEAR(m.relMse, 0.01 / 0.01, 1e-6);
+}
+
+// Mean 2: pixels are scaled by 0.5, variances by 0.25.
+TEST(Metrics, ReferenceBringsInItsOwnError) {
+  const ColorImage reference{2, 1, {Rgb(1), Rgb(3)}};
+  const auto error = odis::eval::referenceError(reference, {Rgb(0.04f), Rgb(0)});
+  EXPECT_NEAR(error.relMse, 0.01 / 0.26 / 2, 1e-6);
+  EXPECT_NEAR(error.trimmedRelMse, error.relMse, 1e-12);
+  EXPECT_THROW(odis::eval::referenceError(reference, {Rgb(1)}), std::invalid_argument);
+}
+
+// An image with noise of a known variance against a noisy reference: the errors add.
+TEST(Metrics, ErrorsOfImageAndReferenceAdd) {
+  uint32_t state = 1;
+  const auto noise = [&](float deviation) {  // uniform
+    state = state * 1664525u + 1013904223u;
+    return deviation * std::sqrt(12.0f) * (float(state >> 8) / float(1 << 24) - 0.5f);
+  };
+  ColorImage image{200, 100, {}}, reference = image;
+  for (int i = 0; i < 20000; ++i) {
+    image.pixels.emplace_back(1 + noise(0.2f), 1 + noise(0.2f), 1 + noise(0.2f));
+    reference.pixels.emplace_back(1 + noise(0.05f), 1 + noise(0.05f), 1 + noise(0.05f));
+  }
+  const ColorImage truth{200, 100, grey(20000, 1)};
+  const double alone = odis::eval::compareImages(image, truth).relMse;
+  const double both = odis::eval::compareImages(image, reference).relMse;
+  const double own =
+      odis::eval::referenceError(reference, std::vector<Rgb>(20000, Rgb(0.05f * 0.05f))).relMse;
+  EXPECT_NEAR(both, alone + own, 0.03 * both);
+  EXPECT_GT(both - alone, 0.5 * own);
 }
 
 TEST(Metrics, RefuseWhatCannotBeCompared) {
