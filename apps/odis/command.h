@@ -42,7 +42,7 @@ Command addRenderCommand(CLI::App& parent, const std::string& commandLine);
 Command addSceneCommand(CLI::App& parent);
 Command addMetricsCommand(CLI::App& parent);
 Command addMontageCommand(CLI::App& parent);
-Command addCompareCommand(CLI::App& parent);
+Command addCompareCommand(CLI::App& parent, const std::string& commandLine);
 Command addAgreementCommand(CLI::App& parent);
 Command addBenchCommand(CLI::App& parent);
 

@@ -60,7 +60,7 @@ int runCommandLine(int argc, char** argv) {
   std::string commandLine;
   for (int i = 0; i < argc; ++i) commandLine += (i > 0 ? " " : "") + std::string(argv[i]);
   const std::vector<Command> commands{addRenderCommand(app, commandLine),
-                                      addCompareCommand(app),
+                                      addCompareCommand(app, commandLine),
                                       addAgreementCommand(app),
                                       addBenchCommand(app),
                                       addMetricsCommand(app),

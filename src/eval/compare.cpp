@@ -1,23 +1,13 @@
 #include "eval/compare.h"
 
-#include <fmt/format.h>
-
-#include <cmath>
 #include <filesystem>
-#include <stdexcept>
 
-#include "eval/image_file.h"
-#include "eval/load_scene.h"
-#include "eval/montage.h"
-#include "eval/reference.h"
-#include "eval/results_log.h"
-#include "eval/scene_hash.h"
-#include "odis_version.h"
-#include "render/image/write.h"
+#include "eval/equal_time.h"
+#include "eval/median.h"
+#include "eval/scene_run.h"
 
 namespace odis::eval {
 
-using namespace render;
 namespace fs = std::filesystem;
 
 std::string sceneName(const std::string& path) {
@@ -28,115 +18,80 @@ std::string sceneName(const std::string& path) {
 
 namespace {
 
-// One scene's share of a comparison.
-class SceneRun {
- public:
-  SceneRun(const CompareSettings& settings, const std::string& path, ResultsLog& log,
-           CompareObserver& observer)
-      : m_settings(settings), m_name(sceneName(path)), m_log(log), m_observer(observer) {
-    observer.start(m_name);
-    Warnings warnings;
-    m_scene = loadScene(path, settings.load, settings.pixels, warnings);
-    observer.warnings(warnings);
-    m_hash = hashScene(path, settings.load.defines);
-    RenderOptions options;
-    options.maxDepth = settings.maxDepth.value_or(m_scene->integrator().maxDepth);
-    options.rrDepth = settings.rrDepth.value_or(m_scene->integrator().rrDepth);
-    observer.start(m_name + ": reference");
-    m_reference = settings.reference.empty()
-                      ? cachedReference(*m_scene, m_name, m_hash, options, settings.referenceSpp,
-                                        settings.folder + "/references", observer.progress())
-                      : readColor(settings.reference);
-    if (m_reference.pixels.empty()) return;
-    const Crop& crop = m_scene->film().crop;
-    if (m_reference.width != crop.width || m_reference.height != crop.height)
-      throw ImageError(fmt::format("{}: is {} x {}, the image of {} is {} x {}", settings.reference,
-                                   m_reference.width, m_reference.height, m_name, crop.width, crop.height));
+Schedule planOf(const CompareSettings& settings) {
+  Schedule schedule;
+  for (const std::string& path : settings.scenes) {
+    const std::string scene = sceneName(path);
+    schedule.plan(scene, "reference", settings.referenceSpp);
+    for (int seed = 0; seed < settings.seeds; ++seed)
+      for (const int spp : settings.spp)
+        for (const Method& method : settings.methods) {
+          schedule.plan(scene, method.name, spp);
+          if (settings.equalTime && &method != &settings.methods.front())
+            schedule.plan(scene, settings.methods.front().name, spp);
+        }
   }
+  return schedule;
+}
 
-  Measurement measure(const Method& method, uint64_t seed) {
-    RenderOptions options = method.options;
-    options.spp = m_settings.spp;
-    options.seed = seed;
-    options.maxDepth = m_settings.maxDepth.value_or(m_scene->integrator().maxDepth);
-    options.rrDepth = m_settings.rrDepth.value_or(m_scene->integrator().rrDepth);
-    const Crop& crop = m_scene->film().crop;
-    const std::string key = hexText(hashText(
-        fmt::format("{} {} {}x{} {} {} {} {} {} {} {} {} {} {}", hexText(m_hash), method.text,
-                    m_scene->film().width, m_scene->film().height, crop.x, crop.y, crop.width, crop.height,
-                    options.spp, options.maxDepth, options.rrDepth, seed, ODIS_VERSION_STRING,
-                    m_settings.reference + std::to_string(m_settings.referenceSpp))));
-    const bool wantsImage = m_settings.images && seed == 0;
-    const Measurement* known = m_log.find(key);
-    if (known && !(wantsImage && known->image.empty())) return *known;
+// The median time that a method took for each number of samples.
+std::vector<TimePoint> timesOf(const std::vector<Measurement>& measurements, const std::string& scene,
+                               const std::string& method) {
+  std::map<int, std::vector<double>> bySpp;
+  for (const Measurement& m : measurements)
+    if (m.scene == scene && m.method == method && !m.equalTime) bySpp[m.spp].push_back(m.seconds);
+  std::vector<TimePoint> points;
+  for (const auto& [spp, seconds] : bySpp) points.push_back({double(spp), median(seconds)});
+  return points;
+}
 
-    m_observer.start(fmt::format("{}: {}, seed {}", m_name, method.name, seed));
-    const RenderResult result = render::render(*m_scene, options, m_observer.progress());
-    Measurement m;
-    m.scene = m_name;
-    m.method = method.name;
-    m.seed = seed;
-    m.key = key;
-    if (result.stats.interrupted) return m;
-    m.error = compareImages({result.frame.width, result.frame.height, result.frame.color}, m_reference);
-    m.seconds = result.stats.secondsPilot + result.stats.secondsBuild + result.stats.secondsGuided;
-    m.spp = result.stats.spp;
-    m.rays = result.stats.rays + result.stats.shadowRays;
-    if (wantsImage) m.image = writeImages(method, result.frame);
-    m_log.add(m);
-    return m;
-  }
+// Methods take turns within a seed. False if cancelled.
+bool compareAtEqualSamples(const CompareSettings& settings, SceneRun& run, const render::Progress& progress,
+                           std::vector<Measurement>& results) {
+  for (int seed = 0; seed < settings.seeds; ++seed)
+    for (const int spp : settings.spp)
+      for (const Method& method : settings.methods) {
+        Measurement measurement = run.measure(method, {spp, spp, false}, uint64_t(seed));
+        if (progress.cancelled()) return false;
+        results.push_back(std::move(measurement));
+      }
+  return true;
+}
 
-  // Puts the images that this run made, and the reference, side by side; nothing if an earlier run made some.
-  void writeMontage() {
-    if (m_shown.size() != m_settings.methods.size()) return;
-    m_shown.push_back(m_reference);
-    const ColorImage all = montage(m_shown);
-    writePng(fmt::format("{}/images/{}.png", m_settings.folder, m_name), all.width, all.height,
-             all.pixels.data(), m_settings.exposure);
-  }
-
- private:
-  std::string writeImages(const Method& method, const Frame2D& frame) {
-    const std::string folder = m_settings.folder + "/images";
-    fs::create_directories(folder);
-    const std::string stem = fmt::format("{}/{}-{}", folder, m_name, method.name);
-    writeColor(stem + ".exr", frame, m_scene->film().width, m_scene->film().height,
-               {{"odis:method", method.text}, {"odis:version", ODIS_VERSION_STRING}});
-    writePng(stem + ".png", frame.width, frame.height, frame.color.data(), m_settings.exposure);
-    m_shown.push_back({frame.width, frame.height, frame.color});
-    return stem + ".png";
-  }
-
-  const CompareSettings& m_settings;
-  std::string m_name;
-  ResultsLog& m_log;
-  CompareObserver& m_observer;
-  std::unique_ptr<Scene> m_scene;
-  uint64_t m_hash = 0;
-  ColorImage m_reference;
-  std::vector<ColorImage> m_shown;
-};
+// The same for all methods but the first, with what fits in the time that the first took.
+bool compareAtEqualTime(const CompareSettings& settings, SceneRun& run, const render::Progress& progress,
+                        std::vector<Measurement>& results) {
+  const std::string& scene = run.record().name;
+  const std::vector<TimePoint> allowed = timesOf(results, scene, settings.methods.front().name);
+  std::vector<std::vector<TimePoint>> taken;
+  for (const Method& method : settings.methods) taken.push_back(timesOf(results, scene, method.name));
+  for (int seed = 0; seed < settings.seeds; ++seed)
+    for (size_t i = 0; i < settings.spp.size(); ++i)
+      for (size_t method = 1; method < settings.methods.size(); ++method) {
+        const Budget budget{settings.spp[i], samplesInTime(taken[method], allowed[i].seconds), true};
+        Measurement measurement = run.measure(settings.methods[method], budget, uint64_t(seed));
+        if (progress.cancelled()) return false;
+        results.push_back(std::move(measurement));
+      }
+  return true;
+}
 
 }  // namespace
 
-std::vector<Measurement> compare(const CompareSettings& settings, CompareObserver& observer) {
+Comparison compare(const CompareSettings& settings, CompareObserver& observer) {
   fs::create_directories(settings.folder);
   ResultsLog log(settings.folder + "/results.jsonl", settings.fresh);
-  std::vector<Measurement> results;
+  Schedule schedule = planOf(settings);
+  Comparison result;
   for (const std::string& path : settings.scenes) {
-    SceneRun run(settings, path, log, observer);
-    if (observer.progress().cancelled()) return results;
-    for (int seed = 0; seed < settings.seeds; ++seed) {
-      for (const Method& method : settings.methods) {
-        Measurement measurement = run.measure(method, uint64_t(seed));
-        if (observer.progress().cancelled()) return results;
-        results.push_back(std::move(measurement));
-      }
-    }
-    if (settings.images) run.writeMontage();
+    SceneRun run(settings, path, log, schedule, observer);
+    if (observer.progress().cancelled()) return result;
+    result.scenes.push_back(run.record());
+    if (!compareAtEqualSamples(settings, run, observer.progress(), result.measurements)) return result;
+    if (settings.equalTime && !compareAtEqualTime(settings, run, observer.progress(), result.measurements))
+      return result;
   }
-  return results;
+  return result;
 }
 
 }  // namespace odis::eval

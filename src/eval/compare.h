@@ -1,5 +1,5 @@
-// Comparing methods: each renders each scene with several seeds; errors are taken against one reference a
-// scene.
+// Comparing methods: each renders each scene with several numbers of samples and several seeds; errors are
+// taken against one reference a scene.
 #pragma once
 
 #include <map>
@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "eval/metrics.h"
+#include "eval/measurement.h"
 #include "render/integrator/render.h"
 
 namespace odis::eval {
@@ -23,42 +23,52 @@ struct CompareSettings {
   std::vector<std::string> scenes;
   std::vector<Method> methods;  // ratios are to the first
   int seeds = 8;                // 0 .. seeds - 1
-  int spp = 4;
+  std::vector<int> spp{4};      // ascending
+  bool equalTime = false;       // the other methods also with what fits in the first one's time
   int referenceSpp = 1024;
   std::string reference;                 // an EXR file to use instead, "" for none; for one scene
   std::optional<int> maxDepth, rrDepth;  // replace the scene's
   render::LoadOptions load;
-  int pixels = 0;       // size of the images at the scene's aspect ratio; 0: as the scene or `load` has it
-  bool images = false;  // write the images of seed 0 as EXR and PNG, and a picture of all side by side
-  float exposure = 0;   // of these PNGs, in stops
-  bool fresh = false;   // forget earlier results
-  std::string folder;   // where results, references and images go
+  int pixels = 0;      // size of the images at the scene's aspect ratio; 0: as the scene or `load` has it
+  bool fresh = false;  // forget earlier results
+  std::string folder;  // where results, references and images go
 };
 
-// One rendering.
-struct Measurement {
-  std::string scene, method;
-  uint64_t seed = 0;
-  std::string key;  // hash of everything that the result depends on
-  ErrorMetrics error;
-  double seconds = 0, spp = 0;
-  uint64_t rays = 0;  // shadow rays included
-  std::string image;  // the PNG, "" if none was written
+// A scene as it was rendered.
+struct SceneRecord {
+  std::string name, file;
+  uint64_t hash = 0;
+  int width = 0, height = 0, maxDepth = 0, rrDepth = 0;
+  std::string reference;                         // EXR file
+  std::string referenceSettings;                 // what it is, in words
+  std::optional<ReferenceError> referenceError;  // of the reference itself, where its file tells
+};
+
+struct Comparison {
+  std::vector<SceneRecord> scenes;
+  // In the order scene, seed, samples, method; then, scene by scene, those at equal time.
+  std::vector<Measurement> measurements;
+};
+
+// How far a comparison has come.
+struct Outlook {
+  int done = 0, total = 0;  // renderings, references included
+  double secondsLeft = 0;   // by what similar ones took; 0 as long as that is not known
 };
 
 // Told of what is being done; its Progress is the one that rendering reports to.
 class CompareObserver {
  public:
   virtual ~CompareObserver() = default;
-  virtual void start(const std::string& what) = 0;
+  virtual void start(const std::string& what, const Outlook& outlook) = 0;
   virtual void warnings(const render::Warnings& warnings) = 0;
   virtual render::Progress& progress() = 0;
 };
 
-// Renders what is not yet in folder/results.jsonl, to which each result is added as it comes, and returns all
-// results in the order scene, seed, method: methods take turns, so that a noisy machine is noisy for all.
-// Ends early if progress is cancelled. Throws SceneError, std::runtime_error.
-std::vector<Measurement> compare(const CompareSettings& settings, CompareObserver& observer);
+// Renders what is not yet in folder/results.jsonl, to which each result is added as it comes. Methods take
+// turns, so that a noisy machine is noisy for all. The images of seed 0 are kept in folder/images.
+// Ends early, with what there is, if progress is cancelled. Throws SceneError, std::runtime_error.
+Comparison compare(const CompareSettings& settings, CompareObserver& observer);
 
 // A scene's name in tables and files: its file's stem, or its folder's name if that is only "scene".
 std::string sceneName(const std::string& path);

@@ -158,8 +158,7 @@ std::vector<Rgb> seenColors(const ColorImage& image) {
 
 // In [0, 1]: small differences take most of the range.
 double colorDifference(const Rgb& a, const Rgb& b) {
-  static const double kLargest =
-      std::pow(hyab(toHuntLab({0, 1, 0}), toHuntLab({0, 0, 1})), kColorExponent);
+  static const double kLargest = std::pow(hyab(toHuntLab({0, 1, 0}), toHuntLab({0, 0, 1})), kColorExponent);
   const double difference = std::pow(hyab(a, b), kColorExponent), bend = kBendAt * kLargest;
   if (difference < bend) return difference * kBendTo / bend;
   return kBendTo + (difference - bend) / (kLargest - bend) * (1 - kBendTo);
@@ -191,8 +190,8 @@ Features featuresOf(const ColorImage& image) {
   for (const double value : smooth) total += value;
   for (double& value : smooth) value /= total;
   const Kernel slope = balanced(makeKernel(radius, [&](int i) { return -i * gaussian(i); }));
-  const Kernel bump = balanced(makeKernel(
-      radius, [&](int i) { return (i * i / (deviation * deviation) - 1) * gaussian(i); }));
+  const Kernel bump = balanced(
+      makeKernel(radius, [&](int i) { return (i * i / (deviation * deviation) - 1) * gaussian(i); }));
 
   // The lengths of the first and of the second derivatives along x and y.
   const auto lengths = [&](const Kernel& derivative) {
@@ -215,8 +214,7 @@ std::vector<float> flipMap(const ColorImage& image, const ColorImage& reference)
   std::vector<float> result;
   for (size_t i = 0; i < image.pixels.size(); ++i) {
     // Where features differ, the same difference of colours is seen the better.
-    const double feature =
-        std::max(std::abs(a.edges[i] - b.edges[i]), std::abs(a.points[i] - b.points[i]));
+    const double feature = std::max(std::abs(a.edges[i] - b.edges[i]), std::abs(a.points[i] - b.points[i]));
     const double featureDifference = std::pow(feature / std::sqrt(2.0), kFeatureExponent);
     result.push_back(
         float(std::pow(colorDifference(imageColors[i], referenceColors[i]), 1 - featureDifference)));

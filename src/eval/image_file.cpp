@@ -32,11 +32,17 @@ ColorImage readColor(const std::string& path) {
 
 void writeColor(const std::string& path, const render::Frame2D& frame, int fullWidth, int fullHeight,
                 const std::map<std::string, std::string>& metadata) {
-  std::vector<float> planes[3];
-  for (int channel = 0; channel < 3; ++channel)
-    for (const render::Rgb& pixel : frame.color) planes[channel].push_back(pixel[channel]);
-  render::writeExr(path, {fullWidth, fullHeight, frame.x, frame.y, frame.width, frame.height},
-                   {{"R", planes[0].data()}, {"G", planes[1].data()}, {"B", planes[2].data()}}, metadata);
+  std::array<std::vector<float>, 6> planes;
+  const std::array<const char*, 6> names{"R", "G", "B", "variance.R", "variance.G", "variance.B"};
+  std::vector<render::ImageChannel> channels;
+  for (size_t i = 0; i < planes.size(); ++i) {
+    const std::vector<render::Rgb>& pixels = i < 3 ? frame.color : frame.variance;
+    if (pixels.empty()) continue;
+    for (const render::Rgb& pixel : pixels) planes[i].push_back(pixel[int(i % 3)]);
+    channels.push_back({names[i], planes[i].data()});
+  }
+  render::writeExr(path, {fullWidth, fullHeight, frame.x, frame.y, frame.width, frame.height}, channels,
+                   metadata);
 }
 
 }  // namespace odis::eval

@@ -23,7 +23,8 @@ struct ColorImage {
 
 // Channels R, G and B of the layer without a name, else Y. Throws ImageError.
 ColorImage readColor(const std::string& path);
-// Writes the colour alone. Throws std::runtime_error with path and reason.
+// Writes the colour, and variance.R, G, B if the frame has a variance. Throws std::runtime_error with path and
+// reason.
 void writeColor(const std::string& path, const render::Frame2D& frame, int fullWidth, int fullHeight,
                 const std::map<std::string, std::string>& metadata);
 

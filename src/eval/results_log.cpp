@@ -3,7 +3,6 @@
 #include <filesystem>
 #include <fstream>
 #include <limits>
-#include <nlohmann/json.hpp>
 
 #include "render/image/replace_file.h"
 
@@ -20,34 +19,42 @@ static Measurement fromJson(const Json& json) {
   Measurement m;
   m.scene = json.at("scene");
   m.method = json.at("method");
+  m.spp = json.at("spp");
+  m.equalTime = json.at("equalTime");
   m.seed = json.at("seed");
   m.key = json.at("key");
   m.error.mse = numberOrInfinity(json.at("mse"));
   m.error.relMse = numberOrInfinity(json.at("relMse"));
   m.error.trimmedRelMse = numberOrInfinity(json.at("trimmedRelMse"));
   m.error.smape = numberOrInfinity(json.at("smape"));
+  m.error.flip = json.at("flip");
   m.error.nonFinitePixels = json.at("nonFinitePixels");
   m.seconds = json.at("seconds");
-  m.spp = json.at("spp");
+  m.cpuSeconds = json.at("cpuSeconds");
+  m.samples = json.at("samples");
   m.rays = json.at("rays");
   m.image = json.at("image");
   return m;
 }
 
-static Json toJson(const Measurement& m) {
+nlohmann::ordered_json measurementJson(const Measurement& m) {
   return {{"scene", m.scene},
           {"method", m.method},
+          {"spp", m.spp},
+          {"equalTime", m.equalTime},
           {"seed", m.seed},
-          {"key", m.key},
-          {"mse", m.error.mse},
+          {"samples", m.samples},
           {"relMse", m.error.relMse},
           {"trimmedRelMse", m.error.trimmedRelMse},
           {"smape", m.error.smape},
+          {"mse", m.error.mse},
+          {"flip", m.error.flip},
           {"nonFinitePixels", m.error.nonFinitePixels},
           {"seconds", m.seconds},
-          {"spp", m.spp},
+          {"cpuSeconds", m.cpuSeconds},
           {"rays", m.rays},
-          {"image", m.image}};
+          {"image", m.image},
+          {"key", m.key}};
 }
 
 ResultsLog::ResultsLog(std::string path, bool fresh) : m_path(std::move(path)) {
@@ -70,7 +77,7 @@ const Measurement* ResultsLog::find(const std::string& key) const {
 
 void ResultsLog::add(const Measurement& measurement) {
   std::ofstream stream(m_path, std::ios::app);
-  stream << toJson(measurement).dump() << '\n';
+  stream << measurementJson(measurement).dump() << '\n';
   stream.close();
   if (!stream) throw render::WriteError("cannot write \"" + m_path + "\"");
   m_byKey[measurement.key] = measurement;

@@ -2,11 +2,15 @@
 #pragma once
 
 #include <map>
+#include <nlohmann/json.hpp>
 #include <string>
 
-#include "eval/compare.h"
+#include "eval/measurement.h"
 
 namespace odis::eval {
+
+// Every figure of a rendering; infinity becomes null.
+nlohmann::ordered_json measurementJson(const Measurement& measurement);
 
 class ResultsLog {
  public:

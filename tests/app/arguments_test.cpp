@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include "command.h"
+#include "compare_arguments.h"
 #include "output.h"
 #include "render_arguments.h"
 #include "suggest.h"
@@ -70,6 +71,14 @@ TEST(Arguments, PracticalPathGuiding) {
   EXPECT_EQ(mixed.ppg.directional, QuadtreeFilter::nearest);
   EXPECT_THROW(parseMethod("--ppg 2018"), UsageError);
   EXPECT_THROW(parseMethod("--ppg-share 0.5"), UsageError);
+}
+
+TEST(Arguments, SampleCountsRise) {
+  EXPECT_EQ(parseSampleCounts("4"), std::vector<int>{4});
+  EXPECT_EQ(parseSampleCounts("1,2,16777216"), (std::vector<int>{1, 2, 16777216}));
+  for (const char* wrong :
+       {"", ",", "4,", ",4", "4,,8", "0", "-4", "4,4", "8,4", "4 8", "4, 8", "4.0", "x", "16777217", "1e2"})
+    EXPECT_THROW(parseSampleCounts(wrong), UsageError) << wrong;
 }
 
 TEST(Suggest, FindsTheNearestWord) {

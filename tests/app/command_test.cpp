@@ -44,6 +44,9 @@ TEST_F(Odis, WrongUsageIsTwo) {
   expectFailure("compare room.xml -o out --methods 'a=--guide-bounce 1'", 2, "Did you mean --guide-bounces?");
   expectFailure("compare room.xml -o out --methods a=,a=", 2, "two methods");
   expectFailure("compare room.xml room.xml -o out", 2, "two scenes");
+  for (const char* spp : {"0", "4,x", "4,,8", "4,8,", "8,4", "4,4", "4.5", "' '", "99999999"})
+    expectFailure(std::string("compare room.xml -o out --spp ") + spp, 2, "--spp: found");
+  expectFailure("compare room.xml -o out --methods a= --equal-time", 2, "there is only one");
 }
 
 TEST_F(Odis, BadSceneIsThreeAndLeavesNothing) {
@@ -114,14 +117,71 @@ TEST_F(Odis, MetricsAndMontage) {
 }
 
 TEST_F(Odis, ComparesAndResumes) {
-  const std::string arguments = "compare room.xml -o out --spp 2 --seeds 2 --reference-spp 16 --images -q";
+  const std::string arguments =
+      "compare room.xml -o out --spp 2,4 --seeds 2 --reference-spp 16 --images -q --equal-time";
   const Outcome first = run(arguments);
   ASSERT_EQ(first.code, 0) << first.text;
   EXPECT_NE(first.text.find("| room"), std::string::npos) << first.text;
-  EXPECT_TRUE(exists("out/comparison.json"));
-  EXPECT_TRUE(exists("out/images/room.png"));
+  EXPECT_TRUE(exists("out/comparison.md"));
+  EXPECT_TRUE(exists("out/images/room-2.png"));
+  EXPECT_TRUE(exists("out/images/room-4.png"));
   const Outcome second = run(arguments);
   EXPECT_EQ(second.text, first.text);  // times too: nothing was rendered again
+
+  std::ifstream stream(file("out/comparison.json"));
+  const nlohmann::json json = nlohmann::json::parse(stream);
+  EXPECT_EQ(json.at("runs").size(), 2u * 2 * (2 + 1));  // seeds, samples; odis also at equal time
+  EXPECT_EQ(json.at("rows").size(), 2u * (2 + 1));
+  EXPECT_NE(json.at("command").get<std::string>().find("--spp 2,4"), std::string::npos);
+  const auto& scene = json.at("scenes").at(0);
+  EXPECT_TRUE(exists(scene.at("reference")));
+  EXPECT_GT(scene.at("referenceError").at("relMse"), 0);
+  for (const auto& run : json.at("runs")) {
+    EXPECT_GE(run.at("cpuSeconds"), 0);
+    EXPECT_GT(run.at("rays"), 0);
+    EXPECT_EQ(run.at("method") == "odis" || !run.at("equalTime"), true);
+    if (run.at("seed") == 0) EXPECT_TRUE(exists("out/" + run.at("image").get<std::string>()));
+  }
+}
+
+// A comparison that was cut off after some results, the last of them half written, ends as one that was not: only
+// what is missing is rendered.
+TEST_F(Odis, InterruptedComparisonGoesOn) {
+  const std::string arguments = "compare room.xml -o out --spp 2,4 --seeds 3 --reference-spp 16";
+  ASSERT_EQ(run(arguments).code, 0);
+  std::vector<std::string> lines;
+  std::ifstream whole(file("out/results.jsonl"));
+  for (std::string line; std::getline(whole, line);) lines.push_back(line);
+  ASSERT_EQ(lines.size(), 12u);
+  std::string kept;
+  for (size_t i = 0; i < 5; ++i) kept += lines[i] + "\n";
+  write("out/results.jsonl", kept + lines[5].substr(0, 40) + "\n");
+
+  const Outcome resumed = run(arguments);
+  ASSERT_EQ(resumed.code, 0) << resumed.text;
+  std::vector<nlohmann::json> after;
+  std::ifstream stream(file("out/results.jsonl"));
+  for (std::string line; std::getline(stream, line);)
+    if (nlohmann::json::accept(line)) after.push_back(nlohmann::json::parse(line));
+  ASSERT_EQ(after.size(), 12u);
+  for (size_t i = 0; i < after.size(); ++i) {
+    const nlohmann::json before = nlohmann::json::parse(lines[i]);
+    EXPECT_EQ(after[i].at("key"), before.at("key")) << i;
+    EXPECT_EQ(after[i].at("relMse"), before.at("relMse")) << i;  // the same bits
+    if (i < 5) EXPECT_EQ(after[i], before) << i;                 // not rendered again
+  }
+  // An image that was lost is rendered again, too.
+  fs::remove_all(file("out/images"));
+  ASSERT_EQ(run(arguments).code, 0);
+  EXPECT_TRUE(exists("out/" + after[0].at("image").get<std::string>()));
+}
+
+// Says what is done, how much is to do and, once something is known, how long that takes.
+TEST_F(Odis, ComparisonTellsTheTimeLeft) {
+  const Outcome outcome = run("compare room.xml -o out --spp 2 --seeds 2 --reference-spp 16");
+  EXPECT_NE(outcome.text.find("[1/5] room: reference"), std::string::npos) << outcome.text;
+  EXPECT_NE(outcome.text.find("[5/5, "), std::string::npos) << outcome.text;
+  EXPECT_NE(outcome.text.find("left] room: odis, 2 spp, seed 1"), std::string::npos) << outcome.text;
 }
 
 }  // namespace

@@ -1,11 +1,11 @@
-// What comparisons are made of, without rendering: table, log, hash, montage.
+// What comparisons are made of, without rendering: log, hash, montage.
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <filesystem>
 #include <fstream>
 
-#include "eval/comparison_table.h"
+#include "eval/compare.h"
 #include "eval/montage.h"
 #include "eval/results_log.h"
 #include "eval/scene_hash.h"
@@ -30,62 +30,21 @@ class TemporaryFolder {
   fs::path m_path;
 };
 
-Measurement run(const char* scene, const char* method, uint64_t seed, double error, double seconds,
-                uint64_t rays) {
-  Measurement m;
-  m.scene = scene;
-  m.method = method;
-  m.seed = seed;
-  m.error.trimmedRelMse = error;
-  m.seconds = seconds;
-  m.rays = rays;
-  return m;
-}
-
-TEST(ComparisonTable, TakesMediansRatiosAndGeometricMeans) {
-  const std::vector<ComparisonRow> rows = summarize({
-      run("a", "path", 0, 1.0, 2, 100),
-      run("a", "odis", 0, 0.5, 3, 100),
-      run("a", "path", 1, 9.0, 2, 100),
-      run("a", "odis", 1, 0.9, 3, 100),
-      run("a", "path", 2, 2.0, 2, 100),
-      run("a", "odis", 2, 0.1, 3, 100),
-      run("b", "path", 0, 4.0, 1, 50),
-      run("b", "odis", 0, 4.0, 1, 200),
-  });
-  ASSERT_EQ(rows.size(), 6u);
-  EXPECT_EQ(rows[0].error, 2.0);
-  EXPECT_EQ(rows[0].errorRatio, 1.0);
-  EXPECT_EQ(rows[1].error, 0.5);
-  EXPECT_EQ(rows[1].seeds, 3);
-  EXPECT_NEAR(rows[1].errorRatio, 0.25, 1e-12);
-  EXPECT_NEAR(rows[1].secondsRatio, 1.5, 1e-12);
-  EXPECT_NEAR(rows[3].raysRatio, 4.0, 1e-12);
-  EXPECT_EQ(rows[5].method, "odis");
-  EXPECT_NEAR(rows[5].errorRatio, std::sqrt(0.25 * 1.0), 1e-12);
-  EXPECT_NEAR(rows[5].raysRatio, std::sqrt(1.0 * 4.0), 1e-12);
-  EXPECT_NEAR(rows[5].secondsRatio, std::sqrt(1.5 * 1.0), 1e-12);
-}
-
-TEST(ComparisonTable, MedianOfAnEvenNumberIsBetweenTheMiddleTwo) {
-  const std::vector<ComparisonRow> rows =
-      summarize({run("a", "path", 0, 1, 1, 1), run("a", "path", 1, 2, 1, 1)});
-  ASSERT_EQ(rows.size(), 1u);
-  EXPECT_EQ(rows[0].error, 1.5);
-}
-
-TEST(ComparisonTable, IsMarkdown) {
-  const std::string text = markdownTable(summarize({run("room", "path", 0, 0.125, 1, 2000000)}));
-  EXPECT_NE(text.find("| room  | path   |    0.125 |    1.00 |    2.0 |       1.000 |"), std::string::npos)
-      << text;
-  EXPECT_TRUE(markdownTable(summarize({})).find("scene") != std::string::npos);
-}
-
 TEST(ResultsLog, RemembersAndSkipsBrokenLines) {
   const TemporaryFolder folder;
   const std::string path = folder.file("results.jsonl");
-  Measurement m = run("a", "path", 7, 0.5, 2, 123);
+  Measurement m;
+  m.scene = "a";
+  m.method = "path";
+  m.spp = 16;
+  m.equalTime = true;
+  m.seed = 7;
+  m.samples = 12;
+  m.cpuSeconds = 3;
+  m.rays = 123;
   m.key = "k";
+  m.error.trimmedRelMse = 0.5;
+  m.error.flip = 0.25;
   m.error.relMse = INFINITY;
   ResultsLog(path, false).add(m);
   std::ofstream(path, std::ios::app) << "{\"scene\":\"a\",\"meth";
@@ -93,6 +52,11 @@ TEST(ResultsLog, RemembersAndSkipsBrokenLines) {
   const ResultsLog log(path, false);
   ASSERT_NE(log.find("k"), nullptr);
   EXPECT_EQ(log.find("k")->rays, 123u);
+  EXPECT_EQ(log.find("k")->spp, 16);
+  EXPECT_TRUE(log.find("k")->equalTime);
+  EXPECT_EQ(log.find("k")->samples, 12);
+  EXPECT_EQ(log.find("k")->cpuSeconds, 3);
+  EXPECT_EQ(log.find("k")->error.flip, 0.25);
   EXPECT_EQ(log.find("k")->error.trimmedRelMse, 0.5);
   EXPECT_TRUE(std::isinf(log.find("k")->error.relMse));
   EXPECT_EQ(log.find("other"), nullptr);

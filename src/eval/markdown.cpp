@@ -1,0 +1,92 @@
+#include "eval/markdown.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace odis::eval {
+
+std::string neededText(const SamplesNeeded& needed) {
+  switch (needed.where) {
+    case SamplesNeeded::unknown: return "";
+    case SamplesNeeded::below: return fmt::format("under {:.3g}", needed.samples);
+    case SamplesNeeded::within: return fmt::format("{:.3g}", needed.samples);
+    case SamplesNeeded::beyond: return fmt::format("beyond {:.3g}", needed.samples);
+  }
+  return "";
+}
+
+namespace {
+
+// Rows of cells, the first of them the header; columns from `numbers` on are aligned to the right.
+std::string layOut(const std::vector<std::vector<std::string>>& cells, size_t numbers) {
+  std::vector<size_t> widths(cells.front().size(), 3);
+  for (const auto& row : cells)
+    for (size_t i = 0; i < row.size(); ++i) widths[i] = std::max(widths[i], row[i].size());
+  std::string text;
+  for (size_t r = 0; r < cells.size(); ++r) {
+    for (size_t i = 0; i < widths.size(); ++i)
+      text += i < numbers ? fmt::format("| {:<{}} ", cells[r][i], widths[i])
+                          : fmt::format("| {:>{}} ", cells[r][i], widths[i]);
+    text += "|\n";
+    if (r > 0) continue;
+    for (size_t i = 0; i < widths.size(); ++i)
+      text += i < numbers ? fmt::format("|:{:-<{}}-", "", widths[i]) : fmt::format("|-{:-<{}}:", "", widths[i]);
+    text += "|\n";
+  }
+  return text;
+}
+
+// "0.812 [0.790, 0.851]"; without an interval where there is no doubt: a method over itself, or one seed.
+std::string intervalText(const Interval& interval) {
+  const std::string value = fmt::format("{:.3f}", interval.value);
+  if (!(interval.high > interval.low)) return value;
+  return fmt::format("{} [{:.3f}, {:.3f}]", value, interval.low, interval.high);
+}
+
+std::vector<std::string> rowCells(const ComparisonRow& row) {
+  // What was asked for, or what fitted in the time of that.
+  const std::string samples =
+      row.equalTime ? fmt::format("{:.3g} in time of {}", row.samples, row.spp) : fmt::format("{}", row.spp);
+  std::vector<std::string> cells{row.scene, row.method, samples};
+  if (row.isMean())
+    cells.insert(cells.end(), {"", "", "", ""});
+  else
+    cells.insert(cells.end(), {fmt::format("{:.3g}", row.error.trimmedRelMse),
+                               fmt::format("{:.3f}", row.error.flip), fmt::format("{:.2f}", row.seconds),
+                               fmt::format("{:.1f}", row.rays * 1e-6)});
+  cells.insert(cells.end(),
+               {intervalText(row.errorRatio), intervalText(row.errorTimeRatio),
+                intervalText(row.errorRaysRatio), neededText(row.needed)});
+  return cells;
+}
+
+std::string referencesTable(const std::vector<ComparisonRow>& rows, const std::vector<SceneRecord>& scenes) {
+  std::vector<std::vector<std::string>> cells{{"reference of", "its own error", "of the smallest error"}};
+  for (const SceneRecord& scene : scenes) {
+    double smallest = std::numeric_limits<double>::infinity();
+    for (const ComparisonRow& row : rows)
+      if (row.scene == scene.name) smallest = std::min(smallest, row.error.trimmedRelMse);
+    if (!scene.referenceError)
+      cells.push_back({scene.name, "not known", ""});
+    else
+      cells.push_back(
+          {scene.name, fmt::format("{:.2g}", scene.referenceError->trimmedRelMse),
+           smallest > 0 ? fmt::format("{:.1f} %", 100 * scene.referenceError->trimmedRelMse / smallest) : ""});
+  }
+  return layOut(cells, 1);
+}
+
+}  // namespace
+
+std::string markdownTables(const std::vector<ComparisonRow>& rows, const std::vector<SceneRecord>& scenes) {
+  const std::string needed = rows.empty() ? "first method needs" : rows.front().method + " needs";
+  std::vector<std::vector<std::string>> cells{{"scene", "method", "spp", "error", "FLIP", "seconds", "Mrays",
+                                               "error ratio", "error x time", "error x rays", needed}};
+  for (const ComparisonRow& row : rows) cells.push_back(rowCells(row));
+  return layOut(cells, 2) + "\n" + referencesTable(rows, scenes);
+}
+
+}  // namespace odis::eval

@@ -1,0 +1,114 @@
+#include "eval/scene_run.h"
+
+#include <fmt/format.h>
+
+#include <ctime>
+#include <filesystem>
+
+#include "eval/load_scene.h"
+#include "eval/scene_hash.h"
+#include "odis_version.h"
+
+namespace odis::eval {
+
+using namespace render;
+namespace fs = std::filesystem;
+
+SceneRun::SceneRun(const CompareSettings& settings, const std::string& path, ResultsLog& log,
+                   Schedule& schedule, CompareObserver& observer)
+    : m_settings(settings), m_log(log), m_schedule(schedule), m_observer(observer) {
+  m_record.name = sceneName(path);
+  m_record.file = path;
+  observer.start(m_record.name, schedule.outlook());
+  Warnings warnings;
+  m_scene = loadScene(path, settings.load, settings.pixels, warnings);
+  observer.warnings(warnings);
+  m_record.hash = hashScene(path, settings.load.defines);
+  m_record.width = m_scene->film().crop.width;
+  m_record.height = m_scene->film().crop.height;
+  m_record.maxDepth = settings.maxDepth.value_or(m_scene->integrator().maxDepth);
+  m_record.rrDepth = settings.rrDepth.value_or(m_scene->integrator().rrDepth);
+
+  observer.start(m_record.name + ": reference", schedule.outlook());
+  if (settings.reference.empty()) {
+    RenderOptions options;
+    options.maxDepth = m_record.maxDepth;
+    options.rrDepth = m_record.rrDepth;
+    options.threads = settings.methods.front().options.threads;
+    m_reference = cachedReference(*m_scene, m_record.name, m_record.hash, options, settings.referenceSpp,
+                                  settings.folder + "/references", observer.progress());
+  } else {
+    m_reference = readReference(settings.reference);
+  }
+  schedule.finish(m_record.name, "reference", settings.referenceSpp, m_reference.secondsRendered);
+  const ColorImage& image = m_reference.image;
+  if (image.pixels.empty()) return;  // cancelled
+  if (image.width != m_record.width || image.height != m_record.height)
+    throw ImageError(fmt::format("{}: is {} x {}, the image of {} is {} x {}", settings.reference,
+                                 image.width, image.height, m_record.name, m_record.width, m_record.height));
+  m_record.reference = m_reference.file;
+  m_record.referenceSettings = m_reference.settings;
+  m_record.referenceError = m_reference.error;
+}
+
+std::string SceneRun::keyOf(const Method& method, const RenderOptions& options, const Budget& budget) const {
+  const FilmSettings& film = m_scene->film();
+  return hexText(hashText(fmt::format(
+      "{} {} {}x{} {} {} {} {} {} {} {} {} {} {} {}", hexText(m_record.hash), method.text, film.width,
+      film.height, film.crop.x, film.crop.y, film.crop.width, film.crop.height, options.spp, options.maxDepth,
+      options.rrDepth, options.seed, ODIS_VERSION_STRING,
+      m_settings.reference + std::to_string(m_settings.referenceSpp),
+      budget.equalTime ? fmt::format("time of {}", budget.spp) : "")));
+}
+
+Measurement SceneRun::measure(const Method& method, const Budget& budget, uint64_t seed) {
+  RenderOptions options = method.options;
+  options.spp = budget.samples;
+  options.seed = seed;
+  options.maxDepth = m_record.maxDepth;
+  options.rrDepth = m_record.rrDepth;
+  const std::string key = keyOf(method, options, budget);
+  // What takes a given time is planned as if it were the first method.
+  const std::string& planned = budget.equalTime ? m_settings.methods.front().name : method.name;
+  const Measurement* known = m_log.find(key);
+  if (known && (seed != 0 || fs::exists(m_settings.folder + "/" + known->image))) {
+    m_schedule.finish(m_record.name, planned, budget.spp, known->seconds);
+    Measurement m = *known;
+    m.method = method.name;  // the same options may go by another name today
+    return m;
+  }
+
+  m_observer.start(fmt::format("{}: {}, {} spp, seed {}", m_record.name, method.name, budget.samples, seed),
+                   m_schedule.outlook());
+  Measurement m;
+  const std::clock_t start = std::clock();  // of all threads
+  const RenderResult result = render::render(*m_scene, options, m_observer.progress());
+  m.cpuSeconds = double(std::clock() - start) / CLOCKS_PER_SEC;
+  m.scene = m_record.name;
+  m.method = method.name;
+  m.spp = budget.spp;
+  m.equalTime = budget.equalTime;
+  m.seed = seed;
+  m.key = key;
+  if (result.stats.interrupted) return m;
+  m.error = compareImages({result.frame.width, result.frame.height, result.frame.color}, m_reference.image);
+  m.seconds = result.stats.secondsPilot + result.stats.secondsBuild + result.stats.secondsGuided;
+  m.samples = result.stats.spp;
+  m.rays = result.stats.rays + result.stats.shadowRays;
+  if (seed == 0) m.image = writeImage(m, method, result.frame);
+  m_log.add(m);
+  m_schedule.finish(m_record.name, planned, budget.spp, m.seconds);
+  return m;
+}
+
+std::string SceneRun::writeImage(const Measurement& m, const Method& method, const Frame2D& frame) const {
+  fs::create_directories(m_settings.folder + "/images");
+  // The key keeps images of the same name but other settings apart.
+  const std::string name = fmt::format("images/{}-{}-{}{}-{}.exr", m.scene, m.method, m.spp,
+                                       m.equalTime ? "-time" : "", m.key.substr(0, 8));
+  writeColor(m_settings.folder + "/" + name, frame, m_scene->film().width, m_scene->film().height,
+             {{"odis:method", method.text}, {"odis:version", ODIS_VERSION_STRING}});
+  return name;
+}
+
+}  // namespace odis::eval

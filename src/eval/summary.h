@@ -1,0 +1,35 @@
+// What a comparison says: medians over seeds, ratios to the first method, means over scenes.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "eval/bootstrap.h"
+#include "eval/measurement.h"
+#include "eval/samples_needed.h"
+
+namespace odis::eval {
+
+// A method on a scene with a number of samples: medians over its seeds. Ratios are to the first method with the
+// same `spp` on the same scene; "error" there is the 0.1 %-trimmed relMSE.
+struct ComparisonRow {
+  std::string scene, method;
+  int spp = 0;
+  bool equalTime = false;
+  int seeds = 0;
+  ErrorMetrics error;
+  double seconds = 0, cpuSeconds = 0, rays = 0, samples = 0;
+  Interval errorRatio, errorTimeRatio, errorRaysRatio;
+  double secondsRatio = 1, raysRatio = 1;
+  SamplesNeeded needed;  // by the first method for the same error
+  std::string image;     // of seed 0
+
+  bool isMean() const { return scene == kAllScenes; }
+  static constexpr const char* kAllScenes = "geometric mean";
+};
+
+// Rows in the order of the measurements, then those of scene "geometric mean" (ratios only) if there is more
+// than one scene. The first method is that of the first measurement.
+std::vector<ComparisonRow> summarize(const std::vector<Measurement>& measurements);
+
+}  // namespace odis::eval
