@@ -30,8 +30,7 @@ void CompareArguments::addTo(CLI::App& app) {
       ->capture_default_str();
   app.add_option("--reference", settings.reference, "EXR file to use as the reference");
   app.add_option("--pixels", settings.pixels, "Make the images about so many pixels large")->check(positive);
-  app.add_option("--max-depth", settings.maxDepth, "In place of the scenes'")
-      ->check(CLI::Range(-1, 1 << 20));
+  app.add_option("--max-depth", settings.maxDepth, "In place of the scenes'")->check(CLI::Range(-1, 1 << 20));
   app.add_option("--rr-depth", settings.rrDepth, "In place of the scenes'")->check(CLI::Range(1, 1 << 20));
   app.add_option("-o,--output", settings.folder, "Folder for report, results, references and images")
       ->required();

@@ -15,6 +15,7 @@
 #include "eval/image_file.h"
 #include "eval/markdown.h"
 #include "eval/pictures.h"
+#include "eval/report.h"
 #include "eval/summary.h"
 #include "output.h"
 
@@ -64,9 +65,14 @@ static int run(CompareArguments& a) {
   const auto json =
       eval::comparisonJson(comparison, rows, settings.methods, {a.commandLine, eval::machineName()});
   writeText(settings.folder + "/comparison.md", tables);
-  writeText(settings.folder + "/comparison.json", json.dump(2) + "\n");
+  // The command line may hold bytes that are no UTF-8.
+  writeText(settings.folder + "/comparison.json",
+            json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n");
+  if (!rows.empty())
+    writeText(settings.folder + "/report.html", eval::reportPage(comparison, rows, json, settings.folder));
   if (a.images) eval::writePictures(comparison, rows, settings.folder, a.exposure);
   fmt::print("{}", tables);
+  if (!rows.empty() && !a.quiet) say(fmt::format("report: {}/report.html\n", settings.folder));
   return InterruptScope::exitCode();
 }
 
@@ -74,9 +80,9 @@ Command addCompareCommand(CLI::App& parent, const std::string& commandLine) {
   CLI::App* app = parent.add_subcommand("compare", "Compare ways to render scenes by error, rays and time");
   app->footer(
       "Prints medians over seeds, ratios to the first method with 95 % intervals, and how many samples the\n"
-      "first method needs for the same error. \"Error\" is the relMSE without the worst 0.1 % of the "
-      "pixels.\n"
-      "Results are kept in DIR/results.jsonl: an interrupted comparison goes on where it stopped.");
+      "first method needs for the same error. Error: the relMSE without the worst 0.1 % of the pixels.\n"
+      "DIR/report.html shows everything with the pictures. Results are kept in DIR/results.jsonl: an\n"
+      "interrupted comparison goes on where it stopped.");
   const auto a = std::make_shared<CompareArguments>();
   a->commandLine = commandLine;
   a->addTo(*app);

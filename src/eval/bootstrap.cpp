@@ -25,9 +25,7 @@ std::vector<double> resampledRatios(const std::vector<double>& a, const std::vec
 
 Interval intervalOf(double value, std::vector<double> resamples) {
   std::sort(resamples.begin(), resamples.end());
-  const auto at = [&](double share) {
-    return resamples[size_t(share * double(resamples.size() - 1) + 0.5)];
-  };
+  const auto at = [&](double share) { return resamples[size_t(share * double(resamples.size() - 1) + 0.5)]; };
   return {value, at((1 - kConfidence) / 2), at((1 + kConfidence) / 2)};
 }
 

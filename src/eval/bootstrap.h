@@ -17,7 +17,8 @@ struct Interval {
 // The ratio of the medians, median(a) / median(b), of kResamples resamples: seeds are drawn with replacement,
 // a and b of the same seed together, as they were rendered one after the other. Always the same draws for the
 // same `seed`. a and b must be of one size, not zero.
-std::vector<double> resampledRatios(const std::vector<double>& a, const std::vector<double>& b, uint64_t seed);
+std::vector<double> resampledRatios(const std::vector<double>& a, const std::vector<double>& b,
+                                    uint64_t seed);
 
 // The interval between the percentiles of the resamples, around `value`.
 Interval intervalOf(double value, std::vector<double> resamples);

@@ -10,10 +10,14 @@ namespace odis::eval {
 
 std::string neededText(const SamplesNeeded& needed) {
   switch (needed.where) {
-    case SamplesNeeded::unknown: return "";
-    case SamplesNeeded::below: return fmt::format("under {:.3g}", needed.samples);
-    case SamplesNeeded::within: return fmt::format("{:.3g}", needed.samples);
-    case SamplesNeeded::beyond: return fmt::format("beyond {:.3g}", needed.samples);
+    case SamplesNeeded::unknown:
+      return "";
+    case SamplesNeeded::below:
+      return fmt::format("under {:.3g}", needed.samples);
+    case SamplesNeeded::within:
+      return fmt::format("{:.3g}", needed.samples);
+    case SamplesNeeded::beyond:
+      return fmt::format("beyond {:.3g}", needed.samples);
   }
   return "";
 }
@@ -33,7 +37,8 @@ std::string layOut(const std::vector<std::vector<std::string>>& cells, size_t nu
     text += "|\n";
     if (r > 0) continue;
     for (size_t i = 0; i < widths.size(); ++i)
-      text += i < numbers ? fmt::format("|:{:-<{}}-", "", widths[i]) : fmt::format("|-{:-<{}}:", "", widths[i]);
+      text +=
+          i < numbers ? fmt::format("|:{:-<{}}-", "", widths[i]) : fmt::format("|-{:-<{}}:", "", widths[i]);
     text += "|\n";
   }
   return text;
@@ -54,12 +59,11 @@ std::vector<std::string> rowCells(const ComparisonRow& row) {
   if (row.isMean())
     cells.insert(cells.end(), {"", "", "", ""});
   else
-    cells.insert(cells.end(), {fmt::format("{:.3g}", row.error.trimmedRelMse),
-                               fmt::format("{:.3f}", row.error.flip), fmt::format("{:.2f}", row.seconds),
-                               fmt::format("{:.1f}", row.rays * 1e-6)});
-  cells.insert(cells.end(),
-               {intervalText(row.errorRatio), intervalText(row.errorTimeRatio),
-                intervalText(row.errorRaysRatio), neededText(row.needed)});
+    cells.insert(cells.end(),
+                 {fmt::format("{:.3g}", row.error.trimmedRelMse), fmt::format("{:.3f}", row.error.flip),
+                  fmt::format("{:.2f}", row.seconds), fmt::format("{:.1f}", row.rays * 1e-6)});
+  cells.insert(cells.end(), {intervalText(row.errorRatio), intervalText(row.errorTimeRatio),
+                             intervalText(row.errorRaysRatio), neededText(row.needed)});
   return cells;
 }
 
@@ -72,9 +76,10 @@ std::string referencesTable(const std::vector<ComparisonRow>& rows, const std::v
     if (!scene.referenceError)
       cells.push_back({scene.name, "not known", ""});
     else
-      cells.push_back(
-          {scene.name, fmt::format("{:.2g}", scene.referenceError->trimmedRelMse),
-           smallest > 0 ? fmt::format("{:.1f} %", 100 * scene.referenceError->trimmedRelMse / smallest) : ""});
+      cells.push_back({scene.name, fmt::format("{:.2g}", scene.referenceError->trimmedRelMse),
+                       smallest > 0
+                           ? fmt::format("{:.1f} %", 100 * scene.referenceError->trimmedRelMse / smallest)
+                           : ""});
   }
   return layOut(cells, 1);
 }

@@ -53,12 +53,12 @@ SceneRun::SceneRun(const CompareSettings& settings, const std::string& path, Res
 
 std::string SceneRun::keyOf(const Method& method, const RenderOptions& options, const Budget& budget) const {
   const FilmSettings& film = m_scene->film();
-  return hexText(hashText(fmt::format(
-      "{} {} {}x{} {} {} {} {} {} {} {} {} {} {} {}", hexText(m_record.hash), method.text, film.width,
-      film.height, film.crop.x, film.crop.y, film.crop.width, film.crop.height, options.spp, options.maxDepth,
-      options.rrDepth, options.seed, ODIS_VERSION_STRING,
-      m_settings.reference + std::to_string(m_settings.referenceSpp),
-      budget.equalTime ? fmt::format("time of {}", budget.spp) : "")));
+  return hexText(hashText(fmt::format("{} {} {}x{} {} {} {} {} {} {} {} {} {} {} {}", hexText(m_record.hash),
+                                      method.text, film.width, film.height, film.crop.x, film.crop.y,
+                                      film.crop.width, film.crop.height, options.spp, options.maxDepth,
+                                      options.rrDepth, options.seed, ODIS_VERSION_STRING,
+                                      m_settings.reference + std::to_string(m_settings.referenceSpp),
+                                      budget.equalTime ? fmt::format("time of {}", budget.spp) : "")));
 }
 
 Measurement SceneRun::measure(const Method& method, const Budget& budget, uint64_t seed) {

@@ -123,6 +123,7 @@ TEST_F(Odis, ComparesAndResumes) {
   ASSERT_EQ(first.code, 0) << first.text;
   EXPECT_NE(first.text.find("| room"), std::string::npos) << first.text;
   EXPECT_TRUE(exists("out/comparison.md"));
+  EXPECT_TRUE(exists("out/report.html"));
   EXPECT_TRUE(exists("out/images/room-2.png"));
   EXPECT_TRUE(exists("out/images/room-4.png"));
   const Outcome second = run(arguments);

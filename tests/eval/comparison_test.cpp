@@ -2,37 +2,26 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <filesystem>
 #include <fstream>
 
 #include "eval/compare.h"
 #include "eval/montage.h"
 #include "eval/results_log.h"
 #include "eval/scene_hash.h"
+#include "support/temporary_folder.h"
 
 using namespace odis::eval;
-namespace fs = std::filesystem;
+using odis::test::TemporaryFolder;
 
 namespace {
 
-// A folder that lives as long as the test.
-class TemporaryFolder {
- public:
-  TemporaryFolder() {
-    std::string pattern = (fs::temp_directory_path() / "odis-test-XXXXXX").string();
-    m_path = mkdtemp(pattern.data());
-  }
-  ~TemporaryFolder() { fs::remove_all(m_path); }
-  std::string file(const std::string& name) const { return (m_path / name).string(); }
-  void write(const std::string& name, const std::string& text) const { std::ofstream(file(name)) << text; }
-
- private:
-  fs::path m_path;
-};
+void write(const std::string& path, const std::string& text) {
+  std::ofstream(path) << text;
+}
 
 TEST(ResultsLog, RemembersAndSkipsBrokenLines) {
   const TemporaryFolder folder;
-  const std::string path = folder.file("results.jsonl");
+  const std::string path = folder.path("results.jsonl");
   Measurement m;
   m.scene = "a";
   m.method = "path";
@@ -65,24 +54,24 @@ TEST(ResultsLog, RemembersAndSkipsBrokenLines) {
 
 TEST(SceneHash, FollowsFilesAndDefines) {
   const TemporaryFolder folder;
-  folder.write("scene.xml",
-               R"(<scene><shape type="ply"><string name="filename" value="a.ply"/></shape></scene>)");
-  folder.write("a.ply", "one");
-  folder.write("unrelated.ply", "one");
-  const std::string path = folder.file("scene.xml");
+  write(folder.path("scene.xml"),
+        R"(<scene><shape type="ply"><string name="filename" value="a.ply"/></shape></scene>)");
+  write(folder.path("a.ply"), "one");
+  write(folder.path("unrelated.ply"), "one");
+  const std::string path = folder.path("scene.xml");
   const uint64_t first = hashScene(path, {});
-  folder.write("unrelated.ply", "two");
+  write(folder.path("unrelated.ply"), "two");
   EXPECT_EQ(hashScene(path, {}), first);
   EXPECT_NE(hashScene(path, {{"spp", "4"}}), first);
-  folder.write("a.ply", "two");
+  write(folder.path("a.ply"), "two");
   EXPECT_NE(hashScene(path, {}), first);
 }
 
 TEST(SceneHash, EndsWhenFilesIncludeEachOther) {
   const TemporaryFolder folder;
-  folder.write("a.xml", R"(<scene><include filename="b.xml"/></scene>)");
-  folder.write("b.xml", R"(<scene><include filename="a.xml"/></scene>)");
-  EXPECT_NE(hashScene(folder.file("a.xml"), {}), hashScene(folder.file("b.xml"), {}));
+  write(folder.path("a.xml"), R"(<scene><include filename="b.xml"/></scene>)");
+  write(folder.path("b.xml"), R"(<scene><include filename="a.xml"/></scene>)");
+  EXPECT_NE(hashScene(folder.path("a.xml"), {}), hashScene(folder.path("b.xml"), {}));
 }
 
 TEST(SceneHash, NamesScenesAfterTheirFolderIfNeedBe) {

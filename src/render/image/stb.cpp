@@ -8,5 +8,21 @@
 #define STBI_ONLY_BMP
 #include <stb_image.h>
 
+// zlib packs better than what stb brings along. stb frees what it is given.
+#include <zlib.h>
+
+#include <cstdlib>
+
+static unsigned char* packed(unsigned char* data, int size, int* packedSize, int quality) {
+  uLongf length = compressBound(uLong(size));
+  auto* result = static_cast<unsigned char*>(std::malloc(length));
+  if (result && compress2(result, &length, data, uLong(size), quality) != Z_OK) {
+    std::free(result);
+    result = nullptr;
+  }
+  *packedSize = int(length);
+  return result;
+}
+#define STBIW_ZLIB_COMPRESS packed
 #define STB_IMAGE_WRITE_IMPLEMENTATION
 #include <stb_image_write.h>

@@ -1,6 +1,7 @@
 // Writing images: multi-layer EXR with metadata, and PNG for a look.
 #pragma once
 
+#include <cstdint>
 #include <map>
 #include <string>
 #include <vector>
@@ -32,6 +33,9 @@ void writeExr(const std::string& path, const ImageWindow& window, const std::vec
 enum class ToneMap { clamp, filmic };
 void writePng(const std::string& path, int width, int height, const Rgb* pixels, float exposure = 0.0f,
               ToneMap toneMap = ToneMap::filmic);
+
+// A PNG file in memory of 8-bit samples, `channels` (1 to 4) a pixel. Throws std::runtime_error.
+std::string encodePng(int width, int height, int channels, const uint8_t* samples);
 
 // Reads every channel of an EXR's first part as floats; throws std::runtime_error with path and reason.
 struct ExrFile {

@@ -12,6 +12,16 @@
 
 namespace odis::render {
 
+std::string encodePng(int width, int height, int channels, const uint8_t* samples) {
+  std::string encoded;
+  const auto append = [](void* context, void* data, int size) {
+    static_cast<std::string*>(context)->append(static_cast<char*>(data), size_t(size));
+  };
+  if (!stbi_write_png_to_func(append, &encoded, width, height, channels, samples, channels * width))
+    throw std::runtime_error("the PNG encoder ran out of memory");
+  return encoded;
+}
+
 void writePng(const std::string& path, int width, int height, const Rgb* pixels, float exposure,
               ToneMap toneMap) {
   replaceFile(path, [&](const std::string& temporary) {
@@ -26,13 +36,7 @@ void writePng(const std::string& path, int width, int height, const Rgb* pixels,
         bytes[3 * i + size_t(c)] = toByte(toneMap == ToneMap::filmic ? filmicCurve(linear) : linear);
       }
 
-    std::vector<char> encoded;
-    const auto append = [](void* context, void* data, int size) {
-      auto& out = *static_cast<std::vector<char>*>(context);
-      out.insert(out.end(), static_cast<char*>(data), static_cast<char*>(data) + size);
-    };
-    if (!stbi_write_png_to_func(append, &encoded, width, height, 3, bytes.data(), 3 * width))
-      throw std::runtime_error("the PNG encoder ran out of memory");
+    const std::string encoded = encodePng(width, height, 3, bytes.data());
     CheckedStream stream(temporary);
     stream.write(encoded.data(), std::streamsize(encoded.size()));
     stream.close();
