@@ -64,6 +64,7 @@ int runCommandLine(int argc, char** argv) {
                                       addAgreementCommand(app),
                                       addBenchCommand(app),
                                       addMetricsCommand(app),
+                                      addImageCommand(app),
                                       addMontageCommand(app),
                                       addSceneCommand(app)};
   try {

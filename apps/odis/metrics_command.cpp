@@ -58,8 +58,8 @@ Command addMetricsCommand(CLI::App& parent) {
       "FLIP is LDR-FLIP at 67 pixels per degree of both images as a screen shows them: exposed so that the\n"
       "log-average luminance of REFERENCE is 0.18, highlights rolled off as in the PNGs of `odis render`.");
   const auto arguments = std::make_shared<Arguments>();
-  app->add_option("IMAGE", arguments->image, "EXR file")->required();
-  app->add_option("REFERENCE", arguments->reference, "EXR file")->required();
+  app->add_option("IMAGE", arguments->image, "EXR, PNG, JPEG, TGA, BMP or HDR file")->required();
+  app->add_option("REFERENCE", arguments->reference, "The same")->required();
   app->add_flag("--json", arguments->json, "Print JSON");
   return {app, [arguments] { return run(*arguments); }};
 }

@@ -1,19 +1,49 @@
 #include "eval/image_file.h"
 
+#include <algorithm>
 #include <array>
+#include <cctype>
+#include <filesystem>
+#include <new>
 
-#include "render/image/write.h"
+#include "render/image/image.h"
 
 namespace odis::eval {
 
+// Whether the name is that of a format that only holds colours.
+static bool isPlainImage(const std::string& path) {
+  std::string ending = std::filesystem::path(path).extension().string();
+  std::transform(ending.begin(), ending.end(), ending.begin(),
+                 [](unsigned char c) { return std::tolower(c); });
+  for (const char* known : {".png", ".jpg", ".jpeg", ".tga", ".bmp", ".hdr"})
+    if (ending == known) return true;
+  return false;
+}
+
+static render::ExrFile readPlainImage(const std::string& path) {
+  const auto image = render::Image::read(path, true, {});
+  render::ExrFile file;
+  file.window = {image->width(), image->height(), 0, 0, image->width(), image->height()};
+  for (int c = 0; c < 3; ++c) {
+    std::vector<float>& plane = file.channels[std::string(1, "RGB"[c])];
+    for (int y = 0; y < image->height(); ++y)
+      for (int x = 0; x < image->width(); ++x) plane.push_back(image->rgb(x, y)[c]);
+  }
+  return file;
+}
+
+render::ExrFile readChannels(const std::string& path) {
+  try {
+    return isPlainImage(path) ? readPlainImage(path) : render::readExr(path);
+  } catch (const std::bad_alloc&) {
+    throw;
+  } catch (const std::exception& error) {
+    throw ImageError(error.what());
+  }
+}
+
 ColorImage readColor(const std::string& path) {
-  const render::ExrFile file = [&] {
-    try {
-      return render::readExr(path);
-    } catch (const std::runtime_error& error) {
-      throw ImageError(error.what());
-    }
-  }();
+  const render::ExrFile file = readChannels(path);
   std::array<const std::vector<float>*, 3> channels{};
   const std::array<std::string, 3> names{"R", "G", "B"};
   for (size_t i = 0; i < names.size(); ++i) {

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "render/image/write.h"
 #include "render/integrator/render.h"
 
 namespace odis::eval {
@@ -21,6 +22,9 @@ struct ColorImage {
   std::vector<render::Rgb> pixels;
 };
 
+// All channels of an EXR, or of a PNG, JPEG, TGA, BMP or HDR file (by its name) as linear R, G and B. Throws
+// ImageError.
+render::ExrFile readChannels(const std::string& path);
 // Channels R, G and B of the layer without a name, else Y. Throws ImageError.
 ColorImage readColor(const std::string& path);
 // Writes the colour, and variance.R, G, B if the frame has a variance. Throws std::runtime_error with path and

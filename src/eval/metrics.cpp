@@ -55,30 +55,46 @@ ReferenceError referenceError(const ColorImage& reference, const std::vector<Rgb
   return result;
 }
 
-ErrorMetrics compareImages(const ColorImage& image, const ColorImage& reference) {
+static void requireSameSize(const ColorImage& image, const ColorImage& reference) {
   if (image.width != reference.width || image.height != reference.height)
     throw std::invalid_argument("the images differ in size");
   if (image.pixels.empty()) throw std::invalid_argument("the images have no pixels");
+}
 
-  ErrorMetrics result;
+std::vector<double> relativeErrors(const ColorImage& image, const ColorImage& reference) {
+  requireSameSize(image, reference);
   const double scale = scaleOf(reference.pixels);
-  const auto count = double(image.pixels.size());
-  std::vector<double> relative(image.pixels.size());
-  for (size_t i = 0; i < image.pixels.size(); ++i) {
+  std::vector<double> errors(image.pixels.size());
+  for (size_t i = 0; i < errors.size(); ++i) {
     if (!render::isFinite(image.pixels[i])) {
-      constexpr double kInfinity = std::numeric_limits<double>::infinity();
-      ++result.nonFinitePixels;
-      relative[i] = result.mse = result.relMse = result.smape = kInfinity;
+      errors[i] = std::numeric_limits<double>::infinity();
       continue;
     }
     for (int channel = 0; channel < 3; ++channel) {
       const double value = scale * image.pixels[i][channel], truth = scale * reference.pixels[i][channel];
-      const double squared = (value - truth) * (value - truth);
-      relative[i] += squared / (truth * truth + kRelMseEpsilon) / 3;
-      result.mse += squared / 3;
+      errors[i] += (value - truth) * (value - truth) / (truth * truth + kRelMseEpsilon) / 3;
+    }
+  }
+  return errors;
+}
+
+ErrorMetrics compareImages(const ColorImage& image, const ColorImage& reference) {
+  std::vector<double> relative = relativeErrors(image, reference);
+  ErrorMetrics result;
+  const double scale = scaleOf(reference.pixels);
+  const auto count = double(relative.size());
+  for (size_t i = 0; i < relative.size(); ++i) {
+    result.relMse += relative[i];
+    if (!render::isFinite(image.pixels[i])) {
+      ++result.nonFinitePixels;
+      result.mse = result.smape = std::numeric_limits<double>::infinity();
+      continue;
+    }
+    for (int channel = 0; channel < 3; ++channel) {
+      const double value = scale * image.pixels[i][channel], truth = scale * reference.pixels[i][channel];
+      result.mse += (value - truth) * (value - truth) / 3;
       result.smape += std::abs(value - truth) / ((std::abs(value) + std::abs(truth)) / 2 + kSmapeEpsilon) / 3;
     }
-    result.relMse += relative[i];
   }
   result.mse /= count;
   result.relMse /= count;

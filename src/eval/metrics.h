@@ -39,6 +39,8 @@ struct ReferenceError {
 };
 ReferenceError referenceError(const ColorImage& reference, const std::vector<render::Rgb>& variance);
 
+// The summand of relMSE of each pixel, a mean over channels; infinite where the image is not finite. Throws as above.
+std::vector<double> relativeErrors(const ColorImage& image, const ColorImage& reference);
 // FLIP of each pixel, as `flip` above averages it.
 std::vector<float> displayedFlip(const ColorImage& image, const ColorImage& reference);
 

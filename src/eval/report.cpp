@@ -26,7 +26,8 @@ class PictureStore {
  public:
   std::string add(const std::string& encoded) {
     const std::string id = fmt::format("picture-{}", m_count++);
-    m_html += fmt::format("<script type=\"text/plain\" class=\"picture\" id=\"{}\">{}</script>\n", id, encoded);
+    m_html +=
+        fmt::format("<script type=\"text/plain\" class=\"picture\" id=\"{}\">{}</script>\n", id, encoded);
     return id;
   }
   size_t bytes() const { return m_html.size(); }
@@ -87,7 +88,8 @@ std::string safeText(const Json& json) {
 
 std::string script() {
   std::string text;
-  for (const char* name : {"picture.js", "viewer.js", "insets.js", "chart.js", "table.js", "main.js"})
+  for (const char* name :
+       {"picture.js", "viewer.js", "insets.js", "chart.js", "table.js", "overview.js", "main.js"})
     text += reportFile(name);
   return text;
 }

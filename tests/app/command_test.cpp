@@ -116,6 +116,40 @@ TEST_F(Odis, MetricsAndMontage) {
   EXPECT_TRUE(exists("both.png"));
 }
 
+TEST_F(Odis, ImageTools) {
+  ASSERT_EQ(run("render room.xml --integrator path -o a.exr --aov albedo -q").code, 0);
+  ASSERT_EQ(run("render room.xml --integrator path --seed 1 -o b.exr --aov albedo -q").code, 0);
+  const Outcome info = run("image info a.exr b.exr");
+  EXPECT_EQ(info.code, 0) << info.text;
+  for (const char* text : {"a.exr: 12 x 8 pixels", "albedo.R", "odis:seed: 1"})
+    EXPECT_NE(info.text.find(text), std::string::npos) << info.text;
+  EXPECT_EQ(run("image convert a.exr -o a.png --layer albedo --exposure 1").code, 0);
+  EXPECT_EQ(run("image convert a.png -o back.exr").code, 0);
+  EXPECT_EQ(run("image diff a.exr b.exr -o d.exr --kind signed").code, 0);
+  for (const char* kind : {"signed", "absolute", "relative", "flip"})
+    EXPECT_EQ(run(std::string("image diff a.exr b.exr -o d.png --kind ") + kind).code, 0) << kind;
+  EXPECT_EQ(run("image average a.exr b.exr -o mean.exr").code, 0);
+  EXPECT_EQ(run("image merge a.exr other=b.exr mean=mean.exr -o all.exr").code, 0);
+  const odis::render::ExrFile all = odis::render::readExr(file("all.exr").string());
+  const odis::render::ExrFile difference = odis::render::readExr(file("d.exr").string());
+  for (size_t i = 0; i < all.channels.at("R").size(); ++i) {
+    const float a = all.channels.at("R")[i], b = all.channels.at("other.R")[i];
+    EXPECT_FLOAT_EQ(all.channels.at("mean.R")[i], (a + b) / 2);
+    EXPECT_FLOAT_EQ(difference.channels.at("R")[i], a - b);
+  }
+  expectFailure("image", 2, "subcommand");
+  expectFailure("image info", 2, "IMAGES");
+  expectFailure("image info nowhere.exr", 3, "nowhere.exr");
+  expectFailure("image convert a.exr -o a.jpg", 2, "expected a name that ends in .png or .exr");
+  expectFailure("image convert a.exr -o c.png --layer depth", 3, "no layer \"depth\"");
+  expectFailure("image diff a.exr -o d.png", 2, "IMAGES");
+  expectFailure("image merge a.exr b.exr -o c.exr", 3, "name one of them");
+  ASSERT_EQ(run("render room.xml --integrator path --resolution 6x4 -o small.exr -q").code, 0);
+  expectFailure("image average a.exr small.exr -o c.exr", 3, "one size");
+  expectFailure("image diff a.exr small.exr -o d.exr", 3, "differ in size");
+  EXPECT_FALSE(exists("c.exr"));
+}
+
 TEST_F(Odis, ComparesAndResumes) {
   const std::string arguments =
       "compare room.xml -o out --spp 2,4 --seeds 2 --reference-spp 16 --images -q --equal-time";

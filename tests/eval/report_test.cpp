@@ -127,8 +127,8 @@ TEST_F(Report, IsWellFormed) {
 
 TEST_F(Report, AsksForNothingElse) {
   const std::string text = page();
-  for (const char* outside : {"http://", "https://", "file://", "src=", "<link", "<iframe", "@import",
-                              "url(", "fetch(", "XMLHttpRequest", "import("})
+  for (const char* outside : {"http://", "https://", "file://", "src=", "<link", "<iframe", "@import", "url(",
+                              "fetch(", "XMLHttpRequest", "import("})
     EXPECT_EQ(text.find(outside), std::string::npos) << outside;
   EXPECT_NE(text.find("default-src 'none'"), std::string::npos);
 }
@@ -184,7 +184,8 @@ TEST(Base64, IsThatOfTheStandard) {
 // Decoded as the page does it, light comes back to within half a step of 256 over 14 stops.
 TEST(ReportPicture, KeepsTheLight) {
   ColorImage image{64, 1, {}};
-  for (int i = 0; i < 64; ++i) image.pixels.emplace_back(std::exp2(float(i) * 0.25f - 9), 0.18f, i == 5 ? -1 : 1e9f);
+  for (int i = 0; i < 64; ++i)
+    image.pixels.emplace_back(std::exp2(float(i) * 0.25f - 9), 0.18f, i == 5 ? -1 : 1e9f);
   const odis::test::TemporaryFolder folder;
   std::string bytes;  // base64 back to bytes
   static const std::string kDigits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";

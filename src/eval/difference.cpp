@@ -1,0 +1,87 @@
+#include "eval/difference.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <stdexcept>
+
+#include "eval/metrics.h"
+#include "render/image/srgb.h"
+
+namespace odis::eval {
+
+using render::Rgb;
+
+ColorImage difference(const ColorImage& a, const ColorImage& b, DifferenceKind kind) {
+  if (a.width != b.width || a.height != b.height) throw std::invalid_argument("the images differ in size");
+  ColorImage result{a.width, a.height, {}};
+  if (kind == DifferenceKind::relative) {
+    for (const double error : relativeErrors(a, b)) result.pixels.emplace_back(float(error));
+  } else if (kind == DifferenceKind::flip) {
+    for (const float value : displayedFlip(a, b)) result.pixels.emplace_back(value);
+  } else {
+    for (size_t i = 0; i < a.pixels.size(); ++i) {
+      const Rgb d = a.pixels[i] - b.pixels[i];
+      result.pixels.push_back(
+          kind == DifferenceKind::absolute ? Rgb(std::abs(d.x), std::abs(d.y), std::abs(d.z)) : d);
+    }
+  }
+  return result;
+}
+
+static double meanOf(const Rgb& c) {
+  return (double(c.x) + c.y + c.z) / 3;
+}
+
+double heatMapEnd(const ColorImage& difference) {
+  std::vector<double> sizes;
+  for (const Rgb& pixel : difference.pixels)
+    if (render::isFinite(pixel)) sizes.push_back(std::abs(meanOf(pixel)));
+  if (sizes.empty()) return 1;
+  const auto place = sizes.begin() + std::ptrdiff_t(0.99 * double(sizes.size() - 1));
+  std::nth_element(sizes.begin(), place, sizes.end());
+  return *place > 0 ? *place : 1;
+}
+
+// Magma (van der Walt and Smith 2015) at ten places, sRGB.
+static constexpr std::array<std::array<int, 3>, 10> kMagma{{{0x00, 0x00, 0x04},
+                                                            {0x18, 0x0f, 0x3d},
+                                                            {0x44, 0x0f, 0x76},
+                                                            {0x72, 0x1f, 0x81},
+                                                            {0x9e, 0x2f, 0x7f},
+                                                            {0xcd, 0x40, 0x71},
+                                                            {0xf1, 0x60, 0x5d},
+                                                            {0xfd, 0x96, 0x68},
+                                                            {0xfe, 0xca, 0x8d},
+                                                            {0xfc, 0xfd, 0xbf}}};
+
+static Rgb magma(double share) {
+  const double at = std::clamp(share, 0.0, 1.0) * double(kMagma.size() - 1);
+  const size_t i = std::min(size_t(at), kMagma.size() - 2);
+  Rgb color;
+  for (size_t c = 0; c < 3; ++c) {
+    const double stored = kMagma[i][c] + (kMagma[i + 1][c] - kMagma[i][c]) * (at - double(i));
+    color[int(c)] = render::srgbDecode(float(stored / 255));
+  }
+  return color;
+}
+
+ColorImage heatMap(const ColorImage& difference, bool isSigned, double full) {
+  ColorImage result{difference.width, difference.height, {}};
+  for (const Rgb& pixel : difference.pixels) {
+    if (!render::isFinite(pixel)) {
+      result.pixels.emplace_back(0.0f, 1.0f, 0.0f);  // no other value is green
+      continue;
+    }
+    const double share = meanOf(pixel) / full;
+    if (!isSigned) {
+      result.pixels.push_back(magma(share));
+      continue;
+    }
+    const float strength = render::srgbDecode(float(std::min(std::abs(share), 1.0)));
+    result.pixels.emplace_back(share > 0 ? strength : 0, 0.3f * strength, share < 0 ? strength : 0);
+  }
+  return result;
+}
+
+}  // namespace odis::eval
