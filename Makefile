@@ -4,7 +4,7 @@ BUILD := build/$(PRESET)
 JOBS ?= $(shell nproc)
 SECONDS ?= 60
 
-.PHONY: help setup build demo test agreement fuzz format format-check lint clean
+.PHONY: help setup build demo test bench agreement fuzz format format-check lint clean
 
 help:                ## Show this list
 	@sed -n 's/^\([a-z-]*\):.*## /  make \1\t/p' Makefile | expand -t 24
@@ -23,6 +23,11 @@ demo: setup          ## Render the demo scene with plain path tracing and with O
 
 test: build          ## Build and run all tests
 	@ctest --test-dir $(BUILD) --parallel $(JOBS) --output-on-failure --output-log $(BUILD)/ctest.log
+
+bench: setup         ## Compare on all scenes of a folder: SCENES=DIR [OUT=DIR]; see docs/comparing.md
+	@cmake --preset $(PRESET) $(CMAKE_FLAGS) > /dev/null
+	@cmake --build $(BUILD) --parallel $(JOBS) --target odis_app
+	@scripts/bench $(BUILD)/apps/odis/odis "$(SCENES)" $(OUT)
 
 agreement: build     ## Test `path` against other renderers' images: SCENES=DIR REFERENCES=DIR
 	@scripts/agreement $(BUILD)/apps/odis/odis "$(SCENES)" "$(REFERENCES)" $(SPP)

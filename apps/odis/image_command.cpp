@@ -49,12 +49,9 @@ void writeColorAs(const std::string& path, const eval::ColorImage& image, float 
     render::writePng(path, image.width, image.height, image.pixels.data(), exposure, toneMap);
     return;
   }
-  render::Frame2D frame;
-  frame.width = image.width;
-  frame.height = image.height;
-  frame.color = image.pixels;
-  for (render::Rgb& pixel : frame.color) pixel *= std::exp2(exposure);
-  eval::writeColor(path, frame, image.width, image.height, {});
+  eval::ColorImage scaled = image;
+  for (render::Rgb& pixel : scaled.pixels) pixel *= std::exp2(exposure);
+  eval::writeColor(path, scaled);
 }
 
 int convert(const Arguments& a) {

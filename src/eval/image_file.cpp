@@ -75,4 +75,12 @@ void writeColor(const std::string& path, const render::Frame2D& frame, int fullW
                    metadata);
 }
 
+void writeColor(const std::string& path, const ColorImage& image) {
+  render::Frame2D frame;
+  frame.width = image.width;
+  frame.height = image.height;
+  frame.color = image.pixels;
+  writeColor(path, frame, image.width, image.height, {});
+}
+
 }  // namespace odis::eval

@@ -31,5 +31,6 @@ ColorImage readColor(const std::string& path);
 // reason.
 void writeColor(const std::string& path, const render::Frame2D& frame, int fullWidth, int fullHeight,
                 const std::map<std::string, std::string>& metadata);
+void writeColor(const std::string& path, const ColorImage& image);
 
 }  // namespace odis::eval

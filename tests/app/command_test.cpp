@@ -211,6 +211,37 @@ TEST_F(Odis, InterruptedComparisonGoesOn) {
   EXPECT_TRUE(exists("out/" + after[0].at("image").get<std::string>()));
 }
 
+// The script behind `make bench`: what it leaves, and what of a page it replaces.
+TEST_F(Odis, BenchWritesReportAndTables) {
+  fs::create_directories(file("scenes/hall"));
+  fs::rename(file("room.xml"), file("scenes/hall/scene.xml"));
+  write("page.md", "before\n<!-- bench:begin -->\nold\n<!-- bench:end -->\nafter\n");
+  const std::string bench = "SPP=2,4 SEEDS=2 PIXELS=96 REFERENCE_SPP=8 PAGE=page.md '" ODIS_SOURCE
+                            "/scripts/bench' '" ODIS_COMMAND "' scenes out 2>&1";
+  for (int round = 0; round < 2; ++round) {  // the second replaces what the first wrote
+    const Outcome outcome = runShell(bench);
+    ASSERT_EQ(outcome.code, 0) << outcome.text;
+    std::ifstream stream(file("page.md"));
+    const std::string page{std::istreambuf_iterator<char>(stream), {}};
+    EXPECT_EQ(page.rfind("before\n<!-- bench:begin -->\n", 0), 0u) << page;
+    EXPECT_NE(page.find("\n<!-- bench:end -->\nafter\n"), std::string::npos) << page;
+    EXPECT_EQ(page.find("old"), std::string::npos) << page;
+    const size_t row = page.find("| hall ");
+    EXPECT_NE(row, std::string::npos) << page;
+    EXPECT_EQ(page.find("|   4 |"), std::string::npos) << page;  // the fewest samples only
+    size_t rows = 0;
+    for (size_t at = row; at != std::string::npos; at = page.find("| hall ", at + 1)) ++rows;
+    EXPECT_EQ(rows, 4u) << page;  // path, odis, odis at equal time; the reference
+  }
+  EXPECT_TRUE(exists("out/report.html"));
+  EXPECT_TRUE(exists("out/results.md"));
+  EXPECT_TRUE(exists("out/images/hall-2.png"));
+  EXPECT_FALSE(exists("out/tables.part"));
+  write("page.md", "no markers\n");
+  EXPECT_EQ(runShell(bench).code, 2);
+  EXPECT_EQ(runShell("'" ODIS_SOURCE "/scripts/bench' '" ODIS_COMMAND "' nowhere out").code, 2);
+}
+
 // Says what is done, how much is to do and, once something is known, how long that takes.
 TEST_F(Odis, ComparisonTellsTheTimeLeft) {
   const Outcome outcome = run("compare room.xml -o out --spp 2 --seeds 2 --reference-spp 16");
