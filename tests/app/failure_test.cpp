@@ -92,4 +92,18 @@ TEST_F(Failures, SignalsEndWithAnImage) {
   }
 }
 
+// What was rendered counts: tables and page are written, and the same comparison goes on later.
+TEST_F(Failures, InterruptedComparisonKeepsWhatItHas) {
+  const std::string arguments = "compare room.xml -o out --seeds 1 --reference-spp 16 --spp 2";
+  const Outcome outcome = runShell("'" ODIS_COMMAND "' " + arguments +
+                                   ",16000000 2> log & until grep -qs 'path, 16000000' log; do sleep 0.02; "
+                                   "done; kill -INT $!; wait $!");
+  EXPECT_EQ(outcome.code, 130) << outcome.text;
+  EXPECT_NE(outcome.text.find("| room"), std::string::npos) << outcome.text;
+  EXPECT_TRUE(exists("out/report.html"));
+  const Outcome resumed = run(arguments);
+  EXPECT_EQ(resumed.code, 0);
+  EXPECT_EQ(resumed.text.find("path, 2 spp, seed 0"), std::string::npos) << resumed.text;  // not once more
+}
+
 }  // namespace

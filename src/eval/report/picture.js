@@ -2,6 +2,8 @@
 // (kPictureScale and kPictureMost in src/eval/report_pictures.h), so that the exposure can be chosen here.
 
 const data = JSON.parse(document.getElementById('data').textContent);
+// A comparison that was interrupted may have a scene without a result.
+data.scenes = data.scenes.filter(scene => data.rows.some(row => row.scene === scene.name));
 
 // Linear light of each byte, in units of what the screen shows as white.
 const kLinear = Float32Array.from({length: 256}, (_, byte) =>
