@@ -1,6 +1,7 @@
 #include "eval/bootstrap.h"
 
 #include <algorithm>
+#include <cmath>
 #include <random>
 
 #include "eval/median.h"
@@ -25,7 +26,9 @@ std::vector<double> resampledRatios(const std::vector<double>& a, const std::vec
 
 Interval intervalOf(double value, std::vector<double> resamples) {
   std::sort(resamples.begin(), resamples.end());
-  const auto at = [&](double share) { return resamples[size_t(share * double(resamples.size() - 1) + 0.5)]; };
+  const auto at = [&](double share) {
+    return resamples[size_t(std::lround(share * double(resamples.size() - 1)))];
+  };
   return {value, at((1 - kConfidence) / 2), at((1 + kConfidence) / 2)};
 }
 

@@ -86,8 +86,8 @@ Plane filterRows(const Plane& in, Size size, const Kernel& kernel) {
     const double* row = &in[size_t(y) * size_t(size.width)];
     for (int x = 0; x < size.width; ++x) {
       double sum = 0;
-      for (int i = -radius; i <= radius; ++i)
-        sum += kernel[size_t(i + radius)] * row[std::clamp(x + i, 0, size.width - 1)];
+      for (int i = 0; i <= 2 * radius; ++i)
+        sum += kernel[size_t(i)] * row[std::clamp(x + i - radius, 0, size.width - 1)];
       out[size_t(y) * size_t(size.width) + size_t(x)] = sum;
     }
   }
@@ -98,10 +98,10 @@ Plane filterColumns(const Plane& in, Size size, const Kernel& kernel) {
   Plane out(in.size(), 0.0);
   const int radius = int(kernel.size() / 2);
   for (int y = 0; y < size.height; ++y)
-    for (int i = -radius; i <= radius; ++i) {
-      const double* row = &in[size_t(std::clamp(y + i, 0, size.height - 1)) * size_t(size.width)];
+    for (int i = 0; i <= 2 * radius; ++i) {
+      const double* row = &in[size_t(std::clamp(y + i - radius, 0, size.height - 1)) * size_t(size.width)];
       double* to = &out[size_t(y) * size_t(size.width)];
-      for (int x = 0; x < size.width; ++x) to[x] += kernel[size_t(i + radius)] * row[x];
+      for (int x = 0; x < size.width; ++x) to[x] += kernel[size_t(i)] * row[x];
     }
   return out;
 }

@@ -15,14 +15,14 @@ std::string encodePicture(const ColorImage& image, double exposure) {
     for (int c = 0; c < 3; ++c) {
       const double x = pixel[c] * exposure;
       const double level = x > 0 ? factor * std::log1p(kPictureScale * std::min(x, kPictureMost)) : 0;
-      bytes.push_back(uint8_t(level + 0.5));
+      bytes.push_back(uint8_t(std::lround(level)));
     }
   return base64(render::encodePng(image.width, image.height, 3, bytes.data()));
 }
 
 std::string encodeMap(const std::vector<float>& values, int width, int height) {
   std::vector<uint8_t> bytes;
-  for (const float value : values) bytes.push_back(uint8_t(std::clamp(value, 0.0f, 1.0f) * 255 + 0.5f));
+  for (const float value : values) bytes.push_back(uint8_t(std::lround(std::clamp(value, 0.0f, 1.0f) * 255)));
   return base64(render::encodePng(width, height, 1, bytes.data()));
 }
 

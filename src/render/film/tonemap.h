@@ -22,7 +22,7 @@ inline float filmicCurve(float linear) {
 // sRGB in eight bits, rounded. Negative numbers and NaN are black.
 inline uint8_t toByte(float linear) {
   if (!(linear > 0.0f)) return 0;
-  return uint8_t(srgbEncode(std::min(linear, 1.0f)) * 255.0f + 0.5f);
+  return uint8_t(std::lround(srgbEncode(std::min(linear, 1.0f)) * 255.0f));
 }
 
 }  // namespace odis::render
