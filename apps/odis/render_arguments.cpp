@@ -18,8 +18,8 @@ using namespace render;
 void MethodArguments::addTo(CLI::App& app) {
   const std::string group = "Method";
   app.add_option("--integrator", integrator,
-                 "path: plain path tracing; odis: guided by a pilot; ppg, openpgl: docs/rivals.md")
-      ->check(CLI::IsMember({"path", "odis", "ppg", "openpgl"}))
+                 "path: plain path tracing; odis: guided by a pilot; others: docs/rivals.md")
+      ->check(CLI::IsMember({"path", "odis", "ppg", "openpgl", "restir"}))
       ->capture_default_str()
       ->group(group);
   app.add_option("--guide", guide,
@@ -45,6 +45,7 @@ void MethodArguments::addTo(CLI::App& app) {
       ->group(group);
   addCellsTo(app);
   ppg.addTo(app);
+  restir.addTo(app);
 }
 
 void MethodArguments::addCellsTo(CLI::App& app) {
@@ -79,6 +80,7 @@ void MethodArguments::apply(RenderOptions& options) const {
   options.integrator = integrator == "path"      ? IntegratorKind::path
                        : integrator == "ppg"     ? IntegratorKind::ppg
                        : integrator == "openpgl" ? IntegratorKind::openpgl
+                       : integrator == "restir"  ? IntegratorKind::restir
                                                  : IntegratorKind::odis;
   options.sampler = sampler == "sobol" ? SamplerKind::sobol : SamplerKind::independent;
   options.guide = guide == "oracle" ? GuideKind::oracle : GuideKind::histogram;
@@ -88,6 +90,7 @@ void MethodArguments::apply(RenderOptions& options) const {
   options.pilotWeight = pilotWeight;
   options.guideOptions = cells;
   options.ppg = ppg.options();
+  options.restir = restir.options;
   std::copy(trust.begin(), trust.end(), options.guideOptions.trust);
 }
 

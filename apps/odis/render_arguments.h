@@ -21,6 +21,7 @@ struct MethodArguments {
   double pilotSpp = 1, pilotWeight = -1;
   GuideOptions cells;
   PpgArguments ppg;
+  RestirArguments restir;
   std::vector<float> trust{std::begin(cells.trust), std::end(cells.trust)};
 
   void addTo(CLI::App& app);

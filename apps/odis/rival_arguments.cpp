@@ -52,4 +52,16 @@ PpgOptions PpgArguments::options() const {
   return options;
 }
 
+void RestirArguments::addTo(CLI::App& app) {
+  const std::string group = "Resampling";
+  app.add_option("--restir-neighbours", options.neighbours, "Pixels whose sample is tried as well")
+      ->check(CLI::Range(0, 64))
+      ->capture_default_str()
+      ->group(group);
+  app.add_option("--restir-radius", options.radius, "How far away they are at most, in pixels")
+      ->check(numberBetween(0, 1e4))
+      ->capture_default_str()
+      ->group(group);
+}
+
 }  // namespace odis::app

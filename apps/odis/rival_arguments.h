@@ -5,6 +5,7 @@
 #include <string>
 
 #include "render/rivals/ppg_options.h"
+#include "render/rivals/restir_options.h"
 
 namespace CLI {
 class App;
@@ -20,6 +21,13 @@ struct PpgArguments {
 
   void addTo(CLI::App& app);
   render::PpgOptions options() const;
+};
+
+// Spatial resampling.
+struct RestirArguments {
+  render::RestirOptions options;
+
+  void addTo(CLI::App& app);
 };
 
 }  // namespace odis::app

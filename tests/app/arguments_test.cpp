@@ -81,6 +81,14 @@ TEST(Arguments, SampleCountsRise) {
     EXPECT_THROW(parseSampleCounts(wrong), UsageError) << wrong;
 }
 
+TEST(Arguments, Resampling) {
+  const RenderOptions options = parseMethod("--integrator restir --restir-neighbours 7 --restir-radius 9.5");
+  EXPECT_EQ(options.integrator, IntegratorKind::restir);
+  EXPECT_EQ(options.restir.neighbours, 7);
+  EXPECT_EQ(options.restir.radius, 9.5f);
+  EXPECT_THROW(parseMethod("--restir-neighbours -1"), UsageError);
+}
+
 TEST(Suggest, FindsTheNearestWord) {
   EXPECT_EQ(nearest("--ssp", {"--spp", "--seed", "--stats"}), "--spp");
   EXPECT_EQ(nearest("rendr", {"render", "metrics"}), "render");

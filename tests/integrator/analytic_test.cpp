@@ -91,6 +91,7 @@ INSTANTIATE_TEST_SUITE_P(Integrators, AnalyticTest,
                                            Kind{"odisMostlyMap", IntegratorKind::odis, GuideKind::histogram,
                                                 0.15f},
                                            Kind{"ppg", IntegratorKind::ppg, GuideKind::histogram, 0},
+                                           Kind{"restir", IntegratorKind::restir, GuideKind::histogram, 0},
                                            Kind{"oracle", IntegratorKind::odis, GuideKind::oracle, 0}),
                          [](const auto& info) { return info.param.name; });
 

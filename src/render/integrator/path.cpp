@@ -173,7 +173,11 @@ void addEmission(const PathSettings& settings, Path& path, Batch& batch, int dep
       path.bySampling ? emitterPdf * settings.lights->probability(path.previous, emitter, part) : 0;
   const float weight = path.bySampling ? powerHeuristic(path.directionPdf, lightPdf) : 1;
   path.radiance += path.throughput * emission * weight;
-  if (depth == 1) path.emitted += emission;
+  if (depth == 1) {
+    path.emitted += emission;
+    path.emittedPdf = lightPdf;
+    ++path.emissions;
+  }
   if (!batch.recording || depth == 1) return;
   PendingRecord& p = batch.records[path.lastRecord];
   // Several environments may be met at once; the brightest decides what the selection probability is told.

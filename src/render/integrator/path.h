@@ -47,7 +47,9 @@ struct Path {
   Sampler sampler;
 
   Rgb radiance{0, 0, 0};
-  Rgb emitted{0, 0, 0};  // the part of it that the camera ray met directly
+  Rgb emitted{0, 0, 0};  // what its first ray met directly, without MIS weight
+  int emissions = 0;     // how many emitters that was of
+  float emittedPdf = 0;  // the density with which next-event estimation would have found the last of them
   FirstHit first;        // if asked for
   RayCounts counts;
   uint32_t recorded = 0;  // vertices in the records

@@ -11,6 +11,7 @@
 #include "render/rivals/inverse_variance.h"
 #include "render/rivals/open_pgl.h"
 #include "render/rivals/ppg.h"
+#include "render/rivals/restir.h"
 
 namespace odis::render {
 
@@ -55,6 +56,8 @@ class Renderer {
   RenderResult run() {
     if (m_rival) {
       runRival(uint32_t(m_options.spp));
+    } else if (m_options.integrator == IntegratorKind::restir) {
+      runRestir();
     } else {
       if (m_options.integrator == IntegratorKind::odis) {
         runPilot();
@@ -78,6 +81,8 @@ class Renderer {
 
   // Everything up to the guided passes, then one path.
   Path trace(Vec2i pixel, uint32_t sample, std::vector<PilotVertex>& vertices) {
+    if (m_options.integrator == IntegratorKind::restir)
+      throw OptionError("--replay: a pixel of --integrator restir is made of many paths");
     const Crop& crop = m_scene.film().crop;
     const uint32_t index = uint32_t(pixel.y - crop.y) * uint32_t(crop.width) + uint32_t(pixel.x - crop.x);
     PathSettings settings = pathSettings();
@@ -122,7 +127,9 @@ class Renderer {
     return m_stopped;
   }
   void run(const Pass& pass) {
-    const RayCounts counts = runPass(pass, m_progress, [this] { return stop(); });
+    count(runPass(pass, m_progress, [this] { return stop(); }));
+  }
+  void count(const RayCounts& counts) {
     m_stats.rays += counts.rays;
     m_stats.shadowRays += counts.shadowRays;
   }
@@ -275,6 +282,20 @@ class Renderer {
       m_iterations.erase(m_iterations.begin());
     }
     m_iterations.emplace_back(m_pixels);
+  }
+
+  // Frames that know nothing of each other, averaged.
+  void runRestir() {
+    if (m_options.features)
+      throw OptionError("--integrator restir: renders the image alone, no features (--aov)");
+    const Clock::time_point start = Clock::now();
+    m_progress.begin("restir", m_pixels * uint64_t(m_options.spp));
+    Pass pass = basicPass();
+    pass.image = &m_guided;
+    for (uint32_t sample = 0; sample < uint32_t(m_options.spp) && !stop(); ++sample)
+      count(renderRestirFrame(pass, m_options.restir, sample, m_progress, [this] { return stop(); }));
+    m_progress.end();
+    m_stats.secondsGuided = secondsSince(start);
   }
 
   // What a pilot sample weighs in each pixel, a guided one weighing 1: by the inverse of their variances as the

@@ -10,11 +10,12 @@
 #include <odis/guide.h>
 
 #include "render/rivals/ppg_options.h"
+#include "render/rivals/restir_options.h"
 #include "render/scene/scene.h"
 
 namespace odis::render {
 
-enum class IntegratorKind { path, odis, ppg, openpgl };
+enum class IntegratorKind { path, odis, ppg, openpgl, restir };
 enum class SamplerKind { sobol, independent };
 enum class GuideKind { histogram, oracle };
 
@@ -32,6 +33,7 @@ struct RenderOptions {
 
   int guideBounces = -1;  // how many vertices of a path are guided; -1: all, 1: the first
   PpgOptions ppg;         // ppg only
+  RestirOptions restir;   // restir only
 
   // odis only
   GuideKind guide = GuideKind::histogram;

@@ -1,0 +1,172 @@
+#include "render/rivals/restir.h"
+
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+
+#include "render/math/warp.h"
+#include "render/rivals/restir_trace.h"
+
+namespace odis::render {
+
+namespace {
+
+// Streams of random numbers beside the camera paths'.
+constexpr uint64_t kBeyondSeed = 0x6265796f6e64ull, kReuseSeed = 0x7265757365ull;
+// Neighbours whose surface faces elsewhere by more than that are not asked: their samples seldom fit.
+constexpr float kLeastCosine = 0.9f;
+
+struct FramePixel {
+  RestirPath path;
+  Worth own;  // of its sample, to itself
+  float filterWeight = 1;
+};
+
+class ReusedFrame {
+ public:
+  ReusedFrame(const Pass& pass, const RestirOptions& options, uint32_t sample)
+      : m_pass(pass),
+        m_scene(*pass.path.scene),
+        m_options(options),
+        m_sample(sample),
+        m_pixels(size_t(m_scene.film().crop.width) * size_t(m_scene.film().crop.height)) {}
+
+  size_t pixelCount() const { return m_pixels.size(); }
+
+  // The pixel's own path.
+  void trace(size_t index) {
+    FramePixel& pixel = m_pixels[index];
+    Sampler sampler = samplerOf(index, 0);
+    const Crop& crop = m_scene.film().crop;
+    const Vec2i place(crop.x + int(index) % crop.width, crop.y + int(index) / crop.width);
+    const Ray ray = cameraRay(m_scene, place, sampler, pixel.filterWeight);
+    pixel.path = traceRestirPath(m_pass.path, ray, sampler, samplerOf(index, kBeyondSeed));
+    if (pixel.path.sample.valid) pixel.own = worthOf(pixel.path.sample, pixel.path.point);
+  }
+
+  // Its radiance, with what resampling gives; traces shadow rays.
+  Rgb gather(size_t index, RayCounts& counts) const {
+    const FramePixel& pixel = m_pixels[index];
+    Rgb radiance = pixel.path.radiance;
+    if (pixel.path.point.valid) radiance += resample(index, counts);
+    return isFinite(radiance) ? radiance * pixel.filterWeight : Rgb(0, 0, 0);
+  }
+  const RayCounts& counts(size_t index) const { return m_pixels[index].path.counts; }
+
+ private:
+  Sampler samplerOf(size_t index, uint64_t stream) const {
+    const FilmSettings& film = m_scene.film();
+    const size_t x = size_t(film.crop.x) + index % size_t(film.crop.width),
+                 y = size_t(film.crop.y) + index / size_t(film.crop.width);
+    return {m_pass.sampler, m_pass.seed ^ stream, uint32_t(y) * uint32_t(film.width) + uint32_t(x), m_sample};
+  }
+
+  // What another pixel's sample is worth; nothing if the two don't see each other.
+  Worth seenWorth(const SecondaryPoint& sample, const VisiblePoint& point, RayCounts& counts) const {
+    Worth worth = worthOf(sample, point);
+    if (!(worth.target() > 0)) return {};
+    ++counts.shadowRays;
+    if (m_scene.occluded(Scene::spawn(point.at, worth.direction, worth.distance))) return {};
+    return worth;
+  }
+
+  // Pixels in a disk around this one that see a surface alike. The choice depends on x1 of each alone, never on
+  // samples.
+  void findNeighbours(size_t index, Sampler& random, std::vector<const FramePixel*>& found) const {
+    found.clear();
+    const int width = m_scene.film().crop.width, height = m_scene.film().crop.height;
+    const VisiblePoint& point = m_pixels[index].path.point;
+    for (int i = 0; i < m_options.neighbours; ++i) {
+      const Vec2 offset = squareToDisk(random.get2D()) * m_options.radius;
+      const int x = int(index) % width + int(std::lround(offset.x)),
+                y = int(index) / width + int(std::lround(offset.y));
+      if (x < 0 || y < 0 || x >= width || y >= height) continue;
+      const size_t other = size_t(y) * size_t(width) + size_t(x);
+      const VisiblePoint& its = m_pixels[other].path.point;
+      // Paths of another length may go on for longer or shorter: their samples are others.
+      if (other == index || !its.valid || its.depth != point.depth) continue;
+      if (dot(its.at.shading.n, point.at.shading.n) < kLeastCosine) continue;
+      found.push_back(&m_pixels[other]);
+    }
+  }
+
+  // Chooses among the pixel's sample and its neighbours' in proportion to weight = MIS weight * worth /
+  // density, and gives the chosen one the sum of the weights.
+  Rgb resample(size_t index, RayCounts& counts) const {
+    const FramePixel& pixel = m_pixels[index];
+    const VisiblePoint& point = pixel.path.point;
+    thread_local std::vector<const FramePixel*> neighbours;
+    Sampler random = samplerOf(index, kReuseSeed);
+    random.startVertex(0);
+    findNeighbours(index, random, neighbours);
+    const float others = float(neighbours.size()), all = others + 1;
+
+    float sum = 0;
+    Rgb chosen(0, 0, 0);  // its value, over its target
+    const auto offer = [&](const Worth& worth, float weight) {
+      if (!(weight > 0) || !std::isfinite(weight)) return;
+      sum += weight;
+      if (random.get1D() * sum < weight) chosen = worth.value / worth.target();
+    };
+
+    // A sample of a neighbour, against the pixel's own way to find it. Targets stand for densities; all are per
+    // area, so that no Jacobian is left.
+    for (const FramePixel* other : neighbours) {
+      if (!(other->own.target() > 0)) continue;
+      const Worth here = seenWorth(other->path.sample, point, counts);
+      const float there = other->own.target(), density = other->path.sample.pdf * other->own.geometry;
+      const float mis = others * there / (others * there + here.target()) / all;
+      offer(here, mis * here.target() / density);
+    }
+    // The pixel's own, against each neighbour's way to find it.
+    if (pixel.own.target() > 0) {
+      float mis = 1;
+      for (const FramePixel* other : neighbours) {
+        const float there = seenWorth(pixel.path.sample, other->path.point, counts).target();
+        mis += pixel.own.target() / (others * there + pixel.own.target());
+      }
+      offer(pixel.own, mis / all * pixel.own.target() / (pixel.path.sample.pdf * pixel.own.geometry));
+    }
+    return chosen * sum;
+  }
+
+  const Pass& m_pass;
+  const Scene& m_scene;
+  RestirOptions m_options;
+  uint32_t m_sample;
+  std::vector<FramePixel> m_pixels;
+};
+
+}  // namespace
+
+RayCounts renderRestirFrame(const Pass& pass, const RestirOptions& options, uint32_t sample,
+                            Progress& progress, const std::function<bool()>& stop) {
+  constexpr size_t kGrain = 64;
+  ReusedFrame frame(pass, options, sample);
+  const tbb::blocked_range<size_t> all(0, frame.pixelCount(), kGrain);
+  tbb::parallel_for(all, [&](const tbb::blocked_range<size_t>& range) {
+    if (stop()) return;
+    for (size_t i = range.begin(); i < range.end(); ++i) frame.trace(i);
+    progress.advance(range.size());
+  });
+  RayCounts total;
+  if (stop()) return total;
+
+  std::vector<RayCounts> counts(frame.pixelCount());
+  tbb::parallel_for(all, [&](const tbb::blocked_range<size_t>& range) {
+    for (size_t i = range.begin(); i < range.end(); ++i) {
+      const Rgb value = frame.gather(i, counts[i]);
+      PixelSums& sums = (*pass.image)[i];
+      const Rgbd v(value.x, value.y, value.z);
+      sums.sum += v;
+      sums.sumSquares += v * v;
+      ++sums.count;
+    }
+  });
+  for (size_t i = 0; i < counts.size(); ++i) {
+    total.rays += frame.counts(i).rays;
+    total.shadowRays += frame.counts(i).shadowRays + counts[i].shadowRays;
+  }
+  return total;
+}
+
+}  // namespace odis::render
