@@ -32,7 +32,7 @@ struct GuideOptions {
   int cellsPerDiagonal = 32;  // the finest cells have an edge of (diagonal of what the pilot saw) / this
   // How many samples' worth of trust the coarser level has when it is blended with a finer one, per level,
   // finest first; the last one is for the uniform map.
-  float trust[kCellLevels] = {150, 150, 80, 20};
+  float trust[kCellLevels] = {250, 250, 120, 30};
   float floor = 0.03f;   // share of the uniform distribution in every map
   float clamp = 20;      // a sample counts at most this many times the mean of its neighbourhood (maps only)
   float fixedAlpha = 0;  // > 0: this selection probability everywhere instead of the one by variance and cost
