@@ -11,17 +11,31 @@ using render::Rgb;
 
 static constexpr double kMiddleGrey = 0.18;
 static constexpr double kDarkest = 0.01;  // of the mean
+static constexpr int kBlock = 8;          // pixels, either side
 
 double autoExposure(const ColorImage& image) {
-  double sum = 0, sumLogs = 0;
-  size_t count = 0;
-  for (const Rgb& pixel : image.pixels)
-    if (render::isFinite(pixel)) sum += std::max(render::luminance(pixel), 0.0f), ++count;
+  const int blocksX = (image.width + kBlock - 1) / kBlock, blocksY = (image.height + kBlock - 1) / kBlock;
+  std::vector<double> sums(size_t(blocksX) * size_t(blocksY));
+  std::vector<int> counts(sums.size());
+  double sum = 0;
+  int count = 0;
+  for (int y = 0; y < image.height; ++y)
+    for (int x = 0; x < image.width; ++x) {
+      const Rgb& pixel = image.pixels[size_t(y) * size_t(image.width) + size_t(x)];
+      if (!render::isFinite(pixel)) continue;
+      const double luminance = std::max(render::luminance(pixel), 0.0f);
+      const size_t block = size_t(y / kBlock) * size_t(blocksX) + size_t(x / kBlock);
+      sums[block] += luminance;
+      sum += luminance;
+      ++counts[block];
+      ++count;
+    }
   if (!(sum > 0)) return 1;
-  const double least = kDarkest * sum / double(count);
-  for (const Rgb& pixel : image.pixels)
-    if (render::isFinite(pixel)) sumLogs += std::log(std::max(double(render::luminance(pixel)), least));
-  return kMiddleGrey / std::exp(sumLogs / double(count));
+  const double least = kDarkest * sum / count;
+  double logs = 0;
+  for (size_t i = 0; i < sums.size(); ++i)
+    if (counts[i] > 0) logs += counts[i] * std::log(std::max(sums[i] / counts[i], least));
+  return kMiddleGrey / std::exp(logs / count);
 }
 
 ColorImage displayed(const ColorImage& image, double exposure) {

@@ -37,7 +37,7 @@ Reference readReference(const std::string& path) {
   Reference reference;
   reference.image = readColor(path);
   reference.file = path;
-  const ExrFile file = readExr(path);
+  const ExrFile file = readChannels(path);
   const auto settings = file.metadata.find(kSettingsKey);
   reference.settings = settings == file.metadata.end() ? path : settings->second;
   const std::vector<Rgb> variance = varianceOf(file);

@@ -65,12 +65,23 @@ TEST(Flip, IsZeroForEqualImagesAndLargeForOpposites) {
   EXPECT_THROW(flipMap({}, {}), std::invalid_argument);
 }
 
-// Grey of any brightness is brought to 0.18; one black half counts as a hundredth of the mean.
+// Two blocks of 8 pixels in a row.
+ColorImage makeBlocks(const std::vector<Rgb>& left, const std::vector<Rgb>& right) {
+  ColorImage image{16, 1, {}};
+  for (size_t i = 0; i < 16; ++i)
+    image.pixels.push_back(i < 8 ? left[i % left.size()] : right[i % right.size()]);
+  return image;
+}
+
+// Grey of any brightness is brought to 0.18; a black half counts as a hundredth of the mean.
 TEST(Exposure, BringsTheLogAverageToMiddleGrey) {
-  EXPECT_NEAR(autoExposure({2, 1, {Rgb(4), Rgb(4)}}), 0.18 / 4, 1e-6);
-  EXPECT_NEAR(autoExposure({2, 1, {Rgb(1), Rgb(4)}}), 0.18 / 2, 1e-6);
-  EXPECT_NEAR(autoExposure({2, 1, {Rgb(0), Rgb(4)}}), 0.18 / std::sqrt(0.02 * 4), 1e-6);
+  EXPECT_NEAR(autoExposure(makeBlocks({Rgb(4)}, {Rgb(4)})), 0.18 / 4, 1e-6);
+  EXPECT_NEAR(autoExposure(makeBlocks({Rgb(1)}, {Rgb(4)})), 0.18 / 2, 1e-6);
+  EXPECT_NEAR(autoExposure(makeBlocks({Rgb(0)}, {Rgb(4)})), 0.18 / std::sqrt(0.02 * 4), 1e-6);
   EXPECT_EQ(autoExposure({1, 1, {Rgb(0)}}), 1);
+  // Noise within a block is no darkness, and what is not finite does not count.
+  EXPECT_NEAR(autoExposure(makeBlocks({Rgb(0), Rgb(8)}, {Rgb(4)})), 0.18 / 4, 1e-6);
+  EXPECT_NEAR(autoExposure(makeBlocks({Rgb(NAN), Rgb(4)}, {Rgb(4)})), 0.18 / 4, 1e-6);
 }
 
 TEST(Exposure, ShowsWhatAScreenCan) {

@@ -199,7 +199,7 @@ function refreshCharts() {
   drawCurves(byId('time-chart'), seriesBy(r => r.seconds), 'seconds', label, levels);
   byId('reference-note').textContent = 'Whiskers: the least and the most of all seeds; hollow: at equal time. ' + (own
     ? `Dashed: the reference's own error, ${number(own)}, is part of all.`
-    : 'relmse trimmedrelmse'.includes(metric.toLowerCase()) ? 'The own error of this reference is not known.' : 'What of it is the reference\'s is told for relMSE only.');
+    : /relMse/i.test(metric) ? 'The own error of this reference is not known.' : 'What of it is the reference\'s is told for relMSE only.');
 }
 
 function chooseScene(scene) {

@@ -43,7 +43,7 @@ function methodHtml(name) {
 // A ratio [value, low, high], marked where 1 is outside of the interval.
 function ratioHtml([value, low, high]) {
   const digits = x => Number.isFinite(x) && x !== null ? x.toFixed(3) : '–';
-  const kind = high < 1 ? 'better' : low > 1 ? 'worse' : '';
+  const kind = !Number.isFinite(value) ? '' : high < 1 ? 'better' : low > 1 ? 'worse' : '';
   const interval = high > low ? `<small>${digits(low)} – ${digits(high)}</small>` : '';
   return `<span class="${kind}">${digits(value)}</span>${interval}`;
 }
