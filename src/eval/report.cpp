@@ -61,13 +61,15 @@ bool addSamples(PictureStore& store, Json& scenes, const std::vector<SceneView>&
                 const std::vector<ComparisonRow>& rows, int spp, const std::string& folder, size_t most) {
   PictureStore grown = store;
   Json grownScenes = scenes;
-  for (size_t i = 0; i < views.size(); ++i)
+  for (size_t i = 0; i < views.size(); ++i) {
+    const auto scene = scenes[i]["name"].get<std::string>();
     for (const ComparisonRow& row : rows) {
-      if (row.isMean() || row.spp != spp || row.scene != scenes[i]["name"] || row.image.empty()) continue;
+      if (row.isMean() || row.spp != spp || row.scene != scene || row.image.empty()) continue;
       const ColorImage image = readColor(folder + "/" + row.image);
       grownScenes[i]["pictures"].push_back(addPicture(grown, row, image, views[i]));
       if (grown.bytes() > most) return false;
     }
+  }
   store = std::move(grown);
   scenes = std::move(grownScenes);
   return true;
