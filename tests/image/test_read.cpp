@@ -144,7 +144,8 @@ TEST(ReadImage, JpegOfGreyAndOfInks) {
     EXPECT_EQ(image->channels(), channels == 1 ? 1 : 3);
     const float expected = channels == 1 ? 200.0f / 255 : 200.0f / 255 * 200.0f / 255;
     EXPECT_NEAR(image->rgb(3, 5).y, expected, 1.5f / 255);
-    EXPECT_NE(complaint(folder.path("cut.jpg")).find("JPEG: Premature end"), std::string::npos);
+    // Versions of the library word it differently.
+    EXPECT_NE(complaint(folder.path("cut.jpg")).find("remature end"), std::string::npos);
   }
 }
 
