@@ -42,8 +42,7 @@ render::ExrFile readChannels(const std::string& path) {
   }
 }
 
-ColorImage readColor(const std::string& path) {
-  const render::ExrFile file = readChannels(path);
+ColorImage colorOf(const render::ExrFile& file, const std::string& path) {
   std::array<const std::vector<float>*, 3> channels{};
   const std::array<std::string, 3> names{"R", "G", "B"};
   for (size_t i = 0; i < names.size(); ++i) {
@@ -58,6 +57,10 @@ ColorImage readColor(const std::string& path) {
   for (size_t i = 0; i < image.pixels.size(); ++i)
     image.pixels[i] = {(*channels[0])[i], (*channels[1])[i], (*channels[2])[i]};
   return image;
+}
+
+ColorImage readColor(const std::string& path) {
+  return colorOf(readChannels(path), path);
 }
 
 void writeColor(const std::string& path, const render::Frame2D& frame, int fullWidth, int fullHeight,

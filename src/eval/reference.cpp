@@ -35,9 +35,9 @@ static std::vector<Rgb> varianceOf(const ExrFile& file) {
 
 Reference readReference(const std::string& path) {
   Reference reference;
-  reference.image = readColor(path);
-  reference.file = path;
   const ExrFile file = readChannels(path);
+  reference.image = colorOf(file, path);
+  reference.file = path;
   const auto settings = file.metadata.find(kSettingsKey);
   reference.settings = settings == file.metadata.end() ? path : settings->second;
   const std::vector<Rgb> variance = varianceOf(file);

@@ -44,13 +44,7 @@ void deliver(const Pass& pass, const Path& path, uint32_t pixel, float filterWei
   // A path that is not a number (a broken normal, an overflow) would spoil its pixel for good: it counts as
   // black.
   const Rgb value = isFinite(path.radiance) ? path.radiance * filterWeight : Rgb(0, 0, 0);
-  if (pass.image) {
-    PixelSums& sums = (*pass.image)[pixel];
-    const Rgbd v(value.x, value.y, value.z);
-    sums.sum += v;
-    sums.sumSquares += v * v;
-    ++sums.count;
-  }
+  if (pass.image) (*pass.image)[pixel].add(value);
   if (pass.emitted) (*pass.emitted)[pixel] += path.emitted * filterWeight;
   if (pass.features) accumulate((*pass.features)[pixel], path.first);
 }

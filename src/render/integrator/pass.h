@@ -14,6 +14,13 @@ struct PixelSums {
   Rgbd sum{0, 0, 0};
   Rgbd sumSquares{0, 0, 0};
   uint32_t count = 0;
+
+  void add(const Rgb& value) {
+    const Rgbd v(value.x, value.y, value.z);
+    sum += v;
+    sumSquares += v * v;
+    ++count;
+  }
 };
 
 // Sums of features over the samples that met a surface. 60 bytes a pixel.

@@ -21,11 +21,6 @@ Vec3 facing(const SurfacePoint& at, const Vec3& wo) {
   return wo.z < 0 ? -at.shading.n : at.shading.n;
 }
 
-// What of a vertex the choice among lights depends on.
-LightReference lightReference(const SurfacePoint& at, const Vec3& wo) {
-  return {at.p, facing(at, wo), at.shape->bsdf().traits().transmissive};
-}
-
 LightEstimate sampleLight(const PathSettings& settings, const SurfacePoint& at, const Vec3& wo,
                           Sampler& sampler) {
   LightEstimate result;
@@ -356,6 +351,10 @@ void completeRecords(const Path& path, const Batch& batch, std::vector<PilotVert
 }
 
 }  // namespace
+
+LightReference lightReference(const SurfacePoint& at, const Vec3& wo) {
+  return {at.p, facing(at, wo), at.shape->bsdf().traits().transmissive};
+}
 
 void tracePaths(const PathSettings& settings, std::span<Path> paths, std::vector<PilotVertex>* records) {
   thread_local Batch batch;

@@ -64,6 +64,9 @@ struct Path {
   uint32_t lastRecord = 0;  // within the batch
 };
 
+// What of a vertex the choice among lights depends on; `wo`, in the shading frame, says on which side it is.
+LightReference lightReference(const SurfacePoint& at, const Vec3& wo);
+
 // Traces all paths side by side, a bounce of each before the next bounce of any, so that rays reach the
 // intersector many at once. What a path gathers does not depend on its neighbours. If `records` is given,
 // appends a record for each vertex, path after path (fields for the selection probability in units of

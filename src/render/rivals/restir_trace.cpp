@@ -4,10 +4,6 @@ namespace odis::render {
 
 namespace {
 
-LightReference lightReference(const SurfacePoint& at, const Vec3& wo) {
-  return {at.p, wo.z < 0 ? -at.shading.n : at.shading.n, at.shape->bsdf().traits().transmissive};
-}
-
 // Light drawn for a vertex: radiance / pdf, black if there is none or something hides it.
 struct DrawnLight {
   Vec3 wi{0, 0, 1};

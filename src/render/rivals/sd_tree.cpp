@@ -36,30 +36,29 @@ Vec3 SdTree::clipped(const Vec3& point) const {
   return result;
 }
 
-uint32_t SdTree::find(const Vec3& point) const {
+template <class Step>
+uint32_t SdTree::descend(const Vec3& point, const Step& step) const {
   Vec3 within = (point - m_low) * (1 / m_size);
   uint32_t node = 0;
   for (int axis = 0; m_nodes[node].child[0] != 0; axis = axis == 2 ? 0 : axis + 1) {
     within[axis] *= 2;
     const bool upper = within[axis] >= 1;
     if (upper) within[axis] -= 1;
+    step(axis, upper);
     node = m_nodes[node].child[upper];
   }
   return m_nodes[node].leaf;
 }
 
+uint32_t SdTree::find(const Vec3& point) const {
+  return descend(point, [](int, bool) {});
+}
+
 SdTree::Place SdTree::place(const Vec3& point) const {
   Place result{0, m_low, m_low + Vec3(m_size, m_size, m_size)};
-  Vec3 within = (point - m_low) * (1 / m_size);
-  uint32_t node = 0;
-  for (int axis = 0; m_nodes[node].child[0] != 0; axis = axis == 2 ? 0 : axis + 1) {
-    within[axis] *= 2;
-    const bool upper = within[axis] >= 1;
-    if (upper) within[axis] -= 1;
+  result.leaf = descend(point, [&](int axis, bool upper) {
     (upper ? result.low : result.high)[axis] = (result.low[axis] + result.high[axis]) / 2;
-    node = m_nodes[node].child[upper];
-  }
-  result.leaf = m_nodes[node].leaf;
+  });
   return result;
 }
 

@@ -63,6 +63,10 @@ class SdTree {
     uint32_t leaf = 0;
   };
 
+  // The leaf that a point lies in. Calls step(axis, whether it goes on in the upper half) on the way.
+  template <class Step>
+  uint32_t descend(const Vec3& point, const Step& step) const;
+
   static constexpr int kMaxDepth = 60;
   std::vector<Node> m_nodes;  // axis of a node: its depth modulo three
   std::vector<SdLeaf> m_leaves;
