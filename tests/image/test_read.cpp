@@ -263,6 +263,11 @@ TEST(ReadImage, ComplaintsNameTheFileThePlaceAndTheReason) {
   huge.replace(16, 8, std::string("\0\1\x11\x70\0\0\0\2", 8));
   writeBytes(folder.path("huge.png"), huge);
   expect("huge.png", "70000");
+  // A chunk of pixels that promises 1.3 GB.
+  std::string chunk = bytesOf(folder.path("a.png"));
+  chunk[chunk.find("IDAT") - 4] = 'P';
+  writeBytes(folder.path("chunk.png"), chunk);
+  expect("chunk.png", "a chunk at byte 33 announces");
 }
 
 // Truncated and damaged files are read or refused, never a crash, and never an image of a wrong size.

@@ -44,17 +44,36 @@ std::vector<uint8_t> alphaBytes(const In* pixels, size_t count, int fileChannels
   return result;
 }
 
+bool isPng(const std::vector<uint8_t>& file) {
+  return file.size() >= 8 && std::memcmp(file.data(), "\x89PNG", 4) == 0;
+}
+
+// Throws if a chunk of a PNG file is longer than what is left of the file: stb would make room for all that it
+// announces.
+void checkPngChunks(const std::vector<uint8_t>& file) {
+  constexpr size_t kSignature = 8, kFrame = 12;  // of a chunk: length, type, checksum
+  for (size_t at = kSignature; at + kFrame <= file.size();) {
+    const uint8_t* head = &file[at];
+    const uint64_t length = uint64_t(head[0]) << 24 | head[1] << 16 | head[2] << 8 | head[3];
+    if (length > file.size() - at - kFrame)
+      throw std::runtime_error(
+          fmt::format("a chunk at byte {} announces {} bytes, more than the file holds", at, length));
+    if (std::memcmp(head + 4, "IEND", 4) == 0) return;
+    at += kFrame + length;
+  }
+}
+
 // How many pixels the file can stand for: in PNG deflate shrinks by no more than 1032 to one and a byte has 8
 // pixels; TGA takes a byte for each run of 128. stb would fill a larger image with whatever comes after the
 // end of the file.
 uint64_t maxPixels(const std::vector<uint8_t>& file) {
-  const bool png = file.size() >= 4 && std::memcmp(file.data(), "\x89PNG", 4) == 0;
-  return uint64_t(file.size()) * (png ? 8 * 1032 : 128);
+  return uint64_t(file.size()) * (isPng(file) ? 8 * 1032 : 128);
 }
 
 }  // namespace
 
 std::shared_ptr<Image> Image::readStbPixels(const std::vector<uint8_t>& file, bool srgb) {
+  if (isPng(file)) checkPngChunks(file);
   const int size = int(file.size());
   int width = 0, height = 0, channels = 0;
   const auto fail = [] {
