@@ -31,6 +31,12 @@ void MethodArguments::addTo(CLI::App& app) {
       ->check(CLI::Range(-1, 1 << 20))
       ->capture_default_str()
       ->group(group);
+  app.add_option(
+         "--roulette", roulette,
+         "Whether guided paths go on: by their throughput, or learned from what the pilot saw come back")
+      ->check(CLI::IsMember({"throughput", "learned"}))
+      ->capture_default_str()
+      ->group(group);
   app.add_option("--pilot-spp", pilotSpp, "Samples per pixel of the pilot; below 1: one in so many pixels")
       ->check(numberBetween(1e-3, 1e6))
       ->capture_default_str()
@@ -84,6 +90,7 @@ void MethodArguments::apply(RenderOptions& options) const {
                                                  : IntegratorKind::odis;
   options.sampler = sampler == "sobol" ? SamplerKind::sobol : SamplerKind::independent;
   options.guide = guide == "oracle" ? GuideKind::oracle : GuideKind::histogram;
+  options.roulette = roulette == "learned" ? RouletteKind::learned : RouletteKind::throughput;
   options.guideBounces = guideBounces;
   options.pilotSpp = pilotSpp;
   options.oracleSpp = oracleSpp;

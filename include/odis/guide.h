@@ -22,6 +22,7 @@
 
 namespace odis {
 
+class ContinuationModel;
 class DirectionModel;
 
 inline constexpr int kCellLevels = 4;  // nested cells with edges e, 2e, 4e, 8e
@@ -29,6 +30,8 @@ inline constexpr int kCellLevels = 4;  // nested cells with edges e, 2e, 4e, 8e
 struct GuideOptions {
   // What turns statistics into maps (src/odis/decisions/direction_model.h); null: the histogram formula.
   std::shared_ptr<const DirectionModel> model;
+  // What tells how much comes back from a cell (src/odis/decisions/roulette.h); null: the formula.
+  std::shared_ptr<const ContinuationModel> continuations;
   int cellsPerDiagonal = 32;  // the finest cells have an edge of (diagonal of what the pilot saw) / this
   // How many samples' worth of trust the coarser level has when it is blended with a finer one, per level,
   // finest first; the last one is for the uniform map.
@@ -49,9 +52,21 @@ struct Cell {
   SamplingMap map;
   float alpha[kMaterialClasses] = {1, 1, 1};  // share of smooth draws that stay with the BSDF; 1: don't guide
 
+  // What going on from here is worth beside what it costs: see survivalProbability().
+  float worth = INFINITY;
+
   // Whether there is a class to guide; where there is none, a vertex need not find out which it is of.
   bool guidesAny() const { return std::min({alpha[0], alpha[1], alpha[2]}) < 1; }
 };
+
+// The probability with which a path should go on from a vertex in this cell, instead of ending before its next-event
+// estimation: what the pilot saw come back from there, for what cost, decides. In (0, 1], without splitting.
+//   throughput   the path's up to the vertex, over (an estimate of) its pixel's value; both as luminance
+inline float survivalProbability(const Cell& cell, float throughput) {
+  constexpr float kLeast = 0.1f;  // so that no path weighs more than ten times as much for it
+  const float survival = throughput * cell.worth;
+  return survival < 1 ? std::max(survival, kLeast) : 1;  // 1 for what is not a number
+}
 
 // Where a vertex is: its position and unit shading normal on the side of the outgoing direction.
 struct Place {

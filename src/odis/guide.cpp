@@ -6,7 +6,7 @@
 #include "odis/cells/statistics.h"
 #include "odis/decisions/choose_alphas.h"
 #include "odis/decisions/direction_model.h"
-#include "odis/decisions/selection.h"
+#include "odis/decisions/roulette.h"
 
 namespace odis {
 
@@ -69,6 +69,7 @@ std::span<const PixelPrediction> Guide::predictions() const {
 struct GuideBuilder::Data {
   explicit Data(const GuideOptions& o) : options(o), store(o.clamp) {
     if (!options.model) options.model = std::make_shared<HistogramModel>(o);
+    if (!options.continuations) options.continuations = std::make_shared<ShrunkMoments>();
   }
   GuideOptions options;
   CellStore store;
@@ -135,10 +136,16 @@ Guide GuideBuilder::build(PilotParts parts, std::span<const float> pixelValues) 
         });
 
   // Selection probabilities.
-  if (options.fixedAlpha > 0)
+  AlphaPrediction& predicted = guide.m_data->predicted =
+      chooseAlphas(result, m_data->store, cells, distributions, parts, pixelValues);
+  if (options.fixedAlpha > 0) {
     for (Cell& cell : result) std::fill(cell.alpha, cell.alpha + kMaterialClasses, options.fixedAlpha);
-  else
-    guide.m_data->predicted = chooseAlphas(result, m_data->store, cells, distributions, parts, pixelValues);
+    predicted.varianceRatio = 1;
+    predicted.pixels.clear();
+  }
+
+  // Roulette.
+  weighContinuations(result, cells, *options.continuations, predicted.totals);
   return guide;
 }
 

@@ -6,6 +6,7 @@
 #include "integrator/same_expectation.h"
 #include "integrator/test_scenes.h"
 #include "odis/decisions/direction_model.h"
+#include "odis/decisions/roulette.h"
 
 namespace odis::render {
 namespace {
@@ -49,6 +50,26 @@ class AdversarialModel : public DirectionModel {
   Kind m_kind;
 };
 
+// Roulette that ends and keeps paths for no reason, and values that are none.
+class AdversarialContinuations : public ContinuationModel {
+ public:
+  Continuation predict(const CellStatistics& cell, const Continuation*) const override {
+    std::mt19937 engine(uint32_t(cell.count) * 7919u + uint32_t(cell.level));
+    switch (engine() % 8) {
+      case 0:
+        return {NAN, NAN};
+      case 1:
+        return {0, 0};
+      case 2:
+        return {INFINITY, 1};
+      case 3:
+        return {-1, 1};
+      default:
+        return {double(engine() % 1000) / 1000, 10};
+    }
+  }
+};
+
 class UnbiasedTest : public ::testing::Test {
  protected:
   static void SetUpTestSuite() {
@@ -75,7 +96,7 @@ class UnbiasedTest : public ::testing::Test {
 Scene* UnbiasedTest::s_scene = nullptr;
 PixelStatistics* UnbiasedTest::s_path = nullptr;
 
-constexpr int kTests = 10;
+constexpr int kTests = 13;
 
 TEST_F(UnbiasedTest, Histogram) {
   expectSameExpectation(*s_path, renderSeeds(*s_scene, guidedOptions(), 96, 1), kTests);
@@ -110,6 +131,29 @@ TEST_F(UnbiasedTest, AdversarialMaps) {
     // Twice as many seeds as elsewhere: where a map hardly looks at the light, tails are heavy.
     expectSameExpectation(*s_path, renderSeeds(*s_scene, options, 192, 1), kTests);
   }
+}
+
+TEST_F(UnbiasedTest, RouletteByThroughput) {
+  RenderOptions options = guidedOptions();
+  options.roulette = RouletteKind::throughput;
+  options.rrDepth = 2;
+  expectSameExpectation(*s_path, renderSeeds(*s_scene, options, 96, 1), kTests);
+}
+
+TEST_F(UnbiasedTest, AdversarialRoulette) {
+  RenderOptions options = guidedOptions();
+  options.guideOptions.continuations = std::make_shared<AdversarialContinuations>();
+  expectSameExpectation(*s_path, renderSeeds(*s_scene, options, 192, 1), kTests);
+}
+
+// Cells so small that many vertices have none: paths change from one roulette to the other, which must not decide
+// twice by the same number.
+TEST_F(UnbiasedTest, RouletteWhereCellsAreMissing) {
+  RenderOptions options = guidedOptions();
+  options.guideOptions.cellsPerDiagonal = 300;
+  options.guideOptions.continuations = std::make_shared<AdversarialContinuations>();
+  options.rrDepth = 1;
+  expectSameExpectation(*s_path, renderSeeds(*s_scene, options, 192, 1), kTests);
 }
 
 // The test itself must be able to fail: three per cent of energy too much are found.

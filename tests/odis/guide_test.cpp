@@ -8,6 +8,7 @@
 
 #include "odis/cells/grid.h"
 #include "odis/cells/statistics.h"
+#include "odis/decisions/roulette.h"
 #include "odis/decisions/selection.h"
 
 namespace odis {
@@ -266,6 +267,55 @@ std::vector<PixelPrediction> halfHelped() {
   std::vector<PixelPrediction> predictions(64 * 64);
   for (size_t i = 0; i < predictions.size(); ++i) predictions[i] = {2, i % 64 < 32 ? 1.8f : 0.0f};
   return predictions;
+}
+
+TEST(Roulette, SurvivalFollowsWorthAndNeverEndsAll) {
+  Cell cell;
+  EXPECT_EQ(survivalProbability(cell, 0.5f), 1);  // nothing known
+  cell.worth = 2;
+  EXPECT_FLOAT_EQ(survivalProbability(cell, 0.25f), 0.5f);
+  EXPECT_EQ(survivalProbability(cell, 3), 1);
+  EXPECT_GT(survivalProbability(cell, 0), 0);
+  EXPECT_EQ(survivalProbability(cell, NAN), 1);
+  EXPECT_EQ(survivalProbability(cell, INFINITY), 1);
+  cell.worth = 0;
+  EXPECT_GT(survivalProbability(cell, 1), 0);
+  EXPECT_EQ(survivalProbability(cell, INFINITY), 1);
+}
+
+TEST(Roulette, WorthIsTheRootOfWhatComesBackOverItsRays) {
+  // Two cells, of which one sends back four times the radiance for as many rays.
+  std::vector<CellStatistics> cells(2);
+  for (CellStatistics& cell : cells) {
+    cell.level = kCellLevels - 1;
+    cell.count = 100;
+    cell.rays = 500;
+  }
+  cells[0].outgoingSquares = 100;
+  cells[1].outgoingSquares = 1600;
+  const SelectionTotals totals{40, 180, 10};  // of 10 samples: variance 4 each, 20 rays each
+  std::vector<Cell> result(2);
+  weighContinuations(result, cells, ShrunkMoments(), totals);
+  EXPECT_NEAR(result[1].worth / result[0].worth, 4, 1e-5);
+  const float ratio = result[0].worth / std::sqrt(1.0f / 5) / std::sqrt(20.0f / 4);
+  EXPECT_GT(ratio, 0.5f);  // but for a constant, the formula
+  EXPECT_LT(ratio, 10);
+  // In an image of twice the variance roulette may be twice as noisy.
+  std::vector<Cell> noisier(2);
+  weighContinuations(noisier, cells, ShrunkMoments(), {80, 180, 10});
+  EXPECT_NEAR(noisier[0].worth / result[0].worth, std::sqrt(0.5f), 1e-5);
+}
+
+TEST(Roulette, CellsWithFewSamplesFollowTheirParents) {
+  CellStatistics cell;
+  const Continuation parent{4, 3};
+  EXPECT_EQ(ShrunkMoments().predict(cell, &parent).square, 4);
+  cell.count = 1e6;
+  cell.outgoingSquares = 1e6;
+  cell.rays = 7e6;
+  EXPECT_NEAR(ShrunkMoments().predict(cell, &parent).square, 1, 0.01);
+  EXPECT_NEAR(ShrunkMoments().predict(cell, &parent).rays, 7, 0.01);
+  EXPECT_EQ(ShrunkMoments().predict({}, nullptr).square, 0);
 }
 
 TEST(PilotWeights, FollowWhatIsPredictedNearby) {

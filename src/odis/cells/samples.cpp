@@ -4,6 +4,10 @@ namespace odis {
 
 namespace {
 
+float luminance(const Float3& color) {
+  return 0.212671f * color.x + 0.715160f * color.y + 0.072169f * color.z;
+}
+
 // Zero if everything is finite, otherwise not a number.
 float nothing(const Float3& v) {
   return 0 * v.x + 0 * v.y + 0 * v.z;
@@ -19,8 +23,13 @@ bool isUsable(const PilotVertex& v) {
 }
 
 float sampleValue(const PilotVertex& v) {
-  const float luminance = 0.212671f * v.radiance.x + 0.715160f * v.radiance.y + 0.072169f * v.radiance.z;
-  return std::max(luminance, 0.0f) * v.cosine / (v.pdf * v.survival);
+  return std::max(luminance(v.radiance), 0.0f) * v.cosine / (v.pdf * v.survival);
+}
+
+float outgoing(const PilotVertex& v) {
+  const Float3 indirect{v.weight.x * v.radiance.x, v.weight.y * v.radiance.y, v.weight.z * v.radiance.z};
+  const float result = luminance(v.direct + indirect);
+  return std::isfinite(result) ? std::max(result, 0.0f) : 0;
 }
 
 BatchSamples takeSamples(const PilotBatch& batch, const CellGrid& grid) {
@@ -40,7 +49,7 @@ BatchSamples takeSamples(const PilotBatch& batch, const CellGrid& grid) {
       ++result.cells[cell].count;
       result.cells[cell].value += value;
       result.cellOf.push_back(cell);
-      result.samples.push_back({v.position, v.normal, v.wi, v.distance, value});
+      result.samples.push_back({v.position, v.normal, v.wi, v.distance, value, outgoing(v), 1 + v.raysAfter});
     }
   return result;
 }

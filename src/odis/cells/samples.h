@@ -14,11 +14,16 @@ bool isUsable(const PilotVertex& vertex);
 // What the vertex adds to a histogram: the estimate of radiance * cos, as a luminance.
 float sampleValue(const PilotVertex& vertex);
 
-// A usable vertex. 44 bytes.
+// What the vertex scatters back along the path, next-event estimate included, as a luminance.
+float outgoing(const PilotVertex& vertex);
+
+// A usable vertex. 52 bytes.
 struct CellSample {
   Float3 position, normal, wi;
   float distance;
-  float value;  // `sampleValue`
+  float value;     // `sampleValue`
+  float outgoing;  // `outgoing`
+  float rays;      // traced at the vertex and beyond
 };
 
 // The usable vertices of a batch, and the cells of the finest level that they fall into, numbered as they are

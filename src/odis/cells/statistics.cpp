@@ -105,6 +105,8 @@ void accumulate(CellStatistics& cell, float limit, std::span<const CellSample* c
     cell.count += 1;
     cell.sum += value;
     cell.sumSquares += double(value) * value;
+    cell.outgoingSquares += double(sample.outgoing) * sample.outgoing;
+    cell.rays += sample.rays;
     cell.normal = cell.normal + sample.normal;
     if (value <= 0) return;
     const Splat spread = splat(reaim(sample.position, sample.wi, sample.distance, cell.centroid));
@@ -171,6 +173,8 @@ std::vector<CellStatistics> CellStore::rollUp() const {
       parent.count += child.count;
       parent.sum += child.sum;
       parent.sumSquares += child.sumSquares;
+      parent.outgoingSquares += child.outgoingSquares;
+      parent.rays += child.rays;
       parent.normal = parent.normal + child.normal;
       for (int t = 0; t < kMapTexels; ++t) parent.histogram[t] += child.histogram[t];
     }

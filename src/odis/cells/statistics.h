@@ -25,9 +25,11 @@ struct CellStatistics {
   double count = 0;  // samples
   double sum = 0;    // of their values, radiance * cos / pdf as luminance
   double sumSquares = 0;
-  Float3 centroid;        // of the first batch's positions; directions are re-aimed from here
-  Float3 normal;          // sum of unit normals
-  Histogram histogram{};  // of values by direction
+  double outgoingSquares = 0;  // sum of squares of what the vertices scatter back, as luminance
+  double rays = 0;             // traced at the vertices and beyond
+  Float3 centroid;             // of the first batch's positions; directions are re-aimed from here
+  Float3 normal;               // sum of unit normals
+  Histogram histogram{};       // of values by direction
 };
 
 // The cells at every level. A coarser cell's statistics are the sums of its children's, formed by `rollUp`.

@@ -39,6 +39,7 @@ void addToTotals(BatchSelection& batch, const PilotVertex& v, float scale) {
   const float light = v.lightPdf > 0 ? v.light * powerHeuristic(v.lightPdf, v.lightBsdfPdf) : v.light;
   const double value = (v.indirect + emission + light) * scale;
   const double variance = std::isfinite(value) ? std::min((value - 1) * (value - 1), 2500.0) : 0;
+  ++batch.totals.count;
   batch.totals.variance += variance;
   batch.totals.rays += v.raysAfter;
   batch.variances.emplace_back(v.pixel, float(variance));
@@ -115,6 +116,7 @@ AlphaPrediction chooseAlphas(std::vector<Cell>& result, const CellStore& store,
       [&](size_t batch, size_t i) -> const PilotVertex& { return *batches[batch].vertices[i]; });
   SelectionTotals totals;
   for (const BatchSelection& batch : batches) {
+    totals.count += batch.totals.count;
     totals.variance += batch.totals.variance;
     totals.rays += batch.totals.rays;
   }
@@ -142,6 +144,7 @@ AlphaPrediction chooseAlphas(std::vector<Cell>& result, const CellStore& store,
   // A cell's sums are backed by its parent's, those by the parent's parent's, and so on up to the whole
   // image. They choose; the cell's own vertices tell what that saves each pixel.
   AlphaPrediction prediction;
+  prediction.totals = totals;
   prediction.pixels.resize(pixelValues.size());
   std::vector<CellSelection> backed(cells.size());
   double saved = 0;

@@ -6,12 +6,14 @@
 
 #include "odis/cells/statistics.h"
 #include "odis/decisions/direction_model.h"
+#include "odis/decisions/selection.h"
 #include "odis/guide.h"
 
 namespace odis {
 
 // What is predicted of the guided samples.
 struct AlphaPrediction {
+  SelectionTotals totals;
   float varianceRatio = 1;              // of a guided sample to an unguided one, over the whole image
   std::vector<PixelPrediction> pixels;  // one for each pixel value
 };

@@ -34,10 +34,11 @@ using SecondMoments = std::array<float, kAlphas.size()>;
 SecondMoments addVertex(CellSelection& sums, const PilotVertex& vertex, float mapPdf, float lightMapPdf,
                         float scale = 1);
 
-// What the sums are weighed against: those of the whole image.
+// What the sums are weighed against: those of the whole image, over its first vertices.
 struct SelectionTotals {
-  double variance = 0;
-  double rays = 0;
+  double variance = 0;  // relative to the pixels' values
+  double rays = 0;      // because of the first vertices' directions
+  double count = 0;
 };
 
 // A cell's sums with those of a coarser one behind them, scaled to a fixed number of samples.

@@ -71,6 +71,7 @@ uint64_t renderTile(const Pass& pass, const PathSettings& settings, int x0, int 
       float filterWeight;
       const Ray ray = cameraRay(*settings.scene, pixel, sampler, filterWeight);
       paths.emplace_back(ray, sampler);
+      if (!pass.pixelValues.empty()) paths.back().pixelValue = pass.pixelValues[index];
       targets.emplace_back(index, filterWeight);
     }
     if (paths.empty()) return done;

@@ -42,6 +42,8 @@ struct Pass {
   // rendered.
   std::function<std::pair<uint32_t, uint32_t>(uint32_t pixel)> samples;
 
+  std::span<const float> pixelValues;  // about what each pixel's luminance is; for learned roulette only
+
   // Where results go; images have one entry a pixel of the crop. Null: not wanted.
   std::vector<PixelSums>* image = nullptr;
   std::vector<FeatureSums>* features = nullptr;

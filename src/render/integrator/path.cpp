@@ -128,7 +128,8 @@ struct PendingRecord {
   Rgb throughput{0, 0, 0};  // up to the vertex, it excluded
   Rgb emission{0, 0, 0};    // met by the vertex's direction, without MIS weight
   float emissionWeight = 0;
-  uint64_t rays = 0;  // traced when the direction was sampled
+  float survival = 1;  // with which roulette let the path go on when it arrived here
+  uint64_t rays = 0;   // traced when the direction was sampled
 };
 
 // A shadow ray's errand: what to add to which path if nothing is in the way.
@@ -184,12 +185,14 @@ void addEmission(const PathSettings& settings, Path& path, Batch& batch, int dep
 
 // Records the vertex, but for what only the complete path knows.
 void record(Path& path, Batch& batch, const SurfacePoint& at, const Vec3& wo, const BsdfSample& next,
-            const Rgb& weight, float survival, const LightEstimate& light, const Rgb& direct, int depth) {
+            const Rgb& weight, float arrival, float survival, const LightEstimate& light, const Rgb& direct,
+            int depth) {
   const Bsdf& bsdf = at.shape->bsdf();
   PendingRecord& p = batch.records.emplace_back();
   p.previous = path.lastRecord;
   p.weight = weight;
   p.throughput = path.throughput;
+  p.survival = arrival;
   p.rays = path.counts.rays + path.counts.shadowRays;
   path.lastRecord = uint32_t(batch.records.size() - 1);
   ++path.recorded;
@@ -264,6 +267,15 @@ bool extend(const PathSettings& settings, Path& path, uint32_t index, const Vert
 
   const Bsdf& bsdf = at.shape->bsdf();
   path.distance += length;
+
+  // Learned Russian roulette asks what comes back from here; the numbers are those of the vertex before.
+  const bool learned = settings.learnedRoulette && cell;
+  float arrival = 1;
+  if (learned && depth > 1) {
+    arrival = survivalProbability(*cell, luminance(path.throughput) / path.pixelValue);
+    if (path.uSurvival >= arrival) return false;
+    path.throughput /= arrival;
+  }
   const VertexGuide guide(settings, depth, at, wo, cell);
 
   // Next-event estimation, weighted against the mixture that directions are sampled from.
@@ -286,20 +298,21 @@ bool extend(const PathSettings& settings, Path& path, uint32_t index, const Vert
   if (settings.features && !path.first.valid && !isDiscrete(next.lobe))
     describe(path.first, at, wo, path.distance);
 
-  // Russian roulette by throughput, as Mitsuba plays it.
+  // Where nothing was learned: Russian roulette by throughput, as Mitsuba plays it.
   Rgb weight = next.weight;
   const float eta = path.eta * next.eta;
-  const float uSurvival = sampler.get1D();
+  path.uSurvival = sampler.get1D();
   float survival = 1;
   bool survives = next.lobe != Lobe::none && !isBlack(weight);
-  if (survives && depth >= settings.rrDepth) {
+  if (survives && depth >= settings.rrDepth && !learned) {
     survival = std::min(maxComponent(path.throughput * weight) * sqr(eta), 0.95f);
-    survives = uSurvival < survival;
+    survives = path.uSurvival < survival;
+    path.uSurvival /= survival;  // as good as new, should the path survive
     weight /= survival;
   }
 
   if (!survives) weight = Rgb(0, 0, 0);
-  if (batch.recording) record(path, batch, at, wo, next, weight, survival, light, direct, depth);
+  if (batch.recording) record(path, batch, at, wo, next, weight, arrival, survival, light, direct, depth);
   if (!survives) return false;
 
   path.throughput *= weight;
@@ -346,7 +359,7 @@ void completeRecords(const Path& path, const Batch& batch, std::vector<PilotVert
     v.indirect = luminance(p.throughput * p.weight * beyond);
     v.emission = luminance(p.throughput * p.weight * p.emission);
     v.raysAfter = float(path.counts.rays + path.counts.shadowRays - p.rays);
-    beyond = Rgb(v.direct.x, v.direct.y, v.direct.z) + p.weight * arriving;
+    beyond = (Rgb(v.direct.x, v.direct.y, v.direct.z) + p.weight * arriving) / p.survival;
   }
 }
 

@@ -18,11 +18,12 @@ namespace odis::render {
 struct PathSettings {
   const Scene* scene = nullptr;
   const LightSampler* lights = nullptr;
-  int maxDepth = -1;  // -1: unlimited
-  int rrDepth = 5;
+  int maxDepth = -1;                      // -1: unlimited
+  int rrDepth = 5;                        // where roulette by throughput begins
   const Guide* guide = nullptr;           // null, and no rival: BSDF sampling only
   const DirectionGuide* rival = nullptr;  // guides in the place of `guide`
   int guideBounces = -1;                  // -1: all
+  bool learnedRoulette = false;           // by what `guide` knows of where a path arrives
   bool features = false;                  // fill Path::first
 };
 
@@ -45,6 +46,7 @@ struct Path {
 
   Ray ray;
   Sampler sampler;
+  float pixelValue = 1;  // about what its pixel's luminance is, for learned roulette
 
   Rgb radiance{0, 0, 0};
   Rgb emitted{0, 0, 0};  // what its first ray met directly, without MIS weight
@@ -59,6 +61,7 @@ struct Path {
   float eta = 1;            // product of the relative indices passed
   bool bySampling = false;  // whether the ray's direction competes with next-event estimation
   float directionPdf = 0;   // its density, if so
+  float uSurvival = 0;      // decides, where the ray arrives, whether the path goes on
   LightReference previous;  // where the ray started
   float distance = 0;       // from the camera to there
   uint32_t lastRecord = 0;  // within the batch

@@ -92,13 +92,14 @@ class Renderer {
     } else if (m_options.integrator == IntegratorKind::odis && sample >= pilotCount(index)) {
       runPilot();
       buildGuide();
-      settings.guide = &m_guide;
+      useGuide(settings);
     }
     Sampler sampler(m_options.sampler, m_options.seed,
                     uint32_t(pixel.y) * uint32_t(m_scene.film().width) + uint32_t(pixel.x), sample);
     float filterWeight;
     const Ray ray = cameraRay(m_scene, pixel, sampler, filterWeight);
     Path path(ray, sampler);
+    if (!m_pixelValues.empty()) path.pixelValue = m_pixelValues[index];
     tracePaths(settings, std::span(&path, 1), &vertices);
     return path;
   }
@@ -180,10 +181,15 @@ class Renderer {
     return {records.begin(), records.end()};
   }
 
+  void useGuide(PathSettings& settings) const {
+    settings.guide = &m_guide;
+    settings.learnedRoulette = m_options.roulette == RouletteKind::learned;
+  }
+
   void buildGuide() {
     if (m_stopped) return;
     const Clock::time_point start = Clock::now();
-    const std::vector<float> estimates = pixelEstimates(m_pilot, m_scene.film().crop.width);
+    m_pixelValues = pixelEstimates(m_pilot, m_scene.film().crop.width);
     GuideBuilder builder(m_options.guideOptions);
     if (m_options.guide == GuideKind::oracle) {
       m_progress.begin("oracle", m_pixels * uint64_t(m_options.oracleSpp));
@@ -200,11 +206,11 @@ class Renderer {
         if (i < kOracleSelectionPasses)
           std::move(records.begin(), records.end(), std::back_inserter(selection));
       }
-      m_guide = builder.build(partsOf(selection), estimates);
+      m_guide = builder.build(partsOf(selection), m_pixelValues);
       m_progress.end();
     } else {
       builder.add(partsOf(m_records));
-      m_guide = builder.build(partsOf(m_records), estimates);
+      m_guide = builder.build(partsOf(m_records), m_pixelValues);
     }
     m_stats.bytesBuild += builder.bytes();
     if (!m_options.records) m_records = {};
@@ -222,7 +228,10 @@ class Renderer {
     m_progress.begin(guided ? "guided" : "path", m_pixels * uint64_t(most));
     for (uint32_t done = 0; done < most && !stop(); done += kSamplesPerPass) {
       Pass pass = basicPass();
-      if (guided) pass.path.guide = &m_guide;
+      if (guided) {
+        useGuide(pass.path);
+        pass.pixelValues = m_pixelValues;
+      }
       pass.samples = [this, done, spp](uint32_t pixel) {
         const uint32_t first = std::min(pilotCount(pixel) + done, spp);
         return std::pair(first, std::min(spp - first, kSamplesPerPass));
@@ -378,6 +387,7 @@ class Renderer {
   std::vector<FeatureSums> m_features;
   Records m_records;
   std::vector<Rgb> m_emitted;
+  std::vector<float> m_pixelValues;  // as the pilot sees them
   Guide m_guide;
   std::unique_ptr<Rival> m_rival;                    // null: path, odis
   std::vector<std::vector<PixelSums>> m_iterations;  // of the rival, as far as they make the image

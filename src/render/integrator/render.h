@@ -18,6 +18,7 @@ namespace odis::render {
 enum class IntegratorKind { path, odis, ppg, openpgl, restir };
 enum class SamplerKind { sobol, independent };
 enum class GuideKind { histogram, oracle };
+enum class RouletteKind { throughput, learned };
 
 struct RenderOptions {
   IntegratorKind integrator = IntegratorKind::odis;
@@ -37,6 +38,7 @@ struct RenderOptions {
 
   // odis only
   GuideKind guide = GuideKind::histogram;
+  RouletteKind roulette = RouletteKind::learned;  // of the guided samples
   double pilotSpp = 1;  // samples per pixel of the pilot; 0.25 is one sample per 2x2 pixels
   int oracleSpp = 64;   // samples per pixel that the oracle's maps are made from
   GuideOptions guideOptions;

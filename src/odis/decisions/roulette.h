@@ -1,0 +1,41 @@
+// Russian roulette: what a path that goes on from a cell is worth.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "odis/cells/statistics.h"
+#include "odis/decisions/selection.h"
+#include "odis/guide.h"
+
+namespace odis {
+
+// What a vertex of a cell scatters back along its path, and what it takes to know.
+struct Continuation {
+  double square = 0;  // mean of the squared radiance, as luminance: next-event estimate and all beyond
+  double rays = 1;    // traced for it on average, shadow rays included
+};
+
+// From a cell's statistics to its continuation: the interface behind which formula and network stand side by side.
+class ContinuationModel {
+ public:
+  virtual ~ContinuationModel() = default;
+  // Given the cell's statistics and its parent's continuation (null for the coarsest level). Called for parents
+  // before their children; thread-safe.
+  virtual Continuation predict(const CellStatistics& cell, const Continuation* parent) const = 0;
+};
+
+// The cell's means, shrunk towards its parent's by how many samples the cell has.
+class ShrunkMoments : public ContinuationModel {
+ public:
+  Continuation predict(const CellStatistics& cell, const Continuation* parent) const override;
+};
+
+// Fills in what going on is worth in each cell (Cell::worth). With S what comes back from a vertex, c its rays, and
+// V and C the variance and the rays of a sample of the image, the survival that makes (V + what roulette adds) times
+// (C - what it saves) least is throughput / pixel * sqrt(E[S^2] / c) * sqrt(C / V) (Bolin and Meyer 1997; Rath et
+// al. 2022, EARS, without splitting). The worth is what the throughput over the pixel's value is multiplied by.
+void weighContinuations(std::vector<Cell>& result, std::span<const CellStatistics> cells,
+                        const ContinuationModel& model, const SelectionTotals& totals);
+
+}  // namespace odis
