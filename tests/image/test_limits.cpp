@@ -78,6 +78,12 @@ class ExrLimits : public testing::Test {
     return m_file.find(key) + key.size() + 4;
   }
   void overwrite(size_t at, const std::string& bytes) { m_file.replace(at, bytes.size(), bytes); }
+  // Makes it a tiled image.
+  void insertTiles(uint32_t width, uint32_t height) {
+    overwrite(4, raw(uint32_t(2 | 0x200)));
+    m_file.insert(valueOf("note", "string") + 1,
+                  std::string("tiles\0tiledesc\0", 15) + raw(uint32_t(9)) + raw(width) + raw(height) + '\0');
+  }
   std::string complaintNow() const {
     write(m_path, m_file);
     return complaint(m_path);
@@ -110,13 +116,16 @@ TEST_F(ExrLimits, MoreRowsThanTheFileHasOffsetsFor) {
 }
 
 TEST_F(ExrLimits, MoreTilesThanTheFileHasOffsetsFor) {
-  // In the place of an attribute of the same length: tiles of 1 x 1 pixels.
-  overwrite(4, raw(uint32_t(2 | 0x200)));
-  const size_t end = valueOf("note", "string") + 1;
-  m_file.insert(end, std::string("tiles\0tiledesc\0", 15) + raw(uint32_t(9)) + raw(uint32_t(1)) +
-                         raw(uint32_t(1)) + '\0');
+  insertTiles(1, 1);
   overwrite(valueOf("dataWindow", "box2i") + 8, raw(int32_t(16383)) + raw(int32_t(16383)));
   EXPECT_NE(complaintNow().find("268435456 tiles"), std::string::npos) << complaintNow();
+}
+
+// OpenEXR makes room for a row of tiles, however small the image.
+TEST_F(ExrLimits, TilesMuchLargerThanTheImage) {
+  insertTiles(2, 0x8000002);
+  EXPECT_NE(complaintNow().find("its tiles are of 2 x 134217730 pixels"), std::string::npos)
+      << complaintNow();
 }
 
 TEST_F(ExrLimits, SidesBeyondTheLimits) {

@@ -21,6 +21,8 @@ constexpr uint64_t kRows[] = {1, 1, 1, 16, 32, 16, 32, 32, 32, 256};
 // Flags in the version field: the only part is tiled; there are parts, with headers up to an empty one.
 constexpr uint32_t kTiled = 0x200, kMultiPart = 0x1000;
 constexpr uint64_t kMaxSamples = uint64_t(1) << 31;
+// Tiles may be larger than their image, but not beyond this: OpenEXR makes room for a whole row of them.
+constexpr uint64_t kMaxTileSide = 4096;
 
 // The types of attributes whose values have one size. OpenEXR reads that much of them whatever length the
 // file states, and would take what comes next for something else.
@@ -90,6 +92,10 @@ class HeaderCheck {
                                " pixels, expected at most " + std::to_string(kMaxSamples) +
                                " numbers in all");
     if (tiled && (tileWidth == 0 || tileHeight == 0)) throw std::runtime_error("its tiles have no size");
+    if (tiled && (tileWidth > std::max(width, kMaxTileSide) || tileHeight > std::max(height, kMaxTileSide)))
+      throw std::runtime_error("its tiles are of " + std::to_string(tileWidth) + " x " +
+                               std::to_string(tileHeight) + " pixels, expected at most " +
+                               std::to_string(kMaxTileSide) + " a side, or the image's size");
     const uint64_t chunks =
         tiled ? divideUp(width, tileWidth) * divideUp(height, tileHeight) : divideUp(height, rows);
     // For each a place in the table of offsets.
