@@ -41,6 +41,12 @@ void MethodArguments::addTo(CLI::App& app) {
       ->check(numberBetween(1e-3, 1e6))
       ->capture_default_str()
       ->group(group);
+  app.add_option(
+         "--refine", refineSpp,
+         "Guided samples per pixel that the guide learns from as well: it is rebuilt after 1, 3, 7, ...")
+      ->check(CLI::Range(0, 1 << 20))
+      ->capture_default_str()
+      ->group(group);
   app.add_option("--oracle-spp", oracleSpp, "Samples per pixel that the oracle is made from")
       ->check(CLI::Range(1, 1 << 20))
       ->capture_default_str()
@@ -93,6 +99,7 @@ void MethodArguments::apply(RenderOptions& options) const {
   options.roulette = roulette == "learned" ? RouletteKind::learned : RouletteKind::throughput;
   options.guideBounces = guideBounces;
   options.pilotSpp = pilotSpp;
+  options.refineSpp = refineSpp;
   options.oracleSpp = oracleSpp;
   options.pilotWeight = pilotWeight;
   options.guideOptions = cells;

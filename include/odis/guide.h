@@ -105,6 +105,10 @@ class Guide {
   std::unique_ptr<Data> m_data;
 };
 
+// The vertices that selection probabilities are made from when there are more than that takes: some 200,000, those of
+// pixels drawn by hash. Whoever builds again later need not keep the others.
+std::vector<PilotVertex> selectionVertices(PilotParts parts);
+
 // How much a pilot sample should weigh in the mean of a pixel's samples, as a ratio to a guided one: by the
 // inverse of their variances. `predictions` are those of an image of `width` pixels a row. A pixel's weight
 // is made from the blocks of 8 x 8 pixels around its own without that block, and from all other blocks where
@@ -118,11 +122,12 @@ class GuideBuilder {
   ~GuideBuilder();
 
   // Adds to the statistics of the cells. The first call fixes the extent of the cells, so it should hold at
-  // least one pass over the image. Vertices with values that are not finite are left out.
+  // least one pass over the image. Vertices of guided paths may be added, too, their `pdf` being the mixture's.
+  // Vertices with values that are not finite are left out.
   void add(PilotParts parts);
   void add(std::span<const PilotVertex> vertices) { add(PilotParts(&vertices, 1)); }
   // Builds maps from all that was added, and selection probabilities from vertices that should be (a part
-  // of) the same. `pixelValues`, indexed by PilotVertex::pixel, are what the vertices' contributions are
+  // of) the same, without those of guided paths. `pixelValues`, indexed by PilotVertex::pixel, are what the vertices' contributions are
   // divided by; without them they are taken as they are.
   Guide build(PilotParts parts, std::span<const float> pixelValues = {}) const;
   Guide build(std::span<const PilotVertex> vertices, std::span<const float> pixelValues = {}) const {

@@ -88,6 +88,41 @@ TEST(Repeatable, ReplayIsThePixel) {
   EXPECT_NE(replay(*scene, options, {11, 7}, 2).find("vertex 1"), std::string::npos);
 }
 
+// Guided paths depend on the passes before them, which learn from the ones before those; vertices of paths that survived
+// roulette add up to the path nevertheless.
+TEST(Repeatable, ReplaysOfGuidedPathsAreTheirPixel) {
+  const auto scene = test::loadScene(test::indirectRoom());
+  RenderOptions options;
+  options.spp = 5;
+  options.pilotWeight = 0;
+  const RenderResult result = test::renderScene(*scene, options);
+  int kept = 0;  // vertices that roulette might have ended
+  for (int x = 2; x < 22; ++x) {
+    float mean = 0;
+    for (int sample = 1; sample < options.spp; ++sample) {
+      const std::string text = replay(*scene, options, {x, 3}, sample);
+      float radiance = 0;
+      ASSERT_EQ(std::sscanf(text.c_str(), "pixel %*d,3 sample %*d: radiance %*f %f", &radiance), 1) << text;
+      mean += radiance / float(options.spp - 1);
+      float expected = radiance;  // what the next vertex scatters
+      for (size_t at = text.find("  vertex"); at != std::string::npos; at = text.find("  vertex", at + 1)) {
+        float weight = 0, direct = 0, arriving = 0;
+        ASSERT_EQ(std::sscanf(text.c_str() + text.find("weight", at), "weight (%*f %f", &weight), 1);
+        ASSERT_EQ(std::sscanf(text.c_str() + text.find("direct", at), "direct (%*f %f", &direct), 1);
+        ASSERT_EQ(std::sscanf(text.c_str() + text.find("arriving", at), "arriving (%*f %f", &arriving), 1);
+        const float scattered = direct + weight * arriving;
+        if (at == text.find("  vertex"))
+          EXPECT_NEAR(scattered, expected, 1e-3f * expected + 1e-6f) << text;
+        else if (scattered < 0.99f * expected)
+          ++kept;
+        expected = arriving;
+      }
+    }
+    EXPECT_NEAR(mean, result.frame.color[3 * 24 + x].y, 1e-4f * mean + 1e-6f);
+  }
+  EXPECT_GT(kept, 10);
+}
+
 TEST(Samples, EveryPixelGetsWhatWasAskedFor) {
   const auto scene = test::loadScene(test::indirectRoom());
   for (const double pilot : {0.25, 1.0, 2.0})

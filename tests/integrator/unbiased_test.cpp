@@ -96,7 +96,7 @@ class UnbiasedTest : public ::testing::Test {
 Scene* UnbiasedTest::s_scene = nullptr;
 PixelStatistics* UnbiasedTest::s_path = nullptr;
 
-constexpr int kTests = 13;
+constexpr int kTests = 14;
 
 TEST_F(UnbiasedTest, Histogram) {
   expectSameExpectation(*s_path, renderSeeds(*s_scene, guidedOptions(), 96, 1), kTests);
@@ -128,9 +128,16 @@ TEST_F(UnbiasedTest, AdversarialMaps) {
     RenderOptions options = guidedOptions();
     options.guideOptions.model = std::make_shared<AdversarialModel>(kind);
     options.guideOptions.fixedAlpha = 0.3f;
+    options.refineSpp = 1;
     // Twice as many seeds as elsewhere: where a map hardly looks at the light, tails are heavy.
     expectSameExpectation(*s_path, renderSeeds(*s_scene, options, 192, 1), kTests);
   }
+}
+
+TEST_F(UnbiasedTest, NeverRefined) {
+  RenderOptions options = guidedOptions();
+  options.refineSpp = 0;
+  expectSameExpectation(*s_path, renderSeeds(*s_scene, options, 96, 1), kTests);
 }
 
 TEST_F(UnbiasedTest, RouletteByThroughput) {
@@ -151,6 +158,7 @@ TEST_F(UnbiasedTest, AdversarialRoulette) {
 TEST_F(UnbiasedTest, RouletteWhereCellsAreMissing) {
   RenderOptions options = guidedOptions();
   options.guideOptions.cellsPerDiagonal = 300;
+  options.refineSpp = 0;
   options.guideOptions.continuations = std::make_shared<AdversarialContinuations>();
   options.rrDepth = 1;
   expectSameExpectation(*s_path, renderSeeds(*s_scene, options, 192, 1), kTests);

@@ -4,6 +4,7 @@
 #include <tbb/global_control.h>
 #include <tbb/info.h>
 
+#include <bit>
 #include <chrono>
 #include <memory>
 
@@ -63,7 +64,7 @@ class Renderer {
         runPilot();
         buildGuide();
       }
-      runRemaining();
+      runRemaining(mostRemaining());
     }
     RenderResult result;
     result.frame = combine();
@@ -92,6 +93,7 @@ class Renderer {
     } else if (m_options.integrator == IntegratorKind::odis && sample >= pilotCount(index)) {
       runPilot();
       buildGuide();
+      runRemaining(std::min(sample - pilotCount(index), lastRefinement()));
       useGuide(settings);
     }
     Sampler sampler(m_options.sampler, m_options.seed,
@@ -159,13 +161,13 @@ class Renderer {
     run(pass);
     m_progress.end();
     m_stats.secondsPilot = secondsSince(start);
-    m_stats.pilotVertices = countVertices();
+    m_stats.pilotVertices = countVertices(m_records);
     m_stats.bytesBuild = m_stats.pilotVertices * sizeof(PilotVertex);
   }
 
-  uint64_t countVertices() const {
+  static uint64_t countVertices(const Records& records) {
     uint64_t count = 0;
-    for (const std::vector<PilotVertex>& tile : m_records) count += tile.size();
+    for (const std::vector<PilotVertex>& tile : records) count += tile.size();
     return count;
   }
 
@@ -190,10 +192,9 @@ class Renderer {
     if (m_stopped) return;
     const Clock::time_point start = Clock::now();
     m_pixelValues = pixelEstimates(m_pilot, m_scene.film().crop.width);
-    GuideBuilder builder(m_options.guideOptions);
+    m_builder = std::make_unique<GuideBuilder>(m_options.guideOptions);
     if (m_options.guide == GuideKind::oracle) {
       m_progress.begin("oracle", m_pixels * uint64_t(m_options.oracleSpp));
-      Records selection;
       for (int i = 0; i < m_options.oracleSpp && !stop(); ++i) {
         Pass pass = basicPass();
         pass.features = nullptr;
@@ -202,45 +203,83 @@ class Renderer {
         Records records;
         pass.records = &records;
         run(pass);
-        builder.add(partsOf(records));
+        m_builder->add(partsOf(records));
         if (i < kOracleSelectionPasses)
-          std::move(records.begin(), records.end(), std::back_inserter(selection));
+          std::move(records.begin(), records.end(), std::back_inserter(m_selection));
       }
-      m_guide = builder.build(partsOf(selection), m_pixelValues);
       m_progress.end();
     } else {
-      builder.add(partsOf(m_records));
-      m_guide = builder.build(partsOf(m_records), m_pixelValues);
+      m_builder->add(partsOf(m_records));
+      m_selection = {selectionVertices(partsOf(m_records))};
     }
-    m_stats.bytesBuild += builder.bytes();
+    m_guide = m_builder->build(partsOf(m_selection), m_pixelValues);
+    m_pilotWeights = pilotWeights();
+    guideIsBuilt(m_records, 0);
     if (!m_options.records) m_records = {};
     m_stats.secondsBuild = secondsSince(start);
-    m_stats.cells = m_guide.cellCount();
-    m_stats.bytesMaps = m_guide.bytes();
   }
 
-  // The samples that the pilot left: all of them for the path tracer.
-  void runRemaining() {
+  // Takes stock when the guide has learned from vertices, and clears up when it won't learn any more.
+  void guideIsBuilt(const Records& records, uint32_t guidedSamples) {
+    m_stats.cells = m_guide.cellCount();
+    m_stats.bytesMaps = m_guide.bytes();
+    m_stats.bytesBuild = std::max(
+        m_stats.bytesBuild,
+        m_builder->bytes() + (countVertices(records) + countVertices(m_selection)) * sizeof(PilotVertex));
+    if (guidedSamples < lastRefinement()) return;
+    m_builder.reset();
+    m_selection = {};
+  }
+
+  // How many samples per pixel the pilot left at most: all of them for the path tracer.
+  uint32_t mostRemaining() const {
+    return uint32_t(m_options.spp) - (m_options.pilotSpp >= 1 ? pilotCount(0) : 0);
+  }
+
+  // After how many guided samples per pixel the guide is built for the last time: one less than a power of two, and
+  // some samples must be left. 0: after the pilot only.
+  uint32_t lastRefinement() const {
+    if (m_options.integrator != IntegratorKind::odis || m_options.guide == GuideKind::oracle) return 0;
+    const uint32_t most = std::min(uint32_t(m_options.refineSpp), std::max(mostRemaining(), 1u) - 1);
+    return std::bit_floor(most + 1) - 1;
+  }
+
+  // So many of the samples that the pilot left. The guide learns from the first of them, too.
+  void runRemaining(uint32_t count) {
     const Clock::time_point start = Clock::now();
+    const double building = m_stats.secondsBuild;
     const bool guided = m_options.integrator == IntegratorKind::odis;
-    const uint32_t spp = uint32_t(m_options.spp);
-    const uint32_t most = spp - (m_options.pilotSpp >= 1 ? pilotCount(0) : 0);
-    m_progress.begin(guided ? "guided" : "path", m_pixels * uint64_t(most));
-    for (uint32_t done = 0; done < most && !stop(); done += kSamplesPerPass) {
+    const uint32_t spp = uint32_t(m_options.spp), learning = lastRefinement();
+    m_progress.begin(guided ? "guided" : "path", m_pixels * uint64_t(count));
+    for (uint32_t done = 0, next; done < count && !stop(); done = next) {
+      const bool learns = done < learning;
+      next = std::min(count, done + (learns ? 1 : kSamplesPerPass));
       Pass pass = basicPass();
       if (guided) {
         useGuide(pass.path);
         pass.pixelValues = m_pixelValues;
       }
-      pass.samples = [this, done, spp](uint32_t pixel) {
+      pass.samples = [this, done, next, spp](uint32_t pixel) {
         const uint32_t first = std::min(pilotCount(pixel) + done, spp);
-        return std::pair(first, std::min(spp - first, kSamplesPerPass));
+        return std::pair(first, std::min(spp - first, next - done));
       };
       pass.image = &m_guided;
+      Records records;
+      pass.records = learns ? &records : nullptr;
       run(pass);
+      if (learns && !stop()) refineGuide(records, next);
     }
     m_progress.end();
-    m_stats.secondsGuided = secondsSince(start);
+    m_stats.secondsGuided = secondsSince(start) - (m_stats.secondsBuild - building);
+  }
+
+  // Learns from the vertices of a guided pass, and rebuilds the guide where it is time.
+  void refineGuide(const Records& records, uint32_t done) {
+    const Clock::time_point start = Clock::now();
+    m_builder->add(partsOf(records));
+    if (std::has_single_bit(done + 1)) m_guide = m_builder->build(partsOf(m_selection), m_pixelValues);
+    guideIsBuilt(records, done);
+    m_stats.secondsBuild += secondsSince(start);
   }
 
   // The first so many samples of every pixel, one after another: the rival learns from each what it guides the
@@ -275,9 +314,8 @@ class Renderer {
   void learnFrom(const Records& records, uint32_t sample) {
     const Clock::time_point start = Clock::now();
     m_rival->learn(records, sample);
-    uint64_t bytes = m_rival->bytes();
-    for (const std::vector<PilotVertex>& tile : records) bytes += tile.size() * sizeof(PilotVertex);
-    m_stats.bytesBuild = std::max(m_stats.bytesBuild, bytes);
+    m_stats.bytesBuild =
+        std::max(m_stats.bytesBuild, m_rival->bytes() + countVertices(records) * sizeof(PilotVertex));
     m_stats.secondsBuild += secondsSince(start);
   }
 
@@ -308,7 +346,8 @@ class Renderer {
   }
 
   // What a pilot sample weighs in each pixel, a guided one weighing 1: by the inverse of their variances as the
-  // pilot predicts them. It does not look at the pixel's own values, so the mean stays unbiased.
+  // pilot predicts them. It does not look at the pixel's own values, so the mean stays unbiased. Not to be made anew
+  // when the guide has learnt from the samples that are weighed.
   std::vector<float> pilotWeights() const {
     if (m_options.pilotWeight >= 0) return std::vector<float>(m_pixels, float(m_options.pilotWeight));
     if (m_guide.predictions().empty()) return std::vector<float>(m_pixels, 1);
@@ -327,9 +366,8 @@ class Renderer {
       if (complete == m_iterations.rend()) return {};
       return {{&*complete, {}}};
     }
-    std::vector<float> weights = pilotWeights();
-    m_stats.pilotWeight = pilotShare(weights);
-    return {{&m_pilot, std::move(weights)}, {&m_guided, {}}};
+    m_stats.pilotWeight = pilotShare(m_pilotWeights);
+    return {{&m_pilot, m_pilotWeights}, {&m_guided, {}}};
   }
 
   Frame2D combine() {
@@ -354,10 +392,11 @@ class Renderer {
     return frame;
   }
 
-  double pilotShare(std::span<const float> ratios) const {
+  // The pilot's share in the image, with these weights of its samples; 1 if there are none.
+  double pilotShare(std::span<const float> weights) const {
     double pilot = 0, all = 0;
     for (size_t pixel = 0; pixel < m_pixels; ++pixel) {
-      const double weight = m_pilot[pixel].count * double(ratios[pixel]);
+      const double weight = m_pilot[pixel].count * (weights.empty() ? 1.0 : double(weights[pixel]));
       pilot += weight;
       all += weight + m_guided[pixel].count;
     }
@@ -388,6 +427,9 @@ class Renderer {
   Records m_records;
   std::vector<Rgb> m_emitted;
   std::vector<float> m_pixelValues;  // as the pilot sees them
+  std::vector<float> m_pilotWeights;
+  Records m_selection;  // what selection probabilities are made from
+  std::unique_ptr<GuideBuilder> m_builder;
   Guide m_guide;
   std::unique_ptr<Rival> m_rival;                    // null: path, odis
   std::vector<std::vector<PixelSums>> m_iterations;  // of the rival, as far as they make the image

@@ -39,6 +39,8 @@ struct RenderOptions {
   // odis only
   GuideKind guide = GuideKind::histogram;
   RouletteKind roulette = RouletteKind::learned;  // of the guided samples
+  int refineSpp =
+      3;  // guided samples per pixel that the guide learns from, too: it is rebuilt after 1, 3, 7, ...
   double pilotSpp = 1;  // samples per pixel of the pilot; 0.25 is one sample per 2x2 pixels
   int oracleSpp = 64;   // samples per pixel that the oracle's maps are made from
   GuideOptions guideOptions;
