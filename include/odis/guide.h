@@ -24,6 +24,8 @@ namespace odis {
 
 class ContinuationModel;
 class DirectionModel;
+struct CellStatistics;
+struct DirectionDistribution;
 
 inline constexpr int kCellLevels = 4;  // nested cells with edges e, 2e, 4e, 8e
 
@@ -105,10 +107,6 @@ class Guide {
   std::unique_ptr<Data> m_data;
 };
 
-// The vertices that selection probabilities are made from when there are more than that takes: some 200,000, those of
-// pixels drawn by hash. Whoever builds again later need not keep the others.
-std::vector<PilotVertex> selectionVertices(PilotParts parts);
-
 // How much a pilot sample should weigh in the mean of a pixel's samples, as a ratio to a guided one: by the
 // inverse of their variances. `predictions` are those of an image of `width` pixels a row. A pixel's weight
 // is made from the blocks of 8 x 8 pixels around its own without that block, and from all other blocks where
@@ -133,11 +131,16 @@ class GuideBuilder {
   Guide build(std::span<const PilotVertex> vertices, std::span<const float> pixelValues = {}) const {
     return build(PilotParts(&vertices, 1), pixelValues);
   }
+  // Builds maps and survivals from all that was added by now; selection probabilities and predictions stay what they were
+  // in `previous`, which came from this builder. Cells that are new have their parents' probabilities.
+  Guide rebuild(const Guide& previous) const;
   // Held at most, the vertices themselves not included.
   uint64_t bytes() const;
 
  private:
   struct Data;
+  Guide buildMaps(const std::vector<CellStatistics>& cells,
+                  std::vector<DirectionDistribution>& distributions) const;
   std::unique_ptr<Data> m_data;
 };
 

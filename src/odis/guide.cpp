@@ -111,18 +111,16 @@ SamplingMap pack(const DirectionDistribution& distribution, float floor) {
 
 }  // namespace
 
-Guide GuideBuilder::build(PilotParts parts, std::span<const float> pixelValues) const {
+// A guide of maps alone, coarse levels first; leaves the distributions that they were made from.
+Guide GuideBuilder::buildMaps(const std::vector<CellStatistics>& cells,
+                              std::vector<DirectionDistribution>& distributions) const {
   const GuideOptions& options = m_data->options;
-  const std::vector<CellStatistics> cells = m_data->store.rollUp();
   Guide guide;
   guide.m_data = std::make_unique<Guide::Data>();
   guide.m_data->grid = m_data->store.grid();
   guide.m_data->index = m_data->store.index();
   guide.m_data->cells.resize(cells.size());
-  std::vector<Cell>& result = guide.m_data->cells;
-
-  // Maps, coarse levels first.
-  std::vector<DirectionDistribution> distributions(cells.size());
+  distributions.resize(cells.size());
   for (int level = kCellLevels - 1; level >= 0; --level)
     tbb::parallel_for(
         tbb::blocked_range<size_t>(0, cells.size(), 16), [&](const tbb::blocked_range<size_t>& range) {
@@ -131,9 +129,18 @@ Guide GuideBuilder::build(PilotParts parts, std::span<const float> pixelValues) 
             const uint32_t parent = cells[c].parent;
             distributions[c] =
                 options.model->predict(cells[c], parent == kNoCell ? nullptr : &distributions[parent]);
-            result[c].map = pack(distributions[c], options.floor);
+            guide.m_data->cells[c].map = pack(distributions[c], options.floor);
           }
         });
+  return guide;
+}
+
+Guide GuideBuilder::build(PilotParts parts, std::span<const float> pixelValues) const {
+  const GuideOptions& options = m_data->options;
+  const std::vector<CellStatistics> cells = m_data->store.rollUp();
+  std::vector<DirectionDistribution> distributions;
+  Guide guide = buildMaps(cells, distributions);
+  std::vector<Cell>& result = guide.m_data->cells;
 
   // Selection probabilities.
   AlphaPrediction& predicted = guide.m_data->predicted =
@@ -146,6 +153,27 @@ Guide GuideBuilder::build(PilotParts parts, std::span<const float> pixelValues) 
 
   // Roulette.
   weighContinuations(result, cells, *options.continuations, predicted.totals);
+  return guide;
+}
+
+Guide GuideBuilder::rebuild(const Guide& previous) const {
+  const std::vector<CellStatistics> cells = m_data->store.rollUp();
+  std::vector<DirectionDistribution> distributions;
+  Guide guide = buildMaps(cells, distributions);
+  std::vector<Cell>& result = guide.m_data->cells;
+
+  // Old cells keep their indices, new ones follow.
+  const std::vector<Cell>& old = previous.m_data->cells;
+  for (int level = kCellLevels - 1; level >= 0; --level)
+    for (size_t c = 0; c < cells.size(); ++c) {
+      if (cells[c].level != level) continue;
+      if (c < old.size())
+        std::copy_n(old[c].alpha, kMaterialClasses, result[c].alpha);
+      else if (cells[c].parent != kNoCell)
+        std::copy_n(result[cells[c].parent].alpha, kMaterialClasses, result[c].alpha);
+    }
+  guide.m_data->predicted = previous.m_data->predicted;
+  weighContinuations(result, cells, *m_data->options.continuations, guide.m_data->predicted.totals);
   return guide;
 }
 

@@ -224,6 +224,46 @@ TEST(Guide, DividesByPixelValues) {
   EXPECT_NE(relative.predictedVarianceRatio(), builder.build(vertices).predictedVarianceRatio());
 }
 
+TEST(Guide, RebuiltMapsAreThoseOfAllThatWasAdded) {
+  const std::vector<PilotVertex> first = floorUnderPatch(kBright, 20000, 1);
+  std::vector<PilotVertex> later = floorUnderPatch({-0.6f, 0, 0.8f}, 40000, 2);
+  GuideBuilder builder, both;
+  builder.add(first);
+  both.add(first);
+  const Guide before = builder.build(first);
+  builder.add(later);
+  both.add(later);
+  const Guide after = builder.rebuild(before), expected = both.build(first);
+  EXPECT_EQ(after.cellCount(), expected.cellCount());
+  for (float x = 0.05f; x < 1; x += 0.3f) {
+    const Cell *a = after.find({x, 0.5f, 0}, {0, 0, 1}), *b = expected.find({x, 0.5f, 0}, {0, 0, 1}),
+               *old = before.find({x, 0.5f, 0}, {0, 0, 1});
+    EXPECT_EQ(a->map.texels, b->map.texels);
+    EXPECT_NE(a->map.texels, old->map.texels);
+    EXPECT_EQ(a->worth, b->worth);
+    EXPECT_EQ(a->alpha[0], old->alpha[0]);
+  }
+  EXPECT_EQ(after.predictedVarianceRatio(), before.predictedVarianceRatio());
+}
+
+TEST(Guide, RebuiltCellsThatAreNewHaveTheirParentsProbabilities) {
+  const std::vector<PilotVertex> first = floorUnderPatch(kBright, 20000, 1);
+  std::vector<PilotVertex> later = first;
+  for (PilotVertex& v : later) v.position.x += 0.9f;  // some where nothing was, some in new parents
+  GuideBuilder builder;
+  builder.add(first);
+  const Guide before = builder.build(first);
+  builder.add(later);
+  const Guide after = builder.rebuild(before);
+  EXPECT_GT(after.cellCount(), before.cellCount());
+  const Cell *parent = before.find({1.03f, 0.5f, 0}, {0, 0, 1}),
+             *cell = after.find({1.03f, 0.5f, 0}, {0, 0, 1});
+  ASSERT_NE(parent, nullptr);
+  EXPECT_LT(parent->alpha[0], 1);
+  EXPECT_EQ(cell->alpha[0], parent->alpha[0]);
+  EXPECT_NE(cell->map.texels, parent->map.texels);
+}
+
 TEST(Guide, FindsManyAsItFindsEach) {
   const std::vector<PilotVertex> vertices = floorUnderPatch(kBright, 2000, 4);
   GuideBuilder builder;

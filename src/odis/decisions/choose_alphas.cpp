@@ -11,9 +11,6 @@ namespace {
 
 // Selection probabilities are made from about so many vertices: one pixel of `stride`, all of its path.
 constexpr size_t kSelectionVertices = 200000;
-uint32_t strideOf(PilotParts parts) {
-  return uint32_t(std::max<size_t>(1, countVertices(parts) / kSelectionVertices));
-}
 bool isChosen(const PilotVertex& vertex, uint32_t stride) {
   return ((vertex.pixel * 0x9e3779b9u) >> 8) % stride == 0;
 }
@@ -100,21 +97,12 @@ void forEachCell(size_t count, const Body& body) {
 
 }  // namespace
 
-std::vector<PilotVertex> selectionVertices(PilotParts parts) {
-  const uint32_t stride = strideOf(parts);
-  std::vector<PilotVertex> result;
-  for (const std::span<const PilotVertex> part : parts)
-    std::copy_if(part.begin(), part.end(), std::back_inserter(result),
-                 [stride](const PilotVertex& v) { return isChosen(v, stride); });
-  return result;
-}
-
 AlphaPrediction chooseAlphas(std::vector<Cell>& result, const CellStore& store,
                              std::span<const CellStatistics> cells,
                              std::span<const DirectionDistribution> distributions, PilotParts parts,
                              std::span<const float> pixelValues) {
   // Choose vertices and sort them by cell.
-  const uint32_t stride = strideOf(parts);
+  const uint32_t stride = uint32_t(std::max<size_t>(1, countVertices(parts) / kSelectionVertices));
   const PixelScale scale(pixelValues);
   const std::vector<PilotBatch> pilot = makeBatches(parts);
   std::vector<BatchSelection> batches(pilot.size());

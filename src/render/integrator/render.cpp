@@ -195,6 +195,7 @@ class Renderer {
     m_builder = std::make_unique<GuideBuilder>(m_options.guideOptions);
     if (m_options.guide == GuideKind::oracle) {
       m_progress.begin("oracle", m_pixels * uint64_t(m_options.oracleSpp));
+      Records selection;
       for (int i = 0; i < m_options.oracleSpp && !stop(); ++i) {
         Pass pass = basicPass();
         pass.features = nullptr;
@@ -205,14 +206,14 @@ class Renderer {
         run(pass);
         m_builder->add(partsOf(records));
         if (i < kOracleSelectionPasses)
-          std::move(records.begin(), records.end(), std::back_inserter(m_selection));
+          std::move(records.begin(), records.end(), std::back_inserter(selection));
       }
+      m_guide = m_builder->build(partsOf(selection), m_pixelValues);
       m_progress.end();
     } else {
       m_builder->add(partsOf(m_records));
-      m_selection = {selectionVertices(partsOf(m_records))};
+      m_guide = m_builder->build(partsOf(m_records), m_pixelValues);
     }
-    m_guide = m_builder->build(partsOf(m_selection), m_pixelValues);
     m_pilotWeights = pilotWeights();
     guideIsBuilt(m_records, 0);
     if (!m_options.records) m_records = {};
@@ -223,12 +224,9 @@ class Renderer {
   void guideIsBuilt(const Records& records, uint32_t guidedSamples) {
     m_stats.cells = m_guide.cellCount();
     m_stats.bytesMaps = m_guide.bytes();
-    m_stats.bytesBuild = std::max(
-        m_stats.bytesBuild,
-        m_builder->bytes() + (countVertices(records) + countVertices(m_selection)) * sizeof(PilotVertex));
-    if (guidedSamples < lastRefinement()) return;
-    m_builder.reset();
-    m_selection = {};
+    m_stats.bytesBuild =
+        std::max(m_stats.bytesBuild, m_builder->bytes() + countVertices(records) * sizeof(PilotVertex));
+    if (guidedSamples >= lastRefinement()) m_builder.reset();
   }
 
   // How many samples per pixel the pilot left at most: all of them for the path tracer.
@@ -277,7 +275,7 @@ class Renderer {
   void refineGuide(const Records& records, uint32_t done) {
     const Clock::time_point start = Clock::now();
     m_builder->add(partsOf(records));
-    if (std::has_single_bit(done + 1)) m_guide = m_builder->build(partsOf(m_selection), m_pixelValues);
+    if (std::has_single_bit(done + 1)) m_guide = m_builder->rebuild(m_guide);
     guideIsBuilt(records, done);
     m_stats.secondsBuild += secondsSince(start);
   }
@@ -428,7 +426,6 @@ class Renderer {
   std::vector<Rgb> m_emitted;
   std::vector<float> m_pixelValues;  // as the pilot sees them
   std::vector<float> m_pilotWeights;
-  Records m_selection;  // what selection probabilities are made from
   std::unique_ptr<GuideBuilder> m_builder;
   Guide m_guide;
   std::unique_ptr<Rival> m_rival;                    // null: path, odis
