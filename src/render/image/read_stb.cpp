@@ -51,15 +51,15 @@ bool isPng(const std::vector<uint8_t>& file) {
 // Throws if a chunk of a PNG file is longer than what is left of the file: stb would make room for all that it
 // announces.
 void checkPngChunks(const std::vector<uint8_t>& file) {
-  constexpr size_t kSignature = 8, kFrame = 12;  // of a chunk: length, type, checksum
-  for (size_t at = kSignature; at + kFrame <= file.size();) {
+  constexpr size_t kSignature = 8, kHead = 8, kChecksum = 4;  // a chunk's head: its length and type
+  for (size_t at = kSignature; at + kHead <= file.size();) {
     const uint8_t* head = &file[at];
     const uint64_t length = uint64_t(head[0]) << 24 | head[1] << 16 | head[2] << 8 | head[3];
-    if (length > file.size() - at - kFrame)
+    if (length > file.size() - at - kHead)
       throw std::runtime_error(
           fmt::format("a chunk at byte {} announces {} bytes, more than the file holds", at, length));
     if (std::memcmp(head + 4, "IEND", 4) == 0) return;
-    at += kFrame + length;
+    at += kHead + length + kChecksum;
   }
 }
 
