@@ -48,6 +48,8 @@ constexpr Field kFields[] = {
     ODIS_FIELD(lightBsdfPdf, "<f4"),
     ODIS_FIELD(lightGuidablePdf, "<f4"),
     ODIS_FIELD(raysAfter, "<f4"),
+    ODIS_FIELD(lightGroupProbability, "<f4"),
+    ODIS_FIELD(lightGroup, "<u4"),
     ODIS_FIELD(sampleWeight, "<f4"),
     ODIS_FIELD(pixel, "<u4"),
     ODIS_FIELD(depth, "<u2"),

@@ -47,6 +47,12 @@ void MethodArguments::addTo(CLI::App& app) {
       ->check(CLI::Range(0, 1 << 20))
       ->capture_default_str()
       ->group(group);
+  app.add_option(
+         "--lights", lights,
+         "How guided vertices choose a light: by the hierarchy of lights, or learned from what the pilot saw")
+      ->check(CLI::IsMember({"hierarchy", "learned"}))
+      ->capture_default_str()
+      ->group(group);
   app.add_option("--oracle-spp", oracleSpp, "Samples per pixel that the oracle is made from")
       ->check(CLI::Range(1, 1 << 20))
       ->capture_default_str()
@@ -99,6 +105,7 @@ void MethodArguments::apply(RenderOptions& options) const {
   options.roulette = roulette == "learned" ? RouletteKind::learned : RouletteKind::throughput;
   options.guideBounces = guideBounces;
   options.pilotSpp = pilotSpp;
+  options.lights = lights == "learned" ? LightChoiceKind::learned : LightChoiceKind::hierarchy;
   options.refineSpp = refineSpp;
   options.oracleSpp = oracleSpp;
   options.pilotWeight = pilotWeight;

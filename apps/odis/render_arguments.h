@@ -16,7 +16,8 @@ namespace odis::app {
 
 // How a method differs from another: everything but the scene, the number of samples and the outputs.
 struct MethodArguments {
-  std::string integrator = "odis", sampler = "sobol", guide = "histogram", roulette = "learned";
+  std::string integrator = "odis", sampler = "sobol", guide = "histogram", roulette = "learned",
+              lights = "learned";
   int guideBounces = -1, refineSpp = 3, oracleSpp = 64;
   double pilotSpp = 1, pilotWeight = -1;
   GuideOptions cells;

@@ -24,6 +24,7 @@ namespace odis {
 
 class ContinuationModel;
 class DirectionModel;
+class LightModel;
 struct CellStatistics;
 struct DirectionDistribution;
 
@@ -34,10 +35,14 @@ struct GuideOptions {
   std::shared_ptr<const DirectionModel> model;
   // What tells how much comes back from a cell (src/odis/decisions/roulette.h); null: the formula.
   std::shared_ptr<const ContinuationModel> continuations;
+  // What tells what the groups of lights give (src/odis/decisions/lights.h); null: the formula.
+  std::shared_ptr<const LightModel> lights;
   int cellsPerDiagonal = 32;  // the finest cells have an edge of (diagonal of what the pilot saw) / this
   // How many samples' worth of trust the coarser level has when it is blended with a finer one, per level,
   // finest first; the last one is for the uniform map.
   float trust[kCellLevels] = {250, 250, 120, 30};
+  uint32_t lightGroups =
+      0;                 // how many groups of lights the vertices tell apart; 0: learn nothing about lights
   float floor = 0.03f;   // share of the uniform distribution in every map
   float clamp = 20;      // a sample counts at most this many times the mean of its neighbourhood (maps only)
   float fixedAlpha = 0;  // > 0: this selection probability everywhere instead of the one by variance and cost
@@ -56,6 +61,7 @@ struct Cell {
 
   // What going on from here is worth beside what it costs: see survivalProbability().
   float worth = INFINITY;
+  float lightShare = 0;  // see LearnedLights
 
   // Whether there is a class to guide; where there is none, a vertex need not find out which it is of.
   bool guidesAny() const { return std::min({alpha[0], alpha[1], alpha[2]}) < 1; }
@@ -69,6 +75,13 @@ inline float survivalProbability(const Cell& cell, float throughput) {
   const float survival = throughput * cell.worth;
   return survival < 1 ? std::max(survival, kLeast) : 1;  // 1 for what is not a number
 }
+
+// What is known in a cell about the choice of a light: a share of the choices draws a group of lights from a table,
+// the others choose as ever.
+struct LearnedLights {
+  const float* cdf = nullptr;  // one entry more than groups, from 0 to 1
+  float share = 0;             // in [0, 1); 0: nothing known, no table
+};
 
 // Where a vertex is: its position and unit shading normal on the side of the outgoing direction.
 struct Place {
@@ -92,6 +105,9 @@ class Guide {
   // memory of another. What a vertex reads of its cell is on its way when this returns. `cells` has room for
   // as many as there are `places`.
   void find(std::span<const Place> places, std::span<const Cell*> cells) const;
+
+  // What is known about lights in a cell of this guide. The table lasts as long as the guide.
+  LearnedLights lights(const Cell& cell) const;
 
   uint64_t cellCount() const;
   uint64_t bytes() const;

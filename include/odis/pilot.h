@@ -9,6 +9,10 @@ namespace odis {
 enum class MaterialClass : uint8_t { diffuse, rough, glossy };
 inline constexpr int kMaterialClasses = 3;
 
+// A renderer may tell apart so many groups of lights for next-event estimation, at most.
+inline constexpr uint32_t kMostLightGroups = 32;
+inline constexpr uint32_t kNoLightGroup = ~0u;
+
 // Classes by the roughness (alpha of a microfacet distribution, 1 for diffuse) of the lobe that matters most.
 inline MaterialClass materialClass(float roughness) {
   if (roughness >= 0.5f) return MaterialClass::diffuse;
@@ -16,7 +20,7 @@ inline MaterialClass materialClass(float roughness) {
 }
 
 // One vertex of a pilot path: a place where a direction was sampled. World space, unit directions, radiance
-// in the renderer's units. 168 bytes.
+// in the renderer's units. 176 bytes.
 struct PilotVertex {
   Float3 position;
   Float3 normal;    // shading normal, on the side of wo
@@ -44,6 +48,8 @@ struct PilotVertex {
   float lightPdf = 0;          // its density; 0 if next-event estimation gave nothing or MIS does not apply
   float lightBsdfPdf = 0, lightGuidablePdf = 0;  // the BSDF's densities of that direction
   float raysAfter = 0;                           // rays traced because of wi
+  float lightGroupProbability = 0;      // with which next-event estimation chose that group of lights
+  uint32_t lightGroup = kNoLightGroup;  // which group that was, if any
 
   float sampleWeight = 1;  // of the path in its pixel (reconstruction filter); radiance does not include it
   uint32_t pixel = 0;      // index within the image that was rendered
@@ -52,6 +58,6 @@ struct PilotVertex {
   bool both = false;       // the BSDF scatters to both sides of the surface
 };
 
-static_assert(sizeof(PilotVertex) == 168);
+static_assert(sizeof(PilotVertex) == 176);
 
 }  // namespace odis

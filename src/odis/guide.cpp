@@ -6,6 +6,7 @@
 #include "odis/cells/statistics.h"
 #include "odis/decisions/choose_alphas.h"
 #include "odis/decisions/direction_model.h"
+#include "odis/decisions/lights.h"
 #include "odis/decisions/roulette.h"
 
 namespace odis {
@@ -14,6 +15,8 @@ struct Guide::Data {
   CellGrid grid;
   CellIndex index;
   std::vector<Cell> cells;
+  std::vector<float> lights;  // tables of lightGroups + 1 entries for each cell
+  uint32_t lightGroups = 0;
   AlphaPrediction predicted;
 };
 
@@ -52,11 +55,19 @@ void Guide::find(std::span<const Place> places, std::span<const Cell*> cells) co
   }
 }
 
+LearnedLights Guide::lights(const Cell& cell) const {
+  if (!(cell.lightShare > 0)) return {};
+  const size_t index = size_t(&cell - m_data->cells.data());
+  return {&m_data->lights[index * (m_data->lightGroups + 1)], cell.lightShare};
+}
+
 uint64_t Guide::cellCount() const {
   return m_data ? m_data->cells.size() : 0;
 }
 uint64_t Guide::bytes() const {
-  return m_data ? m_data->cells.size() * sizeof(Cell) + m_data->index.bytes() : 0;
+  return m_data ? m_data->cells.size() * sizeof(Cell) + m_data->lights.size() * sizeof(float) +
+                      m_data->index.bytes()
+                : 0;
 }
 float Guide::predictedVarianceRatio() const {
   return m_data ? m_data->predicted.varianceRatio : 1;
@@ -70,6 +81,7 @@ struct GuideBuilder::Data {
   explicit Data(const GuideOptions& o) : options(o), store(o.clamp) {
     if (!options.model) options.model = std::make_shared<HistogramModel>(o);
     if (!options.continuations) options.continuations = std::make_shared<ShrunkMoments>();
+    if (!options.lights) options.lights = std::make_shared<ShrunkLightSquares>();
   }
   GuideOptions options;
   CellStore store;
@@ -132,6 +144,10 @@ Guide GuideBuilder::buildMaps(const std::vector<CellStatistics>& cells,
             guide.m_data->cells[c].map = pack(distributions[c], options.floor);
           }
         });
+  if (options.lightGroups > 0) {
+    guide.m_data->lightGroups = options.lightGroups;
+    guide.m_data->lights = tabulateLights(guide.m_data->cells, cells, *options.lights, options.lightGroups);
+  }
   return guide;
 }
 

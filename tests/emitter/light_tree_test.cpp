@@ -1,8 +1,7 @@
 // The choice among lights: what is drawn is what probability() states, and no light that shines is left out.
 #include <gtest/gtest.h>
 
-#include <random>
-
+#include "emitter/light_scenes.h"
 #include "render/emitter/area.h"
 #include "render/emitter/constant.h"
 #include "render/emitter/directional.h"
@@ -16,40 +15,9 @@
 #include "support/chi2.h"
 
 using namespace odis::render;
+using namespace odis::test;
 
 namespace {
-
-class Random {
- public:
-  explicit Random(uint64_t seed) : m_engine(seed) {}
-  float operator()() { return std::min(m_uniform(m_engine), kOneMinusEpsilon); }
-  Vec3 inCube(float half) { return Vec3((*this)() - 0.5f, (*this)() - 0.5f, (*this)() - 0.5f) * (2 * half); }
-  Vec3 direction() { return squareToSphere({(*this)(), (*this)()}); }
-
- private:
-  std::mt19937_64 m_engine;
-  std::uniform_real_distribution<float> m_uniform{0.0f, 1.0f};
-};
-
-// Boxes of many sizes and powers, flat and round, in clusters and apart; some of them black.
-std::vector<LightBounds> someLights(int count, Random& random) {
-  std::vector<LightBounds> lights;
-  for (int i = 0; i < count; ++i) {
-    LightBounds light;
-    light.min = random.inCube(i % 3 == 0 ? 0.1f : 4.0f);
-    light.max = light.min + Vec3(random(), random(), random()) * (i % 5 == 0 ? 0.0f : 0.3f);
-    light.axis = random.direction();
-    light.thetaO = i % 4 == 0 ? kPi : i % 4 == 1 ? 0.0f : random() * kPi;
-    light.thetaE = i % 7 == 0 ? 0.3f : kPi / 2;
-    light.phi = i % 11 == 10 ? 0.0f : std::exp(6 * random() - 3);
-    lights.push_back(light);
-  }
-  return lights;
-}
-
-LightReference someReference(int i, Random& random) {
-  return {random.inCube(i % 2 == 0 ? 5.0f : 0.3f), random.direction(), i % 3 == 0};
-}
 
 std::shared_ptr<Mesh> soup(int triangles, float size, Random& random) {
   MeshData data;
@@ -68,15 +36,6 @@ std::shared_ptr<Mesh> soup(int triangles, float size, Random& random) {
 
 TexturePtr uniform(float radiance) {
   return std::make_shared<ConstantTexture>(Rgb(radiance, radiance, radiance));
-}
-
-std::vector<const Emitter*> indexed(const std::vector<Emitter*>& emitters) {
-  std::vector<const Emitter*> result;
-  for (Emitter* emitter : emitters) {
-    emitter->setIndex(uint32_t(result.size()));
-    result.push_back(emitter);
-  }
-  return result;
 }
 
 // The sum of the probabilities of all parts, and of those whose part lies wholly behind the reference or

@@ -8,6 +8,7 @@
 
 #include "odis/cells/grid.h"
 #include "odis/cells/statistics.h"
+#include "odis/decisions/lights.h"
 #include "odis/decisions/roulette.h"
 #include "odis/decisions/selection.h"
 
@@ -356,6 +357,44 @@ TEST(Roulette, CellsWithFewSamplesFollowTheirParents) {
   EXPECT_NEAR(ShrunkMoments().predict(cell, &parent).square, 1, 0.01);
   EXPECT_NEAR(ShrunkMoments().predict(cell, &parent).rays, 7, 0.01);
   EXPECT_EQ(ShrunkMoments().predict({}, nullptr).square, 0);
+}
+
+TEST(Lights, TablesFollowTheRootOfWhatGroupsGive) {
+  std::vector<CellStatistics> cells(2);
+  for (CellStatistics& cell : cells) cell.level = kCellLevels - 1;
+  cells[0].count = 1e6;
+  cells[0].lightSquares = {9e6, 0, 1e6};
+  std::vector<Cell> result(2);
+  const std::vector<float> tables = tabulateLights(result, cells, ShrunkLightSquares(), 3);
+  ASSERT_EQ(tables.size(), 8u);
+  EXPECT_NEAR(tables[1], 0.75, 1e-6);
+  EXPECT_NEAR(tables[2], 0.75, 1e-6);
+  EXPECT_EQ(tables[3], 1);
+  EXPECT_GT(result[0].lightShare, 0.5f);
+  EXPECT_LT(result[0].lightShare, 1);
+  EXPECT_EQ(result[1].lightShare, 0);  // has seen nothing
+}
+
+TEST(Lights, ASquareIsEstimatedWhateverTheChoiceWas) {
+  // Two groups that always give 2 and 6, chosen with 0.9 and 0.1; then the other way round.
+  for (const float first : {0.9f, 0.1f}) {
+    std::vector<PilotVertex> vertices = floorUnderPatch(kBright, 40000, 1);
+    std::mt19937 engine(2);
+    for (PilotVertex& v : vertices) {
+      v.lightGroup = std::uniform_real_distribution<float>()(engine) < first ? 0 : 1;
+      v.lightGroupProbability = v.lightGroup == 0 ? first : 1 - first;
+      const float direct = (v.lightGroup == 0 ? 2 : 6) / v.lightGroupProbability;
+      v.direct = {direct, direct, direct};
+    }
+    GuideOptions options;
+    options.lightGroups = 2;
+    GuideBuilder builder(options);
+    builder.add(vertices);
+    const Guide guide = builder.build(vertices);
+    const LearnedLights lights = guide.lights(*guide.find({0.5f, 0.5f, 0}, {0, 0, 1}));
+    EXPECT_NEAR(lights.cdf[1], 0.25, 0.04);
+    EXPECT_EQ(lights.cdf[2], 1);
+  }
 }
 
 TEST(PilotWeights, FollowWhatIsPredictedNearby) {

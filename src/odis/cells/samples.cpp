@@ -32,6 +32,14 @@ float outgoing(const PilotVertex& v) {
   return std::isfinite(result) ? std::max(result, 0.0f) : 0;
 }
 
+// With X what a group gives a vertex and P the probability of choosing it, direct = X / P if it was chosen: an estimate
+// of E[X^2] is direct^2 P.
+float lightSquare(const PilotVertex& v) {
+  const float direct = luminance(v.direct);
+  const float result = direct * direct * v.lightGroupProbability;
+  return v.lightGroup < kMostLightGroups && std::isfinite(result) ? result : 0;
+}
+
 BatchSamples takeSamples(const PilotBatch& batch, const CellGrid& grid) {
   BatchSamples result;
   size_t count = 0;
@@ -49,7 +57,8 @@ BatchSamples takeSamples(const PilotBatch& batch, const CellGrid& grid) {
       ++result.cells[cell].count;
       result.cells[cell].value += value;
       result.cellOf.push_back(cell);
-      result.samples.push_back({v.position, v.normal, v.wi, v.distance, value, outgoing(v), 1 + v.raysAfter});
+      result.samples.push_back({v.position, v.normal, v.wi, v.distance, value, outgoing(v), 1 + v.raysAfter,
+                                lightSquare(v), v.lightGroup});
     }
   return result;
 }

@@ -17,13 +17,15 @@ float sampleValue(const PilotVertex& vertex);
 // What the vertex scatters back along the path, next-event estimate included, as a luminance.
 float outgoing(const PilotVertex& vertex);
 
-// A usable vertex. 52 bytes.
+// A usable vertex. 60 bytes.
 struct CellSample {
   Float3 position, normal, wi;
   float distance;
-  float value;     // `sampleValue`
-  float outgoing;  // `outgoing`
-  float rays;      // traced at the vertex and beyond
+  float value;        // `sampleValue`
+  float outgoing;     // `outgoing`
+  float rays;         // traced at the vertex and beyond
+  float lightSquare;  // estimate of the squared next-event estimate from one group of lights
+  uint32_t lightGroup;
 };
 
 // The usable vertices of a batch, and the cells of the finest level that they fall into, numbered as they are

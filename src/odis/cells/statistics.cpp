@@ -107,6 +107,7 @@ void accumulate(CellStatistics& cell, float limit, std::span<const CellSample* c
     cell.sumSquares += double(value) * value;
     cell.outgoingSquares += double(sample.outgoing) * sample.outgoing;
     cell.rays += sample.rays;
+    if (sample.lightSquare > 0) cell.lightSquares[sample.lightGroup] += sample.lightSquare;
     cell.normal = cell.normal + sample.normal;
     if (value <= 0) return;
     const Splat spread = splat(reaim(sample.position, sample.wi, sample.distance, cell.centroid));
@@ -175,6 +176,7 @@ std::vector<CellStatistics> CellStore::rollUp() const {
       parent.sumSquares += child.sumSquares;
       parent.outgoingSquares += child.outgoingSquares;
       parent.rays += child.rays;
+      for (size_t g = 0; g < parent.lightSquares.size(); ++g) parent.lightSquares[g] += child.lightSquares[g];
       parent.normal = parent.normal + child.normal;
       for (int t = 0; t < kMapTexels; ++t) parent.histogram[t] += child.histogram[t];
     }

@@ -29,7 +29,8 @@ struct CellStatistics {
   double rays = 0;             // traced at the vertices and beyond
   Float3 centroid;             // of the first batch's positions; directions are re-aimed from here
   Float3 normal;               // sum of unit normals
-  Histogram histogram{};       // of values by direction
+  std::array<double, kMostLightGroups> lightSquares{};  // sums of CellSample::lightSquare, for each group
+  Histogram histogram{};                                // of values by direction
 };
 
 // The cells at every level. A coarser cell's statistics are the sums of its children's, formed by `rollUp`.

@@ -1,6 +1,7 @@
 #include "render/emitter/light_tree.h"
 
 #include <array>
+#include <bit>
 #include <limits>
 
 namespace odis::render {
@@ -91,9 +92,7 @@ float LightTree::firstProbability(const Pair& pair, const LightReference& ref) {
   return std::clamp(first / (first + second), kLeastProbability, 1 - kLeastProbability);
 }
 
-LightTree::Choice LightTree::sample(const LightReference& ref, float u) const {
-  if (empty()) return {};
-  uint32_t link = m_root;
+LightTree::Choice LightTree::descend(const LightReference& ref, uint32_t link, float u) const {
   float probability = 1;
   while (!(link & kLeaf)) {
     const Pair& pair = m_pairs[link];
@@ -109,20 +108,64 @@ LightTree::Choice LightTree::sample(const LightReference& ref, float u) const {
   return {link & ~kLeaf, probability};
 }
 
-float LightTree::probability(const LightReference& ref, uint32_t light) const {
-  uint64_t trail = m_trails[light];
-  if (trail == 0) return 0;
-  uint32_t link = m_root;
+LightTree::Walk LightTree::walk(const LightReference& ref, uint32_t link, uint64_t trail) const {
   float probability = 1;
   for (; trail != 1; trail >>= 1) {
     const Pair& pair = m_pairs[link];
     const float first = firstProbability(pair, ref);
-    if (first < 0) return 0;
+    if (first < 0) return {0, link};
     probability *= trail & 1 ? 1 - first : first;
-    if (probability == 0) return 0;
+    if (probability == 0) return {0, link};
     link = pair.child[trail & 1].link;
   }
-  return probability;
+  return {probability, link};
+}
+
+LightTree::Choice LightTree::sample(const LightReference& ref, float u) const {
+  return empty() ? Choice{} : descend(ref, m_root, u);
+}
+
+float LightTree::probability(const LightReference& ref, uint32_t light) const {
+  return m_trails[light] == 0 ? 0 : walk(ref, m_root, m_trails[light]).probability;
+}
+
+float LightTree::probabilityInGroup(const LightReference& ref, uint32_t light) const {
+  if (m_trails[light] == 0) return 0;
+  const Group& group = m_groups[m_groupOf[light]];
+  const int turns = std::bit_width(group.trail) - 1;
+  return walk(ref, group.link, m_trails[light] >> turns).probability;
+}
+
+void LightTree::makeGroups(uint32_t most) {
+  m_groupOf.assign(m_trails.size(), 0);
+  if (empty()) return;
+  m_groups = {{1, m_root}};
+  std::vector<float> intensities = {m_rootNode.intensity};
+  while (m_groups.size() < most) {
+    // The brightest node that can be divided.
+    size_t brightest = m_groups.size();
+    for (size_t i = 0; i < m_groups.size(); ++i)
+      if (!(m_groups[i].link & kLeaf) &&
+          (brightest == m_groups.size() || intensities[i] > intensities[brightest]))
+        brightest = i;
+    if (brightest == m_groups.size()) break;
+    const Group parent = m_groups[brightest];
+    const int turns = std::bit_width(parent.trail) - 1;
+    const uint64_t end = uint64_t(1) << turns;
+    const Pair& pair = m_pairs[parent.link];
+    m_groups[brightest] = {(parent.trail ^ end) | end << 1, pair.child[0].link};
+    intensities[brightest] = pair.child[0].intensity;
+    m_groups.push_back({parent.trail | end << 1, pair.child[1].link});
+    intensities.push_back(pair.child[1].intensity);
+  }
+  // Each light's group is the one whose turns begin its own.
+  for (size_t light = 0; light < m_trails.size(); ++light)
+    for (size_t g = 0; g < m_groups.size() && m_trails[light] != 0; ++g) {
+      const int turns = std::bit_width(m_groups[g].trail) - 1;
+      const uint64_t mask = (uint64_t(1) << turns) - 1;
+      if ((m_trails[light] & mask) == (m_groups[g].trail & mask) && (m_trails[light] >> turns) != 0)
+        m_groupOf[light] = uint8_t(g);
+    }
 }
 
 }  // namespace odis::render

@@ -2,6 +2,8 @@
 // and Kulla 2018; the walk back to the root by a trail of bits as in pbrt-v4).
 #pragma once
 
+#include <odis/guide.h>
+
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -13,8 +15,9 @@ namespace odis::render {
 // The point that light is sampled for, as far as the choice among lights depends on it.
 struct LightReference {
   Vec3 p;
-  Vec3 n;             // unit shading normal on the side that light is scattered to
-  bool both = false;  // whether light of the other side is scattered too
+  Vec3 n;                   // unit shading normal on the side that light is scattered to
+  bool both = false;        // whether light of the other side is scattered too
+  LearnedLights learned{};  // what is known of the groups of lights there; LightSampler only
 };
 
 class LightTree {
@@ -22,8 +25,8 @@ class LightTree {
   static constexpr uint32_t kNone = ~0u;
 
   LightTree() = default;
-  // Lights without phi are left out and never drawn. At most 2^31 lights.
-  explicit LightTree(std::span<const LightBounds> lights);
+  // Lights without phi are left out and never drawn. At most 2^31 lights; 1 to 256 groups.
+  explicit LightTree(std::span<const LightBounds> lights, uint32_t mostGroups = 1);
 
   struct Choice {
     uint32_t light = kNone;  // none: no light of the tree shines upon the reference
@@ -38,10 +41,25 @@ class LightTree {
   // An estimate of what all lights together give the reference, in W/m^2; zero only if nothing.
   float irradiance(const LightReference& ref) const { return empty() ? 0 : importance(m_rootNode, ref); }
 
+  // The tree is cut into groups of lights: the brightest node is divided until there are as many as asked for.
+  uint32_t groupCount() const { return uint32_t(m_groups.size()); }
+  uint32_t groupOf(uint32_t light) const { return m_groupOf[light]; }
+  // The probability with which sample() draws a light of the group.
+  float groupProbability(const LightReference& ref, uint32_t group) const {
+    return walk(ref, m_root, m_groups[group].trail).probability;
+  }
+  // Draws a light of the group; its probability is that within the group.
+  Choice sampleGroup(const LightReference& ref, uint32_t group, float u) const {
+    return descend(ref, m_groups[group].link, u);
+  }
+  // The probability with which sampleGroup() draws a light of its group.
+  float probabilityInGroup(const LightReference& ref, uint32_t light) const;
+
   bool empty() const { return m_root == kNone; }
-  // 72 bytes a light.
+  // 73 bytes a light.
   uint64_t bytes() const {
-    return m_pairs.capacity() * sizeof(Pair) + m_trails.capacity() * sizeof(uint64_t);
+    return m_pairs.capacity() * sizeof(Pair) + m_trails.capacity() * sizeof(uint64_t) + m_groupOf.capacity() +
+           m_groups.capacity() * sizeof(Group);
   }
 
  private:
@@ -57,6 +75,14 @@ class LightTree {
   struct alignas(64) Pair {
     Node child[2];
   };
+  struct Group {
+    uint64_t trail;  // from the root, ended by a one
+    uint32_t link;   // where it ends
+  };
+  struct Walk {
+    float probability;
+    uint32_t link;
+  };
   class Build;
   static constexpr uint32_t kLeaf = 1u << 31;
 
@@ -66,11 +92,19 @@ class LightTree {
   // The probability of the first child; negative if neither gives anything.
   static float firstProbability(const Pair& pair, const LightReference& ref);
 
+  // Draws a light from below `link`.
+  Choice descend(const LightReference& ref, uint32_t link, float u) const;
+  // Follows the turns of a trail from `link` on, with the probability of doing so; 0 where it is impossible.
+  Walk walk(const LightReference& ref, uint32_t link, uint64_t trail) const;
+  void makeGroups(uint32_t most);
+
   Node m_rootNode;
   std::vector<Pair> m_pairs;
   std::vector<uint64_t> m_trails;  // for each light its turns from the root, the first in the lowest bit,
                                    // ended by a one; 0 if it is left out
-  uint32_t m_root = kNone;         // a link
+  std::vector<uint8_t> m_groupOf;  // each light
+  std::vector<Group> m_groups;
+  uint32_t m_root = kNone;  // a link
 };
 
 }  // namespace odis::render

@@ -133,8 +133,9 @@ class LightTree::Build {
   std::vector<Item> m_items;
 };
 
-LightTree::LightTree(std::span<const LightBounds> lights) {
+LightTree::LightTree(std::span<const LightBounds> lights, uint32_t mostGroups) {
   Build(*this, lights);
+  makeGroups(mostGroups);
 }
 
 }  // namespace odis::render

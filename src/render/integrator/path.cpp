@@ -14,6 +14,7 @@ struct LightEstimate {
   float distance = 0;     // to the light
   float pdf = 0;          // 0 where MIS does not apply
   BsdfValue bsdf;
+  uint32_t group = 0;  // of lights, that it was drawn from
 };
 
 // The shading normal on the side that the path came from; `wo` in the shading frame.
@@ -22,14 +23,15 @@ Vec3 facing(const SurfacePoint& at, const Vec3& wo) {
 }
 
 LightEstimate sampleLight(const PathSettings& settings, const SurfacePoint& at, const Vec3& wo,
-                          Sampler& sampler) {
+                          const LightReference& reference, Sampler& sampler) {
   LightEstimate result;
   const float uChoice = sampler.get1D();
   const Vec2 u = sampler.get2D();
-  const LightSampler::Choice choice = settings.lights->sample(lightReference(at, wo), uChoice);
+  const LightSampler::Choice choice = settings.lights->sample(reference, uChoice);
   if (!choice.emitter) return result;
   const EmitterSample light = choice.emitter->sample(choice.part, at.p, u);
   if (!(light.pdf > 0) || isBlack(light.radiance)) return result;
+  result.group = choice.group;
   result.wi = light.wi;
   result.distance = light.distance;
   result.bsdf = at.shape->bsdf().evaluate(at, wo, at.shading.toLocal(light.wi));
@@ -184,9 +186,9 @@ void addEmission(const PathSettings& settings, Path& path, Batch& batch, int dep
 }
 
 // Records the vertex, but for what only the complete path knows.
-void record(Path& path, Batch& batch, const SurfacePoint& at, const Vec3& wo, const BsdfSample& next,
-            const Rgb& weight, float arrival, float survival, const LightEstimate& light, const Rgb& direct,
-            int depth) {
+void record(const PathSettings& settings, Path& path, Batch& batch, const SurfacePoint& at, const Vec3& wo,
+            const BsdfSample& next, const Rgb& weight, float arrival, float survival,
+            const LightReference& reference, const LightEstimate& light, const Rgb& direct, int depth) {
   const Bsdf& bsdf = at.shape->bsdf();
   PendingRecord& p = batch.records.emplace_back();
   p.previous = path.lastRecord;
@@ -210,6 +212,10 @@ void record(Path& path, Batch& batch, const SurfacePoint& at, const Vec3& wo, co
   v.roughness = bsdf.features(at, wo).roughness;
   v.cosine = std::abs(next.wi.z);
   v.light = luminance(path.throughput * light.radiance);
+  if (!isBlack(direct)) {
+    v.lightGroup = light.group;
+    v.lightGroupProbability = settings.lights->groupProbability(reference, light.group);
+  }
   v.lightDirection = toOdis(light.wi);
   v.lightPdf = light.pdf;
   v.lightBsdfPdf = light.bsdf.pdf;
@@ -279,10 +285,12 @@ bool extend(const PathSettings& settings, Path& path, uint32_t index, const Vert
   const VertexGuide guide(settings, depth, at, wo, cell);
 
   // Next-event estimation, weighted against the mixture that directions are sampled from.
+  LightReference reference = lightReference(at, wo);
+  if (settings.learnedLights && cell) reference.learned = settings.guide->lights(*cell);
   LightEstimate light;
   Rgb direct(0, 0, 0);
   if (bsdf.traits().evaluable) {
-    light = sampleLight(settings, at, wo, sampler);
+    light = sampleLight(settings, at, wo, reference, sampler);
     if (!isBlack(light.radiance)) {
       const float mixed = light.pdf > 0 ? guide.pdf(light.bsdf.pdf, light.bsdf.guidablePdf, light.wi) : 0;
       direct = light.radiance * (light.pdf > 0 ? powerHeuristic(light.pdf, mixed) : 1.0f);
@@ -312,14 +320,15 @@ bool extend(const PathSettings& settings, Path& path, uint32_t index, const Vert
   }
 
   if (!survives) weight = Rgb(0, 0, 0);
-  if (batch.recording) record(path, batch, at, wo, next, weight, arrival, survival, light, direct, depth);
+  if (batch.recording)
+    record(settings, path, batch, at, wo, next, weight, arrival, survival, reference, light, direct, depth);
   if (!survives) return false;
 
   path.throughput *= weight;
   path.eta = eta;
   path.bySampling = !isDiscrete(next.lobe);
   path.directionPdf = next.pdf;
-  path.previous = lightReference(at, wo);
+  path.previous = reference;
   path.ray = Scene::spawn(at, at.shading.toWorld(next.wi));
   return true;
 }

@@ -185,6 +185,7 @@ class Renderer {
 
   void useGuide(PathSettings& settings) const {
     settings.guide = &m_guide;
+    settings.learnedLights = m_options.lights == LightChoiceKind::learned;
     settings.learnedRoulette = m_options.roulette == RouletteKind::learned;
   }
 
@@ -192,7 +193,10 @@ class Renderer {
     if (m_stopped) return;
     const Clock::time_point start = Clock::now();
     m_pixelValues = pixelEstimates(m_pilot, m_scene.film().crop.width);
-    m_builder = std::make_unique<GuideBuilder>(m_options.guideOptions);
+    GuideOptions guideOptions = m_options.guideOptions;
+    if (m_options.lights == LightChoiceKind::learned && m_lights.groupCount() > 1)
+      guideOptions.lightGroups = m_lights.groupCount();
+    m_builder = std::make_unique<GuideBuilder>(guideOptions);
     if (m_options.guide == GuideKind::oracle) {
       m_progress.begin("oracle", m_pixels * uint64_t(m_options.oracleSpp));
       Records selection;

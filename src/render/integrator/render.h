@@ -19,6 +19,7 @@ enum class IntegratorKind { path, odis, ppg, openpgl, restir };
 enum class SamplerKind { sobol, independent };
 enum class GuideKind { histogram, oracle };
 enum class RouletteKind { throughput, learned };
+enum class LightChoiceKind { hierarchy, learned };
 
 struct RenderOptions {
   IntegratorKind integrator = IntegratorKind::odis;
@@ -38,7 +39,8 @@ struct RenderOptions {
 
   // odis only
   GuideKind guide = GuideKind::histogram;
-  RouletteKind roulette = RouletteKind::learned;  // of the guided samples
+  RouletteKind roulette = RouletteKind::learned;      // of the guided samples
+  LightChoiceKind lights = LightChoiceKind::learned;  // likewise
   int refineSpp =
       3;  // guided samples per pixel that the guide learns from, too: it is rebuilt after 1, 3, 7, ...
   double pilotSpp = 1;  // samples per pixel of the pilot; 0.25 is one sample per 2x2 pixels

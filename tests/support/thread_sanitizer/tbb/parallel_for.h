@@ -12,12 +12,14 @@
 #include <exception>
 #include <mutex>
 #include <thread>
+#include <type_traits>
 #include <vector>
 
 namespace tbb {
 
 template <class Range, class Body, class... Partitioner>
-void parallel_for(const Range& whole, const Body& body, Partitioner&&...) {
+requires(!std::is_integral_v<Range>) void parallel_for(const Range& whole, const Body& body,
+                                                       Partitioner&&...) {
   std::vector<Range> pieces{whole};
   for (size_t i = 0; i < pieces.size();)
     if (pieces[i].is_divisible())

@@ -1,0 +1,57 @@
+// Lights to choose among, and points to choose for.
+#pragma once
+
+#include <cmath>
+#include <random>
+#include <vector>
+
+#include "render/emitter/light_sampler.h"
+#include "render/math/warp.h"
+
+namespace odis::test {
+
+using namespace odis::render;
+
+class Random {
+ public:
+  explicit Random(uint64_t seed) : m_engine(seed) {}
+  float operator()() { return std::min(m_uniform(m_engine), kOneMinusEpsilon); }
+  Vec3 inCube(float half) { return Vec3((*this)() - 0.5f, (*this)() - 0.5f, (*this)() - 0.5f) * (2 * half); }
+  Vec3 direction() { return squareToSphere({(*this)(), (*this)()}); }
+
+ private:
+  std::mt19937_64 m_engine;
+  std::uniform_real_distribution<float> m_uniform{0.0f, 1.0f};
+};
+
+// Boxes of many sizes and powers, flat and round, in clusters and apart; some of them black.
+inline std::vector<LightBounds> someLights(int count, Random& random) {
+  std::vector<LightBounds> lights;
+  for (int i = 0; i < count; ++i) {
+    LightBounds light;
+    light.min = random.inCube(i % 3 == 0 ? 0.1f : 4.0f);
+    light.max = light.min + Vec3(random(), random(), random()) * (i % 5 == 0 ? 0.0f : 0.3f);
+    light.axis = random.direction();
+    light.thetaO = i % 4 == 0 ? kPi : i % 4 == 1 ? 0.0f : random() * kPi;
+    light.thetaE = i % 7 == 0 ? 0.3f : kPi / 2;
+    light.phi = i % 11 == 10 ? 0.0f : std::exp(6 * random() - 3);
+    lights.push_back(light);
+  }
+  return lights;
+}
+
+inline LightReference someReference(int i, Random& random) {
+  return {random.inCube(i % 2 == 0 ? 5.0f : 0.3f), random.direction(), i % 3 == 0};
+}
+
+// The emitters, numbered.
+inline std::vector<const Emitter*> indexed(const std::vector<Emitter*>& emitters) {
+  std::vector<const Emitter*> result;
+  for (Emitter* emitter : emitters) {
+    emitter->setIndex(uint32_t(result.size()));
+    result.push_back(emitter);
+  }
+  return result;
+}
+
+}  // namespace odis::test
