@@ -1,5 +1,5 @@
-// From pilot vertices to decisions: nested cells in world space, a sampling map and selection probabilities a
-// cell.
+// From pilot vertices to decisions: nested cells in world space, and in each a sampling map, selection
+// probabilities, what going on is worth, and which lights matter.
 //
 //   odis::GuideBuilder builder(options);
 //   builder.add(pilotVertices);              // once, or as samples arrive
@@ -9,6 +9,7 @@
 //     odis::VertexMap map;
 //     map.prepare(cell->map, normal, odis::Sides::reflection);
 //     ... one-sample mixture with alpha = cell->alpha[int(materialClass(roughness))]
+//     ... roulette with survivalProbability(*cell, throughput / pixel), lights by guide.lights(*cell)
 //   }
 #pragma once
 
@@ -41,9 +42,8 @@ struct GuideOptions {
   // How many samples' worth of trust the coarser level has when it is blended with a finer one, per level,
   // finest first; the last one is for the uniform map.
   float trust[kCellLevels] = {250, 250, 120, 30};
-  uint32_t lightGroups =
-      0;                 // how many groups of lights the vertices tell apart; 0: learn nothing about lights
-  float floor = 0.03f;   // share of the uniform distribution in every map
+  uint32_t lightGroups = 0;  // that the vertices tell apart; 0: learn nothing about lights
+  float floor = 0.03f;       // share of the uniform distribution in every map
   float clamp = 20;      // a sample counts at most this many times the mean of its neighbourhood (maps only)
   float fixedAlpha = 0;  // > 0: this selection probability everywhere instead of the one by variance and cost
 };
@@ -67,8 +67,8 @@ struct Cell {
   bool guidesAny() const { return std::min({alpha[0], alpha[1], alpha[2]}) < 1; }
 };
 
-// The probability with which a path should go on from a vertex in this cell, instead of ending before its next-event
-// estimation: what the pilot saw come back from there, for what cost, decides. In (0, 1], without splitting.
+// The probability with which a path should go on from a vertex in this cell, instead of ending before its
+// next-event estimation: what the pilot saw come back from there, for what cost, decides. In (0, 1].
 //   throughput   the path's up to the vertex, over (an estimate of) its pixel's value; both as luminance
 inline float survivalProbability(const Cell& cell, float throughput) {
   constexpr float kLeast = 0.1f;  // so that no path weighs more than ten times as much for it
@@ -141,14 +141,14 @@ class GuideBuilder {
   void add(PilotParts parts);
   void add(std::span<const PilotVertex> vertices) { add(PilotParts(&vertices, 1)); }
   // Builds maps from all that was added, and selection probabilities from vertices that should be (a part
-  // of) the same, without those of guided paths. `pixelValues`, indexed by PilotVertex::pixel, are what the vertices' contributions are
-  // divided by; without them they are taken as they are.
+  // of) the same, without those of guided paths. `pixelValues`, indexed by PilotVertex::pixel, are what the
+  // vertices' contributions are divided by; without them they are taken as they are.
   Guide build(PilotParts parts, std::span<const float> pixelValues = {}) const;
   Guide build(std::span<const PilotVertex> vertices, std::span<const float> pixelValues = {}) const {
     return build(PilotParts(&vertices, 1), pixelValues);
   }
-  // Builds maps and survivals from all that was added by now; selection probabilities and predictions stay what they were
-  // in `previous`, which came from this builder. Cells that are new have their parents' probabilities.
+  // Builds all but selection probabilities and predictions anew, from all that was added by now. Those are taken
+  // from `previous`, which came from this builder; cells that are new have their parents' probabilities.
   Guide rebuild(const Guide& previous) const;
   // Held at most, the vertices themselves not included.
   uint64_t bytes() const;
@@ -157,6 +157,7 @@ class GuideBuilder {
   struct Data;
   Guide buildMaps(const std::vector<CellStatistics>& cells,
                   std::vector<DirectionDistribution>& distributions) const;
+  void addRouletteAndLights(Guide& guide, const std::vector<CellStatistics>& cells) const;
   std::unique_ptr<Data> m_data;
 };
 

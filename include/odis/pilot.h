@@ -48,8 +48,8 @@ struct PilotVertex {
   float lightPdf = 0;          // its density; 0 if next-event estimation gave nothing or MIS does not apply
   float lightBsdfPdf = 0, lightGuidablePdf = 0;  // the BSDF's densities of that direction
   float raysAfter = 0;                           // rays traced because of wi
-  float lightGroupProbability = 0;      // with which next-event estimation chose that group of lights
-  uint32_t lightGroup = kNoLightGroup;  // which group that was, if any
+  float lightGroupProbability = 0;      // with which next-event estimation chose its group of lights,
+  uint32_t lightGroup = kNoLightGroup;  // which was this one
 
   float sampleWeight = 1;  // of the path in its pixel (reconstruction filter); radiance does not include it
   uint32_t pixel = 0;      // index within the image that was rendered

@@ -123,7 +123,7 @@ SamplingMap pack(const DirectionDistribution& distribution, float floor) {
 
 }  // namespace
 
-// A guide of maps alone, coarse levels first; leaves the distributions that they were made from.
+// A guide of maps alone, made for coarse levels first; leaves the distributions that they were made from.
 Guide GuideBuilder::buildMaps(const std::vector<CellStatistics>& cells,
                               std::vector<DirectionDistribution>& distributions) const {
   const GuideOptions& options = m_data->options;
@@ -144,11 +144,16 @@ Guide GuideBuilder::buildMaps(const std::vector<CellStatistics>& cells,
             guide.m_data->cells[c].map = pack(distributions[c], options.floor);
           }
         });
-  if (options.lightGroups > 0) {
-    guide.m_data->lightGroups = options.lightGroups;
-    guide.m_data->lights = tabulateLights(guide.m_data->cells, cells, *options.lights, options.lightGroups);
-  }
   return guide;
+}
+
+void GuideBuilder::addRouletteAndLights(Guide& guide, const std::vector<CellStatistics>& cells) const {
+  const GuideOptions& options = m_data->options;
+  Guide::Data& result = *guide.m_data;
+  weighContinuations(result.cells, cells, *options.continuations, result.predicted.totals);
+  result.lightGroups = std::min(options.lightGroups, kMostLightGroups);
+  if (result.lightGroups > 0)
+    result.lights = tabulateLights(result.cells, cells, *options.lights, result.lightGroups);
 }
 
 Guide GuideBuilder::build(PilotParts parts, std::span<const float> pixelValues) const {
@@ -167,8 +172,7 @@ Guide GuideBuilder::build(PilotParts parts, std::span<const float> pixelValues) 
     predicted.pixels.clear();
   }
 
-  // Roulette.
-  weighContinuations(result, cells, *options.continuations, predicted.totals);
+  addRouletteAndLights(guide, cells);
   return guide;
 }
 
@@ -189,7 +193,7 @@ Guide GuideBuilder::rebuild(const Guide& previous) const {
         std::copy_n(result[cells[c].parent].alpha, kMaterialClasses, result[c].alpha);
     }
   guide.m_data->predicted = previous.m_data->predicted;
-  weighContinuations(result, cells, *m_data->options.continuations, guide.m_data->predicted.totals);
+  addRouletteAndLights(guide, cells);
   return guide;
 }
 

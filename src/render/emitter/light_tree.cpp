@@ -108,17 +108,17 @@ LightTree::Choice LightTree::descend(const LightReference& ref, uint32_t link, f
   return {link & ~kLeaf, probability};
 }
 
-LightTree::Walk LightTree::walk(const LightReference& ref, uint32_t link, uint64_t trail) const {
+float LightTree::walk(const LightReference& ref, uint32_t link, uint64_t trail) const {
   float probability = 1;
   for (; trail != 1; trail >>= 1) {
     const Pair& pair = m_pairs[link];
     const float first = firstProbability(pair, ref);
-    if (first < 0) return {0, link};
+    if (first < 0) return 0;
     probability *= trail & 1 ? 1 - first : first;
-    if (probability == 0) return {0, link};
+    if (probability == 0) return 0;
     link = pair.child[trail & 1].link;
   }
-  return {probability, link};
+  return probability;
 }
 
 LightTree::Choice LightTree::sample(const LightReference& ref, float u) const {
@@ -126,14 +126,14 @@ LightTree::Choice LightTree::sample(const LightReference& ref, float u) const {
 }
 
 float LightTree::probability(const LightReference& ref, uint32_t light) const {
-  return m_trails[light] == 0 ? 0 : walk(ref, m_root, m_trails[light]).probability;
+  return m_trails[light] == 0 ? 0 : walk(ref, m_root, m_trails[light]);
 }
 
 float LightTree::probabilityInGroup(const LightReference& ref, uint32_t light) const {
   if (m_trails[light] == 0) return 0;
   const Group& group = m_groups[m_groupOf[light]];
   const int turns = std::bit_width(group.trail) - 1;
-  return walk(ref, group.link, m_trails[light] >> turns).probability;
+  return walk(ref, group.link, m_trails[light] >> turns);
 }
 
 void LightTree::makeGroups(uint32_t most) {

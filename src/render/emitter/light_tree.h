@@ -46,7 +46,7 @@ class LightTree {
   uint32_t groupOf(uint32_t light) const { return m_groupOf[light]; }
   // The probability with which sample() draws a light of the group.
   float groupProbability(const LightReference& ref, uint32_t group) const {
-    return walk(ref, m_root, m_groups[group].trail).probability;
+    return walk(ref, m_root, m_groups[group].trail);
   }
   // Draws a light of the group; its probability is that within the group.
   Choice sampleGroup(const LightReference& ref, uint32_t group, float u) const {
@@ -79,10 +79,6 @@ class LightTree {
     uint64_t trail;  // from the root, ended by a one
     uint32_t link;   // where it ends
   };
-  struct Walk {
-    float probability;
-    uint32_t link;
-  };
   class Build;
   static constexpr uint32_t kLeaf = 1u << 31;
 
@@ -94,8 +90,8 @@ class LightTree {
 
   // Draws a light from below `link`.
   Choice descend(const LightReference& ref, uint32_t link, float u) const;
-  // Follows the turns of a trail from `link` on, with the probability of doing so; 0 where it is impossible.
-  Walk walk(const LightReference& ref, uint32_t link, uint64_t trail) const;
+  // The probability of taking the turns of a trail from `link` on.
+  float walk(const LightReference& ref, uint32_t link, uint64_t trail) const;
   void makeGroups(uint32_t most);
 
   Node m_rootNode;
