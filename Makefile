@@ -3,6 +3,9 @@ PRESET ?= release
 BUILD := build/$(PRESET)
 JOBS ?= $(shell nproc)
 SECONDS ?= 60
+ifeq ($(PRESET),tsan)
+export TSAN_OPTIONS ?= suppressions=$(CURDIR)/tests/support/thread_sanitizer/suppressions
+endif
 
 .PHONY: help setup build demo test bench agreement fuzz format format-check lint clean
 
