@@ -4,6 +4,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <atomic>
 #include <csignal>
 #include <cstdio>
 
@@ -16,7 +17,9 @@ void say(const std::string& text) {
   std::fflush(stderr);
 }
 
-static volatile std::sig_atomic_t g_signal = 0;  // the first that came
+// The first signal that came. Rendering threads look at it, so it is an atomic; one that a handler may write.
+static std::atomic<int> g_signal = 0;
+static_assert(std::atomic<int>::is_always_lock_free);
 
 static int codeOf(int signal) {
   return signal == SIGTERM ? kTerminated : kInterrupted;

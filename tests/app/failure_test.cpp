@@ -8,13 +8,17 @@ namespace {
 namespace fs = std::filesystem;
 using odis::test::Outcome;
 
-// Sanitizers need terabytes of addresses. GCC tells by macros, Clang by a question.
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-constexpr bool kSanitized = true;
+// Sanitizers need terabytes of addresses, the one for threads also a file when it starts. GCC tells by macros, Clang by
+// a question.
+#if defined(__SANITIZE_THREAD__)
+constexpr bool kSanitized = true, kThreadSanitized = true;
+#elif defined(__SANITIZE_ADDRESS__)
+constexpr bool kSanitized = true, kThreadSanitized = false;
 #elif defined(__has_feature)
-constexpr bool kSanitized = __has_feature(address_sanitizer) || __has_feature(thread_sanitizer);
+constexpr bool kThreadSanitized = __has_feature(thread_sanitizer);
+constexpr bool kSanitized = __has_feature(address_sanitizer) || kThreadSanitized;
 #else
-constexpr bool kSanitized = false;
+constexpr bool kSanitized = false, kThreadSanitized = false;
 #endif
 
 class Failures : public odis::test::Odis {
@@ -41,6 +45,7 @@ class Failures : public odis::test::Odis {
 // The smallest limit, one block, stands in for a full disk. A small image stays in the stream's buffer until
 // that is closed, a large one does not.
 TEST_F(Failures, FullDiskIsFourAndKeepsTheOldFile) {
+  if (kThreadSanitized) GTEST_SKIP();
   for (const char* name : {"image.exr", "image.png"})
     for (const char* size : {"24x16", "200x200"}) {
       write(name, "old");
