@@ -184,14 +184,12 @@ Guide GuideBuilder::rebuild(const Guide& previous) const {
 
   // Old cells keep their indices, new ones follow.
   const std::vector<Cell>& old = previous.m_data->cells;
-  for (int level = kCellLevels - 1; level >= 0; --level)
-    for (size_t c = 0; c < cells.size(); ++c) {
-      if (cells[c].level != level) continue;
-      if (c < old.size())
-        std::copy_n(old[c].alpha, kMaterialClasses, result[c].alpha);
-      else if (cells[c].parent != kNoCell)
-        std::copy_n(result[cells[c].parent].alpha, kMaterialClasses, result[c].alpha);
-    }
+  forEachFromCoarse(cells, [&](size_t c) {
+    if (c < old.size())
+      std::copy_n(old[c].alpha, kMaterialClasses, result[c].alpha);
+    else if (cells[c].parent != kNoCell)
+      std::copy_n(result[cells[c].parent].alpha, kMaterialClasses, result[c].alpha);
+  });
   guide.m_data->predicted = previous.m_data->predicted;
   addRouletteAndLights(guide, cells);
   return guide;

@@ -64,4 +64,33 @@ inline void expectSameExpectation(const PixelStatistics& a, const PixelStatistic
   EXPECT_GT(std::erfc(z / std::sqrt(2.0)), significance) << "z of the image's mean is " << z;
 }
 
+// A scene, and what plain path tracing makes of it, to compare guided images with. `Scene` has text(), what the file
+// holds, and kMaxDepth.
+template <class Scene>
+class AgainstPath : public ::testing::Test {
+ protected:
+  static void SetUpTestSuite() {
+    s_scene = loadScene(Scene::text());
+    render::RenderOptions options;
+    options.integrator = render::IntegratorKind::path;
+    options.spp = 64;
+    options.maxDepth = Scene::kMaxDepth;
+    s_path = renderSeeds(*s_scene, options, 48, 1000);
+  }
+  static void TearDownTestSuite() { s_scene.reset(); }
+  static render::RenderOptions guidedOptions() {
+    render::RenderOptions options;
+    options.spp = 8;
+    options.maxDepth = Scene::kMaxDepth;
+    return options;
+  }
+  // With as many seeds; one of `testCount` such tests.
+  static void expectUnbiased(const render::RenderOptions& options, int seeds, int testCount) {
+    expectSameExpectation(s_path, renderSeeds(*s_scene, options, seeds, 1), testCount);
+  }
+
+  static inline std::unique_ptr<render::Scene> s_scene;
+  static inline PixelStatistics s_path;
+};
+
 }  // namespace odis::test

@@ -10,8 +10,6 @@
 namespace odis::render {
 namespace {
 
-using test::expectSameExpectation, test::PixelStatistics, test::renderSeeds;
-
 // A room with lamps of many kinds, some behind a wall, under a sky: lights that are hit and lights that can't be.
 std::string lampRoom(int size) {
   const auto lamp = [](const std::string& place, const std::string& scale, const std::string& radiance) {
@@ -62,43 +60,29 @@ class StubbornLights : public LightModel {
   LightSquares predict(const CellStatistics&, const LightSquares*) const override { return {1}; }
 };
 
-class UnbiasedLightsTest : public ::testing::Test {
+struct LampRoom {
+  static std::string text() { return lampRoom(16); }
+  static constexpr int kMaxDepth = 5;
+};
+class UnbiasedLightsTest : public test::AgainstPath<LampRoom> {
  protected:
-  static void SetUpTestSuite() {
-    s_scene = test::loadScene(lampRoom(16)).release();
-    RenderOptions options;
-    options.integrator = IntegratorKind::path;
-    options.spp = 64;
-    options.maxDepth = 5;
-    s_path = new PixelStatistics(renderSeeds(*s_scene, options, 48, 1000));
-  }
-  static void TearDownTestSuite() {
-    delete s_path;
-    delete s_scene;
-  }
   static RenderOptions guidedOptions() {
-    RenderOptions options;
-    options.spp = 8;
-    options.maxDepth = 5;
+    RenderOptions options = AgainstPath::guidedOptions();
     options.guideOptions.cellsPerDiagonal = 3;  // so that the few samples are enough to be believed
     return options;
   }
-  static Scene* s_scene;
-  static PixelStatistics* s_path;
 };
-Scene* UnbiasedLightsTest::s_scene = nullptr;
-PixelStatistics* UnbiasedLightsTest::s_path = nullptr;
 
 constexpr int kTests = 4;
 
 TEST_F(UnbiasedLightsTest, Learned) {
-  expectSameExpectation(*s_path, renderSeeds(*s_scene, guidedOptions(), 128, 1), kTests);
+  expectUnbiased(guidedOptions(), 128, kTests);
 }
 
 TEST_F(UnbiasedLightsTest, Hierarchy) {
   RenderOptions options = guidedOptions();
   options.lights = LightChoiceKind::hierarchy;
-  expectSameExpectation(*s_path, renderSeeds(*s_scene, options, 128, 1), kTests);
+  expectUnbiased(options, 128, kTests);
 }
 
 // Lamps are mostly left to the directions that hit them: fails if their densities there were those of another place, or
@@ -108,14 +92,14 @@ TEST_F(UnbiasedLightsTest, Stubborn) {
   options.guideOptions.lights = std::make_shared<StubbornLights>();
   options.refineSpp = 1;
   options.pilotWeight = 0;
-  expectSameExpectation(*s_path, renderSeeds(*s_scene, options, 256, 1), kTests);
+  expectUnbiased(options, 256, kTests);
 }
 
 TEST_F(UnbiasedLightsTest, Adversarial) {
   RenderOptions options = guidedOptions();
   options.guideOptions.lights = std::make_shared<AdversarialLights>();
   options.refineSpp = 1;
-  expectSameExpectation(*s_path, renderSeeds(*s_scene, options, 256, 1), kTests);
+  expectUnbiased(options, 256, kTests);
 }
 
 }  // namespace

@@ -11,7 +11,7 @@
 namespace odis::render {
 namespace {
 
-using test::expectSameExpectation, test::PixelStatistics, test::renderSeeds;
+using test::PixelStatistics, test::renderSeeds;
 
 // Maps that a broken or malicious model might make.
 class AdversarialModel : public DirectionModel {
@@ -70,56 +70,36 @@ class AdversarialContinuations : public ContinuationModel {
   }
 };
 
-class UnbiasedTest : public ::testing::Test {
- protected:
-  static void SetUpTestSuite() {
-    s_scene = test::loadScene(test::indirectRoom(16)).release();
-    RenderOptions options;
-    options.integrator = IntegratorKind::path;
-    options.spp = 64;
-    options.maxDepth = 6;
-    s_path = new PixelStatistics(renderSeeds(*s_scene, options, 48, 1000));
-  }
-  static void TearDownTestSuite() {
-    delete s_path;
-    delete s_scene;
-  }
-  static RenderOptions guidedOptions() {
-    RenderOptions options;
-    options.spp = 8;
-    options.maxDepth = 6;
-    return options;
-  }
-  static Scene* s_scene;
-  static PixelStatistics* s_path;
+struct IndirectRoom {
+  static std::string text() { return test::indirectRoom(16); }
+  static constexpr int kMaxDepth = 6;
 };
-Scene* UnbiasedTest::s_scene = nullptr;
-PixelStatistics* UnbiasedTest::s_path = nullptr;
+class UnbiasedTest : public test::AgainstPath<IndirectRoom> {};
 
 constexpr int kTests = 14;
 
 TEST_F(UnbiasedTest, Histogram) {
-  expectSameExpectation(*s_path, renderSeeds(*s_scene, guidedOptions(), 96, 1), kTests);
+  expectUnbiased(guidedOptions(), 96, kTests);
 }
 
 TEST_F(UnbiasedTest, FirstBounceOnly) {
   RenderOptions options = guidedOptions();
   options.guideBounces = 1;
-  expectSameExpectation(*s_path, renderSeeds(*s_scene, options, 96, 1), kTests);
+  expectUnbiased(options, 96, kTests);
 }
 
 TEST_F(UnbiasedTest, FractionalPilotAndIndependentSamples) {
   RenderOptions options = guidedOptions();
   options.pilotSpp = 0.25;
   options.sampler = SamplerKind::independent;
-  expectSameExpectation(*s_path, renderSeeds(*s_scene, options, 96, 1), kTests);
+  expectUnbiased(options, 96, kTests);
 }
 
 TEST_F(UnbiasedTest, Oracle) {
   RenderOptions options = guidedOptions();
   options.guide = GuideKind::oracle;
   options.oracleSpp = 4;
-  expectSameExpectation(*s_path, renderSeeds(*s_scene, options, 96, 1), kTests);
+  expectUnbiased(options, 96, kTests);
 }
 
 TEST_F(UnbiasedTest, AdversarialMaps) {
@@ -130,27 +110,27 @@ TEST_F(UnbiasedTest, AdversarialMaps) {
     options.guideOptions.fixedAlpha = 0.3f;
     options.refineSpp = 1;
     // Twice as many seeds as elsewhere: where a map hardly looks at the light, tails are heavy.
-    expectSameExpectation(*s_path, renderSeeds(*s_scene, options, 192, 1), kTests);
+    expectUnbiased(options, 192, kTests);
   }
 }
 
 TEST_F(UnbiasedTest, NeverRefined) {
   RenderOptions options = guidedOptions();
   options.refineSpp = 0;
-  expectSameExpectation(*s_path, renderSeeds(*s_scene, options, 96, 1), kTests);
+  expectUnbiased(options, 96, kTests);
 }
 
 TEST_F(UnbiasedTest, RouletteByThroughput) {
   RenderOptions options = guidedOptions();
   options.roulette = RouletteKind::throughput;
   options.rrDepth = 2;
-  expectSameExpectation(*s_path, renderSeeds(*s_scene, options, 96, 1), kTests);
+  expectUnbiased(options, 96, kTests);
 }
 
 TEST_F(UnbiasedTest, AdversarialRoulette) {
   RenderOptions options = guidedOptions();
   options.guideOptions.continuations = std::make_shared<AdversarialContinuations>();
-  expectSameExpectation(*s_path, renderSeeds(*s_scene, options, 192, 1), kTests);
+  expectUnbiased(options, 192, kTests);
 }
 
 // Cells so small that many vertices have none: paths change from one roulette to the other, which must not decide
@@ -161,7 +141,7 @@ TEST_F(UnbiasedTest, RouletteWhereCellsAreMissing) {
   options.refineSpp = 0;
   options.guideOptions.continuations = std::make_shared<AdversarialContinuations>();
   options.rrDepth = 1;
-  expectSameExpectation(*s_path, renderSeeds(*s_scene, options, 192, 1), kTests);
+  expectUnbiased(options, 192, kTests);
 }
 
 // The test itself must be able to fail: three per cent of energy too much are found.
@@ -171,8 +151,8 @@ TEST_F(UnbiasedTest, ABiasIsFound) {
   for (Rgbd& c : biased.squares) c *= 1.03 * 1.03;
   double difference = 0, variance = 0;
   for (size_t i = 0; i < biased.sum.size(); ++i) {
-    difference += biased.mean(i, 1) - s_path->mean(i, 1);
-    variance += biased.varianceOfMean(i, 1) + s_path->varianceOfMean(i, 1);
+    difference += biased.mean(i, 1) - s_path.mean(i, 1);
+    variance += biased.varianceOfMean(i, 1) + s_path.varianceOfMean(i, 1);
   }
   EXPECT_GT(std::abs(difference) / std::sqrt(variance), 3.3);
 }

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <span>
 #include <vector>
 
 #include "odis/cells/samples.h"
@@ -32,6 +33,14 @@ struct CellStatistics {
   std::array<double, kMostLightGroups> lightSquares{};  // sums of CellSample::lightSquare, for each group
   Histogram histogram{};                                // of values by direction
 };
+
+// Calls `body` with the index of each cell, parents before their children.
+template <class Body>
+void forEachFromCoarse(std::span<const CellStatistics> cells, const Body& body) {
+  for (int level = kCellLevels - 1; level >= 0; --level)
+    for (size_t c = 0; c < cells.size(); ++c)
+      if (cells[c].level == level) body(c);
+}
 
 // The cells at every level. A coarser cell's statistics are the sums of its children's, formed by `rollUp`.
 class CellStore {

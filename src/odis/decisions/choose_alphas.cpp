@@ -148,23 +148,21 @@ AlphaPrediction chooseAlphas(std::vector<Cell>& result, const CellStore& store,
   prediction.pixels.resize(pixelValues.size());
   std::vector<CellSelection> backed(cells.size());
   double saved = 0;
-  for (int level = kCellLevels - 1; level >= 0; --level)
-    for (size_t c = 0; c < cells.size(); ++c) {
-      if (cells[c].level != level) continue;
-      const CellSelection& coarser = cells[c].parent == kNoCell ? image : backed[cells[c].parent];
-      size_t choices[kMaterialClasses];
-      for (int m = 0; m < kMaterialClasses; ++m) {
-        backed[c][m] = back(sums[c][m], coarser[m]);
-        choices[m] = chooseAlpha(backed[c][m], totals);
-        result[c].alpha[m] = kAlphas[choices[m]];
-      }
-      for (uint32_t i = order.begin[c]; i < order.begin[c + 1]; ++i) {
-        const PilotVertex& v = *order.items[i];
-        const float gain = moments[i][0] - moments[i][choices[int(materialClass(v.roughness))]];
-        saved += gain;
-        if (!pixelValues.empty()) prediction.pixels[v.pixel].saved += gain;
-      }
+  forEachFromCoarse(cells, [&](size_t c) {
+    const CellSelection& coarser = cells[c].parent == kNoCell ? image : backed[cells[c].parent];
+    size_t choices[kMaterialClasses];
+    for (int m = 0; m < kMaterialClasses; ++m) {
+      backed[c][m] = back(sums[c][m], coarser[m]);
+      choices[m] = chooseAlpha(backed[c][m], totals);
+      result[c].alpha[m] = kAlphas[choices[m]];
     }
+    for (uint32_t i = order.begin[c]; i < order.begin[c + 1]; ++i) {
+      const PilotVertex& v = *order.items[i];
+      const float gain = moments[i][0] - moments[i][choices[int(materialClass(v.roughness))]];
+      saved += gain;
+      if (!pixelValues.empty()) prediction.pixels[v.pixel].saved += gain;
+    }
+  });
   if (!pixelValues.empty())
     for (const BatchSelection& batch : batches)
       for (const auto& [pixel, variance] : batch.variances) prediction.pixels[pixel].variance += variance;

@@ -30,25 +30,23 @@ std::vector<float> tabulateLights(std::vector<Cell>& result, std::span<const Cel
                                   const LightModel& model, uint32_t groups) {
   std::vector<LightSquares> squares(cells.size());
   std::vector<float> table(cells.size() * (groups + 1));
-  for (int level = kCellLevels - 1; level >= 0; --level)
-    for (size_t c = 0; c < cells.size(); ++c) {
-      if (cells[c].level != level) continue;
-      const uint32_t parent = cells[c].parent;
-      squares[c] = model.predict(cells[c], parent == kNoCell ? nullptr : &squares[parent]);
-      double total = 0;
-      std::array<double, kMostLightGroups> weights;
-      for (uint32_t g = 0; g < groups; ++g) {
-        const double weight = std::sqrt(squares[c][g]);
-        total += weights[g] = weight > 0 ? std::min(weight, kMostWeight) : 0;
-      }
-      result[c].lightShare = total > 0 ? float(kShare * cells[c].count / (cells[c].count + kHalfEnough)) : 0;
-      float* cdf = &table[c * (groups + 1)];
-      double sum = 0;
-      for (uint32_t g = 0; g < groups && total > 0; ++g) {
-        sum += weights[g];
-        cdf[g + 1] = float(sum / total);
-      }
+  forEachFromCoarse(cells, [&](size_t c) {
+    const uint32_t parent = cells[c].parent;
+    squares[c] = model.predict(cells[c], parent == kNoCell ? nullptr : &squares[parent]);
+    double total = 0;
+    std::array<double, kMostLightGroups> weights;
+    for (uint32_t g = 0; g < groups; ++g) {
+      const double weight = std::sqrt(squares[c][g]);
+      total += weights[g] = weight > 0 ? std::min(weight, kMostWeight) : 0;
     }
+    result[c].lightShare = total > 0 ? float(kShare * cells[c].count / (cells[c].count + kHalfEnough)) : 0;
+    float* cdf = &table[c * (groups + 1)];
+    double sum = 0;
+    for (uint32_t g = 0; g < groups && total > 0; ++g) {
+      sum += weights[g];
+      cdf[g + 1] = float(sum / total);
+    }
+  });
   return table;
 }
 

@@ -29,15 +29,13 @@ void weighContinuations(std::vector<Cell>& result, std::span<const CellStatistic
   const double rays = totals.rays + kFirstRays * totals.count;
   const double exchange = totals.variance > 0 ? std::sqrt(rays / totals.variance) : 0;
   std::vector<Continuation> continuations(cells.size());
-  for (int level = kCellLevels - 1; level >= 0; --level)
-    for (size_t c = 0; c < cells.size(); ++c) {
-      if (cells[c].level != level) continue;
-      const uint32_t parent = cells[c].parent;
-      const Continuation& next = continuations[c] =
-          model.predict(cells[c], parent == kNoCell ? nullptr : &continuations[parent]);
-      const double worth = kCaution * exchange * std::sqrt(next.square / next.rays);
-      result[c].worth = worth >= 0 ? float(std::min(worth, 1e30)) : INFINITY;
-    }
+  forEachFromCoarse(cells, [&](size_t c) {
+    const uint32_t parent = cells[c].parent;
+    const Continuation& next = continuations[c] =
+        model.predict(cells[c], parent == kNoCell ? nullptr : &continuations[parent]);
+    const double worth = kCaution * exchange * std::sqrt(next.square / next.rays);
+    result[c].worth = worth >= 0 ? float(std::min(worth, 1e30)) : INFINITY;
+  });
 }
 
 }  // namespace odis

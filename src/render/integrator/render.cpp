@@ -72,9 +72,8 @@ class Renderer {
     result.stats.bytesLights = m_lights.bytes();
     result.stats.interrupted = m_stopped;
     if (m_options.records) {
-      const std::vector<float> estimates = pixelEstimates(m_pilot, m_scene.film().crop.width);
       for (const std::vector<PilotVertex>& tile : m_records)
-        for (PilotVertex v : tile) result.records.push_back(divided(v, estimates[v.pixel]));
+        for (PilotVertex v : tile) result.records.push_back(divided(v, m_pixelValues[v.pixel]));
       result.pilotEmitted = std::move(m_emitted);
     }
     return result;
@@ -161,6 +160,7 @@ class Renderer {
     run(pass);
     m_progress.end();
     m_stats.secondsPilot = secondsSince(start);
+    m_pixelValues = pixelEstimates(m_pilot, m_scene.film().crop.width);
     m_stats.pilotVertices = countVertices(m_records);
     m_stats.bytesBuild = m_stats.pilotVertices * sizeof(PilotVertex);
   }
@@ -192,7 +192,6 @@ class Renderer {
   void buildGuide() {
     if (m_stopped) return;
     const Clock::time_point start = Clock::now();
-    m_pixelValues = pixelEstimates(m_pilot, m_scene.film().crop.width);
     GuideOptions guideOptions = m_options.guideOptions;
     if (m_options.lights == LightChoiceKind::learned && m_lights.groupCount() > 1)
       guideOptions.lightGroups = m_lights.groupCount();
