@@ -37,13 +37,15 @@ void MethodArguments::addTo(CLI::App& app) {
       ->check(CLI::IsMember({"throughput", "learned"}))
       ->capture_default_str()
       ->group(group);
-  app.add_option("--pilot-spp", pilotSpp, "Samples per pixel of the pilot; below 1: one in so many pixels")
-      ->check(numberBetween(1e-3, 1e6))
+  app.add_option("--pilot-spp", pilotSpp,
+                 "Samples per pixel of the pilot; 0.25: one in 2x2 pixels; 0: that in large images of less "
+                 "than 8 samples, else 1")
+      ->check(numberBetween(0, 1e6))
       ->capture_default_str()
       ->group(group);
-  app.add_option(
-         "--refine", refineSpp,
-         "Guided samples per pixel that the guide learns from as well: it is rebuilt after 1, 3, 7, ...")
+  app.add_option("--refine", refineSpp,
+                 "Guided samples per pixel that the guide learns from as well: it is rebuilt after 1, 3, 7, "
+                 "... if as many are left")
       ->check(CLI::Range(0, 1 << 20))
       ->capture_default_str()
       ->group(group);

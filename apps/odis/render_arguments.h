@@ -19,7 +19,7 @@ struct MethodArguments {
   std::string integrator = "odis", sampler = "sobol", guide = "histogram", roulette = "learned",
               lights = "learned";
   int guideBounces = -1, refineSpp = 3, oracleSpp = 64;
-  double pilotSpp = 1, pilotWeight = -1;
+  double pilotSpp = 0, pilotWeight = -1;
   GuideOptions cells;
   PpgArguments ppg;
   RestirArguments restir;

@@ -91,6 +91,20 @@ struct Place {
 // Pilot vertices as they lie in memory: one array for each part of the image, say.
 using PilotParts = std::span<const std::span<const PilotVertex>>;
 
+// What a builder takes of a run of vertices, so that those need not be kept: about 70 bytes a vertex.
+class PilotDigest {
+ public:
+  PilotDigest();
+  ~PilotDigest();
+  PilotDigest(PilotDigest&&) noexcept;
+  PilotDigest& operator=(PilotDigest&&) noexcept;
+
+ private:
+  friend class GuideBuilder;
+  struct Data;
+  std::unique_ptr<Data> m_data;
+};
+
 // A set of cells, fixed once built. Thread-safe.
 class Guide {
  public:
@@ -140,6 +154,10 @@ class GuideBuilder {
   // Vertices with values that are not finite are left out.
   void add(PilotParts parts);
   void add(std::span<const PilotVertex> vertices) { add(PilotParts(&vertices, 1)); }
+  // The same in two steps, after a first call of add() above: digest() may be called by many threads at once, for a part
+  // of the image each. Empty digests are fine.
+  PilotDigest digest(std::span<const PilotVertex> vertices) const;
+  void add(std::span<const PilotDigest> digests);
   // Builds maps from all that was added, and selection probabilities from vertices that should be (a part
   // of) the same, without those of guided paths. `pixelValues`, indexed by PilotVertex::pixel, are what the
   // vertices' contributions are divided by; without them they are taken as they are.

@@ -77,6 +77,15 @@ std::span<const PixelPrediction> Guide::predictions() const {
                 : std::span<const PixelPrediction>();
 }
 
+struct PilotDigest::Data {
+  BatchSamples samples;
+};
+
+PilotDigest::PilotDigest() = default;
+PilotDigest::~PilotDigest() = default;
+PilotDigest::PilotDigest(PilotDigest&&) noexcept = default;
+PilotDigest& PilotDigest::operator=(PilotDigest&&) noexcept = default;
+
 struct GuideBuilder::Data {
   explicit Data(const GuideOptions& o) : options(o), store(o.clamp) {
     if (!options.model) options.model = std::make_shared<HistogramModel>(o);
@@ -92,6 +101,17 @@ GuideBuilder::~GuideBuilder() = default;
 
 void GuideBuilder::add(PilotParts parts) {
   m_data->store.add(parts, m_data->options.cellsPerDiagonal);
+}
+PilotDigest GuideBuilder::digest(std::span<const PilotVertex> vertices) const {
+  PilotDigest digest;
+  digest.m_data = std::make_unique<PilotDigest::Data>(PilotDigest::Data{m_data->store.take({vertices})});
+  return digest;
+}
+void GuideBuilder::add(std::span<const PilotDigest> digests) {
+  std::vector<const BatchSamples*> batches;
+  for (const PilotDigest& digest : digests)
+    if (digest.m_data) batches.push_back(&digest.m_data->samples);
+  m_data->store.add(batches);
 }
 uint64_t GuideBuilder::bytes() const {
   // What `build` makes beside the cells' statistics: a copy of them, distributions, sums for the selection.

@@ -135,6 +135,19 @@ TEST(Samples, EveryPixelGetsWhatWasAskedFor) {
     }
 }
 
+TEST(Samples, OfThePilotDependOnTheImage) {
+  const auto pilotSamples = [](int size, int spp) {
+    const auto scene = test::loadScene(test::indirectRoom(size));
+    RenderOptions options;
+    options.spp = spp;
+    options.maxDepth = 2;
+    return double(test::renderScene(*scene, options).stats.pilotSamples) / (size * size);
+  };
+  EXPECT_EQ(pilotSamples(40, 4), 1);
+  EXPECT_EQ(pilotSamples(450, 4), 0.25);
+  EXPECT_EQ(pilotSamples(450, 8), 1);
+}
+
 TEST(Variance, EstimatesTheSpreadOverSeeds) {
   const auto scene = test::loadScene(test::indirectRoom(12));
   for (const IntegratorKind kind : {IntegratorKind::path, IntegratorKind::odis}) {

@@ -74,7 +74,9 @@ TEST(CellGrid, ParentIsTheKeyOfTheNextLevel) {
 }
 
 TEST(SortByCell, KeepsTheOrderWithinACell) {
-  const std::vector<std::vector<uint32_t>> cells = {{2, 0, 2}, {}, {0, 3, 2}};
+  const std::vector<std::vector<uint32_t>> cellOf = {{0, 1, 0}, {}, {0, 1, 3}};
+  const std::vector<BatchCells> cells = {
+      {cellOf[0], {2, 0}}, {cellOf[1], {}}, {cellOf[2], {0, 3, kNoCell, 2}}};
   const std::vector<std::vector<int>> items = {{10, 11, 12}, {}, {20, 21, 22}};
   const CellOrder<int> order =
       sortByCell<int>(cells, 4, [&](size_t batch, size_t i) -> const int& { return items[batch][i]; });
@@ -210,6 +212,22 @@ TEST(Guide, IsTheSameInPieces) {
   whole.add(vertices);
   pieces.add(parts);
   expectSameGuide(whole.build(vertices), pieces.build(parts), vertices);
+}
+
+TEST(Guide, IsTheSameFromDigests) {
+  const std::vector<PilotVertex> first = floorUnderPatch(kBright, 20000, 6),
+                                 later = floorUnderPatch({-0.6f, 0, 0.8f}, 5000, 7);
+  const std::span<const PilotVertex> all(later);
+  GuideBuilder vertices, digests;
+  vertices.add(first);
+  digests.add(first);
+  vertices.add(later);
+  std::vector<PilotDigest> parts(4);  // the last one remains empty
+  parts[0] = digests.digest(all.first(1));
+  parts[1] = digests.digest({});
+  parts[2] = digests.digest(all.subspan(1));
+  digests.add(parts);
+  expectSameGuide(vertices.build(first), digests.build(first), later);
 }
 
 TEST(Guide, DividesByPixelValues) {

@@ -4,7 +4,9 @@
 
 #include <tbb/parallel_for.h>
 
+#include <numeric>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "odis/guide.h"
@@ -29,32 +31,38 @@ struct CellOrder {
   uint64_t bytes() const { return items.size() * sizeof(Item*) + begin.size() * sizeof(uint32_t); }
 };
 
-// A counting sort. `cells[batch][i]`, below `cellCount`, is the cell of `itemAt(batch, i)`.
+// Which cells the items of a batch belong to. A batch knows its own cells by small numbers.
+struct BatchCells {
+  std::span<const uint32_t> cellOf;  // of each item: an index of `cells`
+  std::vector<uint32_t> cells;       // the number of each of the batch's cells among all; of those with items
+};
+
+// A counting sort. All cells have numbers below `cellCount`; `itemAt(batch, i)` is an item.
 template <class Item, class ItemAt>
-CellOrder<Item> sortByCell(std::span<const std::vector<uint32_t>> cells, uint32_t cellCount,
-                           const ItemAt& itemAt) {
-  // How many items each batch has for each cell, then where they begin, then the items.
-  std::vector<std::vector<uint32_t>> next(cells.size());
-  tbb::parallel_for(size_t(0), cells.size(), [&](size_t batch) {
-    next[batch].assign(cellCount, 0);
-    for (const uint32_t cell : cells[batch]) ++next[batch][cell];
+CellOrder<Item> sortByCell(std::span<const BatchCells> batches, uint32_t cellCount, const ItemAt& itemAt) {
+  // How many items each batch has for each of its cells, then where they begin, then the items.
+  std::vector<std::vector<uint32_t>> next(batches.size());
+  tbb::parallel_for(size_t(0), batches.size(), [&](size_t b) {
+    next[b].assign(batches[b].cells.size(), 0);
+    for (const uint32_t cell : batches[b].cellOf) ++next[b][cell];
   });
   CellOrder<Item> result;
-  result.begin.resize(size_t(cellCount) + 1);
-  uint32_t total = 0;
-  for (uint32_t cell = 0; cell < cellCount; ++cell) {
-    result.begin[cell] = total;
-    for (std::vector<uint32_t>& counts : next) {
-      const uint32_t count = counts[cell];
-      counts[cell] = total;
-      total += count;
-    }
-  }
-  result.begin[cellCount] = total;
-  result.items.resize(total);
-  tbb::parallel_for(size_t(0), cells.size(), [&](size_t batch) {
-    for (size_t i = 0; i < cells[batch].size(); ++i)
-      result.items[next[batch][cells[batch][i]]++] = &itemAt(batch, i);
+  result.begin.assign(size_t(cellCount) + 1, 0);
+  for (size_t b = 0; b < batches.size(); ++b)
+    for (size_t i = 0; i < next[b].size(); ++i)
+      if (next[b][i] > 0) result.begin[batches[b].cells[i] + 1] += next[b][i];
+  std::partial_sum(result.begin.begin(), result.begin.end(), result.begin.begin());
+  std::vector<uint32_t> free(result.begin.begin(), result.begin.end() - 1);
+  for (size_t b = 0; b < batches.size(); ++b)
+    for (size_t i = 0; i < next[b].size(); ++i)
+      if (next[b][i] > 0) {
+        uint32_t& begin = free[batches[b].cells[i]];
+        begin += std::exchange(next[b][i], begin);
+      }
+  result.items.resize(result.begin.back());
+  tbb::parallel_for(size_t(0), batches.size(), [&](size_t b) {
+    for (size_t i = 0; i < batches[b].cellOf.size(); ++i)
+      result.items[next[b][batches[b].cellOf[i]]++] = &itemAt(b, i);
   });
   return result;
 }

@@ -119,40 +119,38 @@ void accumulate(CellStatistics& cell, float limit, std::span<const CellSample* c
 
 void CellStore::add(PilotParts parts, int cellsPerDiagonal) {
   if (!m_placed) place(parts, cellsPerDiagonal);
-
-  // Each batch finds its cells.
   const std::vector<PilotBatch> pilot = makeBatches(parts);
-  std::vector<BatchSamples> batches(pilot.size());
-  tbb::parallel_for(size_t(0), pilot.size(), [&](size_t b) { batches[b] = takeSamples(pilot[b], m_grid); });
+  std::vector<BatchSamples> samples(pilot.size());
+  tbb::parallel_for(size_t(0), pilot.size(), [&](size_t b) { samples[b] = take(pilot[b]); });
+  std::vector<const BatchSamples*> batches;
+  for (const BatchSamples& batch : samples) batches.push_back(&batch);
+  add(batches);
+}
 
-  // One thread gives them their numbers, in the order of the vertices.
-  std::vector<std::vector<uint32_t>> numbers(pilot.size());
-  for (size_t b = 0; b < pilot.size(); ++b)
-    for (const BatchSamples::Cell& cell : batches[b].cells) numbers[b].push_back(insert(cell.key));
+void CellStore::add(std::span<const BatchSamples* const> batches) {
+  // The cells get their numbers in the order of the vertices.
+  std::vector<BatchCells> cells(batches.size());
+  m_transientBytes = 0;
+  for (size_t b = 0; b < batches.size(); ++b) {
+    for (const BatchSamples::Cell& cell : batches[b]->cells) cells[b].cells.push_back(insert(cell.key));
+    cells[b].cellOf = batches[b]->cellOf;
+    m_transientBytes += batches[b]->bytes();
+  }
 
   // Values are clamped to a multiple of the mean over the next coarser cell, so that no single path rules a
   // map.
   std::vector<double> parentSum(m_cells.size(), 0.0), parentCount(m_cells.size(), 0.0);
-  for (size_t b = 0; b < pilot.size(); ++b)
-    for (size_t i = 0; i < numbers[b].size(); ++i) {
-      const uint32_t parent = m_cells[numbers[b][i]].parent;
-      parentSum[parent] += batches[b].cells[i].value;
-      parentCount[parent] += batches[b].cells[i].count;
+  for (size_t b = 0; b < batches.size(); ++b)
+    for (size_t i = 0; i < cells[b].cells.size(); ++i) {
+      const uint32_t parent = m_cells[cells[b].cells[i]].parent;
+      parentSum[parent] += batches[b]->cells[i].value;
+      parentCount[parent] += batches[b]->cells[i].count;
     }
 
   // Sort the samples by cell and add them up.
-  std::vector<std::vector<uint32_t>> cellOf(pilot.size());
-  m_transientBytes = 0;
-  for (size_t b = 0; b < pilot.size(); ++b) {
-    cellOf[b] = std::move(batches[b].cellOf);
-    m_transientBytes += batches[b].samples.size() * (sizeof(CellSample) + sizeof(uint32_t));
-  }
-  tbb::parallel_for(size_t(0), pilot.size(), [&](size_t b) {
-    for (uint32_t& cell : cellOf[b]) cell = numbers[b][cell];
-  });
-  const CellOrder<CellSample> order = sortByCell<CellSample>(
-      cellOf, uint32_t(m_cells.size()),
-      [&](size_t batch, size_t i) -> const CellSample& { return batches[batch].samples[i]; });
+  const CellOrder<CellSample> order =
+      sortByCell<CellSample>(cells, uint32_t(m_cells.size()),
+                             [&](size_t b, size_t i) -> const CellSample& { return batches[b]->samples[i]; });
   m_transientBytes += order.bytes();
   tbb::parallel_for(
       tbb::blocked_range<size_t>(0, m_cells.size(), 16), [&](const tbb::blocked_range<size_t>& range) {

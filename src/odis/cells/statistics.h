@@ -49,6 +49,9 @@ class CellStore {
 
   // Sorts the vertices into cells and adds them up. The first call places the grid.
   void add(PilotParts parts, int cellsPerDiagonal);
+  // The same in two steps, once there is a grid: many threads take samples, one call adds them up.
+  BatchSamples take(const PilotBatch& batch) const { return takeSamples(batch, m_grid); }
+  void add(std::span<const BatchSamples* const> batches);
   // The cells with the coarser levels filled in.
   std::vector<CellStatistics> rollUp() const;
 

@@ -28,7 +28,7 @@ class PixelScale {
 // The chosen vertices of a batch, their cells, and their part in what the whole image varies by.
 struct BatchSelection {
   std::vector<const PilotVertex*> vertices;
-  std::vector<uint32_t> cellOf;
+  std::vector<uint32_t> cellOf, cells;  // as in BatchCells
   SelectionTotals totals;
   std::vector<std::pair<uint32_t, float>> variances;  // pixels and theirs
 };
@@ -48,13 +48,16 @@ void addToTotals(BatchSelection& batch, const PilotVertex& v, float scale) {
 BatchSelection select(const PilotBatch& batch, uint32_t stride, const PixelScale& scale,
                       const CellStore& store) {
   BatchSelection result;
+  CellIndex index;
   for (const std::span<const PilotVertex> piece : batch)
     for (const PilotVertex& v : piece) {
       if (!isChosen(v, stride)) continue;
       if (v.depth == 1) addToTotals(result, v, scale(v));
       if (!v.discrete && !isUsable(v)) continue;
-      const uint32_t cell = store.index().find(store.grid().key(v.position, v.normal, 0));
-      if (cell == kNoCell) continue;
+      const uint64_t key = store.grid().key(v.position, v.normal, 0);
+      const uint32_t cell = index.insert(key);
+      if (cell == result.cells.size()) result.cells.push_back(store.index().find(key));
+      if (result.cells[cell] == kNoCell) continue;
       result.vertices.push_back(&v);
       result.cellOf.push_back(cell);
     }
@@ -106,13 +109,13 @@ AlphaPrediction chooseAlphas(std::vector<Cell>& result, const CellStore& store,
   const PixelScale scale(pixelValues);
   const std::vector<PilotBatch> pilot = makeBatches(parts);
   std::vector<BatchSelection> batches(pilot.size());
-  std::vector<std::vector<uint32_t>> cellOf(pilot.size());
+  std::vector<BatchCells> batchCells(pilot.size());
   tbb::parallel_for(size_t(0), pilot.size(), [&](size_t b) {
     batches[b] = select(pilot[b], stride, scale, store);
-    cellOf[b] = std::move(batches[b].cellOf);
+    batchCells[b] = {batches[b].cellOf, batches[b].cells};
   });
   const CellOrder<PilotVertex> order = sortByCell<PilotVertex>(
-      cellOf, uint32_t(cells.size()),
+      batchCells, uint32_t(cells.size()),
       [&](size_t batch, size_t i) -> const PilotVertex& { return *batches[batch].vertices[i]; });
   SelectionTotals totals;
   for (const BatchSelection& batch : batches) {

@@ -108,6 +108,7 @@ RayCounts runPass(const Pass& pass, Progress& progress, const std::function<bool
   std::vector<RayCounts> counts(size_t(tilesX) * tilesY);
   const size_t firstRecords = pass.records ? pass.records->size() : 0;
   if (pass.records) pass.records->resize(firstRecords + counts.size());
+  if (pass.learner) pass.digests->resize(counts.size());
   tbb::parallel_for(
       tbb::blocked_range<size_t>(0, counts.size(), 1),
       [&](const tbb::blocked_range<size_t>& range) {
@@ -117,10 +118,11 @@ RayCounts runPass(const Pass& pass, Progress& progress, const std::function<bool
           // Records are gathered in memory that stays warm, then stored without slack.
           thread_local std::vector<PilotVertex> records;
           records.clear();
-          const uint64_t done =
-              renderTile(pass, settings, int(t % size_t(tilesX)) * kTileSize,
-                         int(t / size_t(tilesX)) * kTileSize, pass.records ? &records : nullptr, counts[t]);
+          const uint64_t done = renderTile(pass, settings, int(t % size_t(tilesX)) * kTileSize,
+                                           int(t / size_t(tilesX)) * kTileSize,
+                                           pass.records || pass.learner ? &records : nullptr, counts[t]);
           if (pass.records) (*pass.records)[firstRecords + t].assign(records.begin(), records.end());
+          if (pass.learner) (*pass.digests)[t] = pass.learner->digest(records);
           progress.advance(done);
         }
       },

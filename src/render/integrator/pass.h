@@ -48,6 +48,9 @@ struct Pass {
   std::vector<PixelSums>* image = nullptr;
   std::vector<FeatureSums>* features = nullptr;
   Records* records = nullptr;  // one array a tile is appended
+  // The same, but only what this builder takes of the vertices is kept.
+  const GuideBuilder* learner = nullptr;
+  std::vector<PilotDigest>* digests = nullptr;
   std::vector<Rgb>* emitted = nullptr;
 };
 

@@ -23,6 +23,9 @@ double secondsSince(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();
 }
 
+// A pilot of a quarter of a sample per pixel is for images of at least so many pixels and fewer samples than that.
+constexpr size_t kManyPixels = 200000;
+constexpr int kManySamples = 8;
 // Seeds of passes that are no part of the image.
 constexpr uint64_t kOracleSeed = 0x6f7261636c65ull;
 // How many samples per pixel a pass takes at most, so that there is progress and an end in sight.
@@ -47,6 +50,9 @@ class Renderer {
         m_lights(scene.emitters()),
         m_start(Clock::now()),
         m_pixels(size_t(scene.film().crop.width) * scene.film().crop.height),
+        m_pilotSpp(options.pilotSpp > 0                                    ? std::max(options.pilotSpp, 1e-3)
+                   : m_pixels >= kManyPixels && options.spp < kManySamples ? 0.25
+                                                                           : 1.0),
         m_pilot(m_pixels),
         m_guided(m_pixels) {
     if (options.features) m_features.resize(m_pixels);
@@ -141,8 +147,8 @@ class Renderer {
   uint32_t pilotCount(uint32_t pixel) const {
     if (m_options.integrator != IntegratorKind::odis) return 0;
     const uint32_t spp = uint32_t(m_options.spp);
-    if (m_options.pilotSpp >= 1) return std::min(spp, uint32_t(std::lround(m_options.pilotSpp)));
-    const uint32_t block = uint32_t(std::lround(1 / std::sqrt(m_options.pilotSpp)));
+    if (m_pilotSpp >= 1) return std::min(spp, uint32_t(std::lround(m_pilotSpp)));
+    const uint32_t block = uint32_t(std::lround(1 / std::sqrt(m_pilotSpp)));
     const uint32_t width = uint32_t(m_scene.film().crop.width), x = pixel % width, y = pixel / width;
     const uint64_t hash = mixBits(m_options.seed ^ (uint64_t(y / block) << 32 | (x / block)));
     return x % block == hash % block && y % block == (hash >> 32) % block ? 1 : 0;
@@ -155,8 +161,7 @@ class Renderer {
     pass.image = &m_pilot;
     pass.records = &m_records;
     pass.emitted = m_options.records ? &m_emitted : nullptr;
-    m_progress.begin("pilot",
-                     uint64_t(double(m_pixels) * std::min(double(m_options.spp), m_options.pilotSpp)));
+    m_progress.begin("pilot", uint64_t(double(m_pixels) * std::min(double(m_options.spp), m_pilotSpp)));
     run(pass);
     m_progress.end();
     m_stats.secondsPilot = secondsSince(start);
@@ -218,31 +223,27 @@ class Renderer {
       m_guide = m_builder->build(partsOf(m_records), m_pixelValues);
     }
     m_pilotWeights = pilotWeights();
-    guideIsBuilt(m_records, 0);
+    guideIsBuilt(m_stats.pilotVertices * sizeof(PilotVertex), 0);
     if (!m_options.records) m_records = {};
     m_stats.secondsBuild = secondsSince(start);
   }
 
-  // Takes stock when the guide has learned from vertices, and clears up when it won't learn any more.
-  void guideIsBuilt(const Records& records, uint32_t guidedSamples) {
+  // Takes stock when the guide has learned, beside vertices of so much memory, and clears up when it won't learn any more.
+  void guideIsBuilt(uint64_t bytesVertices, uint32_t guidedSamples) {
     m_stats.cells = m_guide.cellCount();
     m_stats.bytesMaps = m_guide.bytes();
-    m_stats.bytesBuild =
-        std::max(m_stats.bytesBuild, m_builder->bytes() + countVertices(records) * sizeof(PilotVertex));
+    m_stats.bytesBuild = std::max(m_stats.bytesBuild, m_builder->bytes() + bytesVertices);
     if (guidedSamples >= lastRefinement()) m_builder.reset();
   }
 
   // How many samples per pixel the pilot left at most: all of them for the path tracer.
-  uint32_t mostRemaining() const {
-    return uint32_t(m_options.spp) - (m_options.pilotSpp >= 1 ? pilotCount(0) : 0);
-  }
+  uint32_t mostRemaining() const { return uint32_t(m_options.spp) - (m_pilotSpp >= 1 ? pilotCount(0) : 0); }
 
-  // After how many guided samples per pixel the guide is built for the last time: one less than a power of two, and
-  // some samples must be left. 0: after the pilot only.
+  // After how many guided samples per pixel the guide is built for the last time: one less than a power of two, and at
+  // least as many samples must be left. 0: after the pilot only.
   uint32_t lastRefinement() const {
     if (m_options.integrator != IntegratorKind::odis || m_options.guide == GuideKind::oracle) return 0;
-    const uint32_t most = std::min(uint32_t(m_options.refineSpp), std::max(mostRemaining(), 1u) - 1);
-    return std::bit_floor(most + 1) - 1;
+    return std::bit_floor(std::min(uint32_t(m_options.refineSpp), mostRemaining() / 2) + 1) - 1;
   }
 
   // So many of the samples that the pilot left. The guide learns from the first of them, too.
@@ -265,21 +266,24 @@ class Renderer {
         return std::pair(first, std::min(spp - first, next - done));
       };
       pass.image = &m_guided;
-      Records records;
-      pass.records = learns ? &records : nullptr;
+      std::vector<PilotDigest> digests;
+      if (learns) {
+        pass.learner = m_builder.get();
+        pass.digests = &digests;
+      }
       run(pass);
-      if (learns && !stop()) refineGuide(records, next);
+      if (learns && !stop()) refineGuide(digests, next);
     }
     m_progress.end();
     m_stats.secondsGuided = secondsSince(start) - (m_stats.secondsBuild - building);
   }
 
   // Learns from the vertices of a guided pass, and rebuilds the guide where it is time.
-  void refineGuide(const Records& records, uint32_t done) {
+  void refineGuide(std::span<const PilotDigest> digests, uint32_t done) {
     const Clock::time_point start = Clock::now();
-    m_builder->add(partsOf(records));
+    m_builder->add(digests);
     if (std::has_single_bit(done + 1)) m_guide = m_builder->rebuild(m_guide);
-    guideIsBuilt(records, done);
+    guideIsBuilt(0, done);
     m_stats.secondsBuild += secondsSince(start);
   }
 
@@ -423,6 +427,7 @@ class Renderer {
   LightSampler m_lights;
   Clock::time_point m_start;
   size_t m_pixels;
+  double m_pilotSpp;  // m_options' or its default
   std::vector<PixelSums> m_pilot, m_guided;
   std::vector<FeatureSums> m_features;
   Records m_records;

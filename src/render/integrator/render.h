@@ -41,10 +41,12 @@ struct RenderOptions {
   GuideKind guide = GuideKind::histogram;
   RouletteKind roulette = RouletteKind::learned;      // of the guided samples
   LightChoiceKind lights = LightChoiceKind::learned;  // likewise
-  int refineSpp =
-      3;  // guided samples per pixel that the guide learns from, too: it is rebuilt after 1, 3, 7, ...
-  double pilotSpp = 1;  // samples per pixel of the pilot; 0.25 is one sample per 2x2 pixels
-  int oracleSpp = 64;   // samples per pixel that the oracle's maps are made from
+  // Guided samples per pixel that the guide learns from, too: it is rebuilt after 1, 3, 7, ... if as many are left.
+  int refineSpp = 3;
+  // Samples per pixel of the pilot; 0.25 is one sample per 2x2 pixels. 0: 0.25 where that is enough to learn from (the
+  // image is large) and a whole sample would be dear (there are few), else 1.
+  double pilotSpp = 0;
+  int oracleSpp = 64;  // samples per pixel that the oracle's maps are made from
   GuideOptions guideOptions;
   double pilotWeight = -1;  // of a pilot sample relative to a guided one; -1: by predicted variance
   bool records = false;     // keep the pilot's vertices in the result, for those who want to learn from them
