@@ -37,6 +37,11 @@ void MethodArguments::addTo(CLI::App& app) {
       ->check(CLI::IsMember({"throughput", "learned"}))
       ->capture_default_str()
       ->group(group);
+  app.add_option("--ended-paths", endedPaths,
+                 "What paths add that learned roulette ends: nothing, or the mean of their cell")
+      ->check(CLI::IsMember({"nothing", "mean"}))
+      ->capture_default_str()
+      ->group(group);
   app.add_option("--pilot-spp", pilotSpp,
                  "Samples per pixel of the pilot; 0.25: one in 2x2 pixels; 0: that in large images of less "
                  "than 8 samples, else 1")
@@ -112,6 +117,7 @@ void MethodArguments::apply(RenderOptions& options) const {
   options.oracleSpp = oracleSpp;
   options.pilotWeight = pilotWeight;
   options.guideOptions = cells;
+  options.guideOptions.controlVariate = endedPaths == "mean";
   options.ppg = ppg.options();
   options.restir = restir.options;
   std::copy(trust.begin(), trust.end(), options.guideOptions.trust);

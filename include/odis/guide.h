@@ -42,8 +42,9 @@ struct GuideOptions {
   // How many samples' worth of trust the coarser level has when it is blended with a finer one, per level,
   // finest first; the last one is for the uniform map.
   float trust[kCellLevels] = {250, 250, 120, 30};
-  uint32_t lightGroups = 0;  // that the vertices tell apart; 0: learn nothing about lights
-  float floor = 0.03f;       // share of the uniform distribution in every map
+  bool controlVariate = true;  // whether something stands in for paths that roulette ends
+  uint32_t lightGroups = 0;    // that the vertices tell apart; 0: learn nothing about lights
+  float floor = 0.03f;         // share of the uniform distribution in every map
   float clamp = 20;      // a sample counts at most this many times the mean of its neighbourhood (maps only)
   float fixedAlpha = 0;  // > 0: this selection probability everywhere instead of the one by variance and cost
 };
@@ -61,6 +62,10 @@ struct Cell {
 
   // What going on from here is worth beside what it costs: see survivalProbability().
   float worth = INFINITY;
+  // Radiance that a vertex here scatters back on average, next-event estimate included, or nothing: what a path adds that
+  // ends before it knows. One that survives with probability p adds (1 - 1/p) times as much, so that what is right on
+  // average remains so, whatever this is; pixels may become negative.
+  Float3 expected{0, 0, 0};
   float lightShare = 0;  // see LearnedLights
 
   // Whether there is a class to guide; where there is none, a vertex need not find out which it is of.
@@ -71,7 +76,7 @@ struct Cell {
 // next-event estimation: what the pilot saw come back from there, for what cost, decides. In (0, 1].
 //   throughput   the path's up to the vertex, over (an estimate of) its pixel's value; both as luminance
 inline float survivalProbability(const Cell& cell, float throughput) {
-  constexpr float kLeast = 0.3f;  // so that no path weighs more than three times as much for it
+  constexpr float kLeast = 0.2f;  // so that no path weighs more than five times as much for it
   const float survival = throughput * cell.worth;
   return survival < 1 ? std::max(survival, kLeast) : 1;  // 1 for what is not a number
 }

@@ -170,7 +170,8 @@ Guide GuideBuilder::buildMaps(const std::vector<CellStatistics>& cells,
 void GuideBuilder::addRouletteAndLights(Guide& guide, const std::vector<CellStatistics>& cells) const {
   const GuideOptions& options = m_data->options;
   Guide::Data& result = *guide.m_data;
-  weighContinuations(result.cells, cells, *options.continuations, result.predicted.totals);
+  weighContinuations(result.cells, cells, *options.continuations, result.predicted.totals,
+                     options.controlVariate);
   result.lightGroups = std::min(options.lightGroups, kMostLightGroups);
   if (result.lightGroups > 0)
     result.lights = tabulateLights(result.cells, cells, *options.lights, result.lightGroups);

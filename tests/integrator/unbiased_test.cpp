@@ -57,15 +57,15 @@ class AdversarialContinuations : public ContinuationModel {
     std::mt19937 engine(uint32_t(cell.count) * 7919u + uint32_t(cell.level));
     switch (engine() % 8) {
       case 0:
-        return {NAN, NAN};
+        return {{NAN, 0, 1}, NAN, NAN};
       case 1:
-        return {0, 0};
+        return {{1, 0, 0}, 0, 0};
       case 2:
-        return {INFINITY, 1};
+        return {{INFINITY, 1, -1}, INFINITY, 1};
       case 3:
-        return {-1, 1};
+        return {{-1, -1, -1}, -1, 1};
       default:
-        return {double(engine() % 1000) / 1000, 10};
+        return {{double(engine() % 8), 0.5, 0.1}, double(engine() % 1000) / 1000, 10};
     }
   }
 };
@@ -76,7 +76,7 @@ struct IndirectRoom {
 };
 class UnbiasedTest : public test::AgainstPath<IndirectRoom> {};
 
-constexpr int kTests = 14;
+constexpr int kTests = 15;
 
 TEST_F(UnbiasedTest, Histogram) {
   expectUnbiased(guidedOptions(), 96, kTests);
@@ -124,6 +124,12 @@ TEST_F(UnbiasedTest, RouletteByThroughput) {
   RenderOptions options = guidedOptions();
   options.roulette = RouletteKind::throughput;
   options.rrDepth = 2;
+  expectUnbiased(options, 96, kTests);
+}
+
+TEST_F(UnbiasedTest, NothingForEndedPaths) {
+  RenderOptions options = guidedOptions();
+  options.guideOptions.controlVariate = false;
   expectUnbiased(options, 96, kTests);
 }
 

@@ -354,26 +354,49 @@ TEST(Roulette, WorthIsTheRootOfWhatComesBackOverItsRays) {
   cells[1].outgoingSquares = 1600;
   const SelectionTotals totals{40, 180, 10};  // of 10 samples: variance 4 each, 20 rays each
   std::vector<Cell> result(2);
-  weighContinuations(result, cells, ShrunkMoments(), totals);
+  weighContinuations(result, cells, ShrunkMoments(), totals, false);
   EXPECT_NEAR(result[1].worth / result[0].worth, 4, 1e-5);
   const float ratio = result[0].worth / std::sqrt(1.0f / 5) / std::sqrt(20.0f / 4);
   EXPECT_GT(ratio, 0.5f);  // but for a constant, the formula
   EXPECT_LT(ratio, 10);
   // In an image of twice the variance roulette may be twice as noisy.
   std::vector<Cell> noisier(2);
-  weighContinuations(noisier, cells, ShrunkMoments(), {80, 180, 10});
+  weighContinuations(noisier, cells, ShrunkMoments(), {80, 180, 10}, false);
   EXPECT_NEAR(noisier[0].worth / result[0].worth, std::sqrt(0.5f), 1e-5);
+}
+
+TEST(Roulette, WhatTheMeanExplainsIsWorthNoRays) {
+  // Vertices that scatter back 1 or 3, or always 2.
+  std::vector<CellStatistics> cells(2);
+  for (CellStatistics& cell : cells) {
+    cell.level = kCellLevels - 1;
+    cell.count = 100;
+    cell.rays = 500;
+    cell.outgoing = {200, 200, 200};
+  }
+  cells[0].outgoingSquares = 500;
+  cells[1].outgoingSquares = 400;
+  std::vector<Cell> result(2), without(2);
+  weighContinuations(result, cells, ShrunkMoments(), {40, 180, 10}, true);
+  weighContinuations(without, cells, ShrunkMoments(), {40, 180, 10}, false);
+  EXPECT_NEAR(result[0].worth / without[0].worth, std::sqrt(1.0f / 5), 1e-4f);
+  EXPECT_LT(result[1].worth, 0.3f * without[1].worth);
+  EXPECT_GT(result[1].worth, 0);
+  EXPECT_NEAR(result[0].expected.x, 2, 1e-5f);
+  EXPECT_EQ(without[0].expected.x, 0);
 }
 
 TEST(Roulette, CellsWithFewSamplesFollowTheirParents) {
   CellStatistics cell;
-  const Continuation parent{4, 3};
+  const Continuation parent{{1, 2, 3}, 4, 3};
   EXPECT_EQ(ShrunkMoments().predict(cell, &parent).square, 4);
   cell.count = 1e6;
+  cell.outgoing = {2e6, 1e6, 0};
   cell.outgoingSquares = 1e6;
   cell.rays = 7e6;
   EXPECT_NEAR(ShrunkMoments().predict(cell, &parent).square, 1, 0.01);
   EXPECT_NEAR(ShrunkMoments().predict(cell, &parent).rays, 7, 0.01);
+  EXPECT_NEAR(ShrunkMoments().predict(cell, &parent).mean[0], 2, 0.01);
   EXPECT_EQ(ShrunkMoments().predict({}, nullptr).square, 0);
 }
 

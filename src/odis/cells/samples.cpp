@@ -4,16 +4,16 @@ namespace odis {
 
 namespace {
 
-float luminance(const Float3& color) {
-  return 0.212671f * color.x + 0.715160f * color.y + 0.072169f * color.z;
-}
-
 // Zero if everything is finite, otherwise not a number.
 float nothing(const Float3& v) {
   return 0 * v.x + 0 * v.y + 0 * v.z;
 }
 
 }  // namespace
+
+float luminance(const Float3& color) {
+  return 0.212671f * color.x + 0.715160f * color.y + 0.072169f * color.z;
+}
 
 bool isUsable(const PilotVertex& v) {
   return !v.discrete && v.pdf > 0 && v.survival > 0 &&
@@ -26,10 +26,10 @@ float sampleValue(const PilotVertex& v) {
   return std::max(luminance(v.radiance), 0.0f) * v.cosine / (v.pdf * v.survival);
 }
 
-float outgoing(const PilotVertex& v) {
-  const Float3 indirect{v.weight.x * v.radiance.x, v.weight.y * v.radiance.y, v.weight.z * v.radiance.z};
-  const float result = luminance(v.direct + indirect);
-  return std::isfinite(result) ? std::max(result, 0.0f) : 0;
+Float3 outgoing(const PilotVertex& v) {
+  const auto usable = [](float value) { return std::isfinite(value) ? std::max(value, 0.0f) : 0.0f; };
+  return {usable(v.direct.x + v.weight.x * v.radiance.x), usable(v.direct.y + v.weight.y * v.radiance.y),
+          usable(v.direct.z + v.weight.z * v.radiance.z)};
 }
 
 // With X what a group gives a vertex and P the probability of choosing it, direct = X / P if it was chosen: an estimate

@@ -14,22 +14,23 @@ bool isUsable(const PilotVertex& vertex);
 // What the vertex adds to a histogram: the estimate of radiance * cos, as a luminance.
 float sampleValue(const PilotVertex& vertex);
 
-// What the vertex scatters back along the path, next-event estimate included, as a luminance.
-float outgoing(const PilotVertex& vertex);
+// What the vertex scatters back along the path, next-event estimate included: not negative, finite.
+Float3 outgoing(const PilotVertex& vertex);
+float luminance(const Float3& color);
 
-// A usable vertex. 60 bytes.
+// A usable vertex. 68 bytes.
 struct CellSample {
   Float3 position, normal, wi;
   float distance;
   float value;        // `sampleValue`
-  float outgoing;     // `outgoing`
+  Float3 outgoing;    // `outgoing`
   float rays;         // traced at the vertex and beyond
   float lightSquare;  // estimate of the squared next-event estimate from one group of lights
   uint32_t lightGroup;
 };
 
 // The usable vertices of a batch, and the cells of the finest level that they fall into, numbered as they are
-// met. 64 bytes a sample and 24 a cell.
+// met. 72 bytes a sample and 24 a cell.
 struct BatchSamples {
   struct Cell {
     uint64_t key = 0;

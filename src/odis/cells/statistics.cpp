@@ -105,7 +105,12 @@ void accumulate(CellStatistics& cell, float limit, std::span<const CellSample* c
     cell.count += 1;
     cell.sum += value;
     cell.sumSquares += double(value) * value;
-    cell.outgoingSquares += double(sample.outgoing) * sample.outgoing;
+    const Float3& outgoing = sample.outgoing;
+    cell.outgoing[0] += outgoing.x;
+    cell.outgoing[1] += outgoing.y;
+    cell.outgoing[2] += outgoing.z;
+    const double brightness = luminance(outgoing);
+    cell.outgoingSquares += brightness * brightness;
     cell.rays += sample.rays;
     if (sample.lightSquare > 0) cell.lightSquares[sample.lightGroup] += sample.lightSquare;
     cell.normal = cell.normal + sample.normal;
@@ -172,6 +177,7 @@ std::vector<CellStatistics> CellStore::rollUp() const {
       parent.count += child.count;
       parent.sum += child.sum;
       parent.sumSquares += child.sumSquares;
+      for (size_t i = 0; i < 3; ++i) parent.outgoing[i] += child.outgoing[i];
       parent.outgoingSquares += child.outgoingSquares;
       parent.rays += child.rays;
       for (size_t g = 0; g < parent.lightSquares.size(); ++g) parent.lightSquares[g] += child.lightSquares[g];

@@ -26,10 +26,11 @@ struct CellStatistics {
   double count = 0;  // samples
   double sum = 0;    // of their values, radiance * cos / pdf as luminance
   double sumSquares = 0;
-  double outgoingSquares = 0;  // sum of squares of what the vertices scatter back, as luminance
-  double rays = 0;             // traced at the vertices and beyond
-  Float3 centroid;             // of the first batch's positions; directions are re-aimed from here
-  Float3 normal;               // sum of unit normals
+  std::array<double, 3> outgoing{};  // sum of what the vertices scatter back, in red, green and blue
+  double outgoingSquares = 0;        // sum of its squares, as luminance
+  double rays = 0;                   // traced at the vertices and beyond
+  Float3 centroid;                   // of the first batch's positions; directions are re-aimed from here
+  Float3 normal;                     // sum of unit normals
   std::array<double, kMostLightGroups> lightSquares{};  // sums of CellSample::lightSquare, for each group
   Histogram histogram{};                                // of values by direction
 };

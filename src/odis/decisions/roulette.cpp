@@ -14,6 +14,18 @@ constexpr double kPriorSamples = 50;
 constexpr double kCaution = 3;
 // Besides what its first vertex samples, a path has its camera ray and that vertex's shadow ray.
 constexpr double kFirstRays = 2;
+// However well a cell's mean stands in for its vertices, this share of their mean square is left to chance: a cell
+// knows its own samples better than those to come.
+constexpr double kLeastVariance = 0.05;
+// No mean is more than this, so that it can be added to pixels.
+constexpr double kMostRadiance = 1e15;
+
+Float3 usable(const std::array<double, 3>& mean) {
+  const auto component = [](double value) {
+    return value > 0 && value < kMostRadiance ? float(value) : 0.0f;
+  };
+  return {component(mean[0]), component(mean[1]), component(mean[2])};
+}
 
 }  // namespace
 
@@ -21,11 +33,15 @@ Continuation ShrunkMoments::predict(const CellStatistics& cell, const Continuati
   const double prior = parent ? kPriorSamples : 0, count = cell.count + prior;
   if (!(count > 0)) return {};
   const Continuation behind = parent ? *parent : Continuation{};
-  return {(cell.outgoingSquares + prior * behind.square) / count, (cell.rays + prior * behind.rays) / count};
+  Continuation result;
+  for (size_t i = 0; i < 3; ++i) result.mean[i] = (cell.outgoing[i] + prior * behind.mean[i]) / count;
+  result.square = (cell.outgoingSquares + prior * behind.square) / count;
+  result.rays = (cell.rays + prior * behind.rays) / count;
+  return result;
 }
 
 void weighContinuations(std::vector<Cell>& result, std::span<const CellStatistics> cells,
-                        const ContinuationModel& model, const SelectionTotals& totals) {
+                        const ContinuationModel& model, const SelectionTotals& totals, bool controlVariate) {
   const double rays = totals.rays + kFirstRays * totals.count;
   const double exchange = totals.variance > 0 ? std::sqrt(rays / totals.variance) : 0;
   std::vector<Continuation> continuations(cells.size());
@@ -33,7 +49,10 @@ void weighContinuations(std::vector<Cell>& result, std::span<const CellStatistic
     const uint32_t parent = cells[c].parent;
     const Continuation& next = continuations[c] =
         model.predict(cells[c], parent == kNoCell ? nullptr : &continuations[parent]);
-    const double worth = kCaution * exchange * std::sqrt(next.square / next.rays);
+    if (controlVariate) result[c].expected = usable(next.mean);
+    const double known = luminance(result[c].expected);
+    const double square = std::max(next.square - known * known, kLeastVariance * next.square);
+    const double worth = kCaution * exchange * std::sqrt(square / next.rays);
     result[c].worth = worth >= 0 ? float(std::min(worth, 1e30)) : INFINITY;
   });
 }

@@ -1,6 +1,7 @@
 // Russian roulette: what a path that goes on from a cell is worth.
 #pragma once
 
+#include <array>
 #include <span>
 #include <vector>
 
@@ -10,10 +11,11 @@
 
 namespace odis {
 
-// What a vertex of a cell scatters back along its path, and what it takes to know.
+// What a vertex of a cell scatters back along its path, next-event estimate and all beyond, and what it takes to know.
 struct Continuation {
-  double square = 0;  // mean of the squared radiance, as luminance: next-event estimate and all beyond
-  double rays = 1;    // traced for it on average, shadow rays included
+  std::array<double, 3> mean{};  // radiance: red, green, blue
+  double square = 0;             // mean of the squared luminance
+  double rays = 1;               // traced for it on average, shadow rays included
 };
 
 // From a cell's statistics to its continuation: the interface behind which formula and network stand side by side.
@@ -31,11 +33,12 @@ class ShrunkMoments : public ContinuationModel {
   Continuation predict(const CellStatistics& cell, const Continuation* parent) const override;
 };
 
-// Fills in what going on is worth in each cell (Cell::worth). With S what comes back from a vertex, c its rays, and
-// V and C the variance and the rays of a sample of the image, the survival that makes (V + what roulette adds) times
-// (C - what it saves) least is throughput / pixel * sqrt(E[S^2] / c) * sqrt(C / V) (Bolin and Meyer 1997; Rath et
-// al. 2022, EARS, without splitting). The worth is what the throughput over the pixel's value is multiplied by.
+// Fills in what going on is worth in each cell (Cell::worth) and what stands in for paths that don't (Cell::expected;
+// zero without `controlVariate`). With S what comes back from a vertex, m what stands in for it, c its rays, and V and C
+// the variance and the rays of a sample of the image, the survival that makes (V + what roulette adds) times (C - what
+// it saves) least is throughput / pixel * sqrt(E[(S - m)^2] / c) * sqrt(C / V) (Bolin and Meyer 1997; Rath et al. 2022,
+// EARS, without splitting). The worth is what the throughput over the pixel's value is multiplied by.
 void weighContinuations(std::vector<Cell>& result, std::span<const CellStatistics> cells,
-                        const ContinuationModel& model, const SelectionTotals& totals);
+                        const ContinuationModel& model, const SelectionTotals& totals, bool controlVariate);
 
 }  // namespace odis

@@ -274,12 +274,18 @@ bool extend(const PathSettings& settings, Path& path, uint32_t index, const Vert
   const Bsdf& bsdf = at.shape->bsdf();
   path.distance += length;
 
-  // Learned Russian roulette asks what comes back from here; the numbers are those of the vertex before.
+  // Learned Russian roulette asks what comes back from here, and has an answer for paths that end without one (a control
+  // variate); the numbers are those of the vertex before.
   const bool learned = settings.learnedRoulette && cell;
   float arrival = 1;
   if (learned && depth > 1) {
     arrival = survivalProbability(*cell, luminance(path.throughput) / path.pixelValue);
-    if (path.uSurvival >= arrival) return false;
+    const Rgb expected = path.throughput * Rgb(cell->expected.x, cell->expected.y, cell->expected.z);
+    if (path.uSurvival >= arrival) {
+      path.radiance += expected;
+      return false;
+    }
+    path.radiance += expected * (1 - 1 / arrival);
     path.throughput /= arrival;
   }
   const VertexGuide guide(settings, depth, at, wo, cell);
