@@ -366,8 +366,8 @@ TEST(Roulette, WorthIsTheRootOfWhatComesBackOverItsRays) {
 }
 
 TEST(Roulette, WhatTheMeanExplainsIsWorthNoRays) {
-  // Vertices that scatter back 1 or 3, or always 2.
-  std::vector<CellStatistics> cells(2);
+  // Vertices that scatter back 1 or 3, always 2, or mostly nothing.
+  std::vector<CellStatistics> cells(3);
   for (CellStatistics& cell : cells) {
     cell.level = kCellLevels - 1;
     cell.count = 100;
@@ -376,13 +376,18 @@ TEST(Roulette, WhatTheMeanExplainsIsWorthNoRays) {
   }
   cells[0].outgoingSquares = 500;
   cells[1].outgoingSquares = 400;
-  std::vector<Cell> result(2), without(2);
+  cells[2].outgoingSquares = 4000;
+  std::vector<Cell> result(3), without(3);
   weighContinuations(result, cells, ShrunkMoments(), {40, 180, 10}, true);
   weighContinuations(without, cells, ShrunkMoments(), {40, 180, 10}, false);
-  EXPECT_NEAR(result[0].worth / without[0].worth, std::sqrt(1.0f / 5), 1e-4f);
+  // 0.8 times the mean: E[(S - 1.6)^2] = 1.16 of E[S^2] = 5.
+  EXPECT_NEAR(result[0].expected.x, 1.6f, 1e-5f);
+  EXPECT_NEAR(result[0].worth / without[0].worth, std::sqrt(1.16f / 5), 1e-4f);
   EXPECT_LT(result[1].worth, 0.3f * without[1].worth);
   EXPECT_GT(result[1].worth, 0);
-  EXPECT_NEAR(result[0].expected.x, 2, 1e-5f);
+  EXPECT_NEAR(result[1].expected.x, 2, 1e-5f);
+  EXPECT_EQ(result[2].expected.x, 0);
+  EXPECT_EQ(result[2].worth, without[2].worth);
   EXPECT_EQ(without[0].expected.x, 0);
 }
 

@@ -17,6 +17,9 @@ constexpr double kFirstRays = 2;
 // However well a cell's mean stands in for its vertices, this share of their mean square is left to chance: a cell
 // knows its own samples better than those to come.
 constexpr double kLeastVariance = 0.05;
+// A mean stands in for ended paths in proportion to its square's share of the mean square, and from this share on: where
+// vertices differ by more than their mean, it would explain little and make pixels negative.
+constexpr double kLeastShare = 0.5;
 // No mean is more than this, so that it can be added to pixels.
 constexpr double kMostRadiance = 1e15;
 
@@ -49,10 +52,14 @@ void weighContinuations(std::vector<Cell>& result, std::span<const CellStatistic
     const uint32_t parent = cells[c].parent;
     const Continuation& next = continuations[c] =
         model.predict(cells[c], parent == kNoCell ? nullptr : &continuations[parent]);
-    if (controlVariate) result[c].expected = usable(next.mean);
-    const double known = luminance(result[c].expected);
-    const double square = std::max(next.square - known * known, kLeastVariance * next.square);
-    const double worth = kCaution * exchange * std::sqrt(square / next.rays);
+    const Float3 mean = controlVariate ? usable(next.mean) : Float3{0, 0, 0};
+    const double known = double(luminance(mean)) * luminance(mean);
+    const double ratio = next.square > 0 ? std::min(known / next.square, 1.0) : 0;
+    const double share = ratio >= kLeastShare ? ratio : 0;
+    result[c].expected = mean * float(share);
+    const double square = next.square - (2 - share) * share * known;
+    const double worth =
+        kCaution * exchange * std::sqrt(std::max(square, kLeastVariance * next.square) / next.rays);
     result[c].worth = worth >= 0 ? float(std::min(worth, 1e30)) : INFINITY;
   });
 }
