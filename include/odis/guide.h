@@ -31,6 +31,11 @@ struct DirectionDistribution;
 
 inline constexpr int kCellLevels = 4;  // nested cells with edges e, 2e, 4e, 8e
 
+// Groups of lights that are equal parts of one light: where nothing was learned, each is as likely as the others.
+struct LightParts {
+  uint32_t first = 0, count = 0;
+};
+
 struct GuideOptions {
   // What turns statistics into maps (src/odis/decisions/direction_model.h); null: the histogram formula.
   std::shared_ptr<const DirectionModel> model;
@@ -42,9 +47,10 @@ struct GuideOptions {
   // How many samples' worth of trust the coarser level has when it is blended with a finer one, per level,
   // finest first; the last one is for the uniform map.
   float trust[kCellLevels] = {250, 250, 120, 30};
-  bool controlVariate = true;  // whether something stands in for paths that roulette ends
-  uint32_t lightGroups = 0;    // that the vertices tell apart; 0: learn nothing about lights
-  float floor = 0.03f;         // share of the uniform distribution in every map
+  bool controlVariate = true;          // whether something stands in for paths that roulette ends
+  uint32_t lightGroups = 0;            // that the vertices tell apart; 0: learn nothing about lights
+  std::vector<LightParts> lightParts;  // which of these groups are parts of one light
+  float floor = 0.03f;                 // share of the uniform distribution in every map
   float clamp = 20;      // a sample counts at most this many times the mean of its neighbourhood (maps only)
   float fixedAlpha = 0;  // > 0: this selection probability everywhere instead of the one by variance and cost
 };

@@ -174,7 +174,8 @@ void GuideBuilder::addRouletteAndLights(Guide& guide, const std::vector<CellStat
                      options.controlVariate);
   result.lightGroups = std::min(options.lightGroups, kMostLightGroups);
   if (result.lightGroups > 0)
-    result.lights = tabulateLights(result.cells, cells, *options.lights, result.lightGroups);
+    result.lights =
+        tabulateLights(result.cells, cells, *options.lights, result.lightGroups, options.lightParts);
 }
 
 Guide GuideBuilder::build(PilotParts parts, std::span<const float> pixelValues) const {

@@ -130,15 +130,15 @@ TEST_F(LearnedLightsTest, AreDrawnAsStated) {
       ref.learned = {cdf.data(), share};
       std::vector<double> counts(m_emitters.size() + 1, 0.0), expected(m_emitters.size() + 1, 0.0);
       for (int d = 0; d < kDraws; ++d) {
-        const LightSampler::Choice choice = m_sampler.sample(ref, m_random());
+        const LightSampler::Choice choice = m_sampler.sample(ref, m_random(), kMiddle);
         ++counts[choice.emitter ? choice.emitter->index() : m_emitters.size()];
         if (choice.emitter)
-          ASSERT_NEAR(choice.probability, m_sampler.probability(ref, *choice.emitter, 0),
+          ASSERT_NEAR(choice.probability, m_sampler.probability(ref, *choice.emitter, 0, kUp),
                       1e-5f * choice.probability);
       }
       expected.back() = kDraws;
       for (const Emitter* emitter : m_emitters) {
-        expected[emitter->index()] = kDraws * double(m_sampler.probability(ref, *emitter, 0));
+        expected[emitter->index()] = kDraws * double(m_sampler.probability(ref, *emitter, 0, kUp));
         expected.back() -= expected[emitter->index()];
       }
       if (expected.back() < 1) expected.back() = 0;
@@ -154,16 +154,16 @@ TEST_F(LearnedLightsTest, GroupsAddUpToTheirLights) {
     std::map<uint32_t, double> sums;
     std::map<uint32_t, float> stated;
     for (int d = 0; d < 2000; ++d) {
-      const LightSampler::Choice choice = m_sampler.sample(ref, m_random());
+      const LightSampler::Choice choice = m_sampler.sample(ref, m_random(), kMiddle);
       if (choice.emitter) stated[choice.group] = m_sampler.groupProbability(ref, choice.group);
     }
     // Each group's lights, found by drawing.
     std::map<const Emitter*, uint32_t> groupOf;
     for (int d = 0; d < 20000; ++d) {
-      const LightSampler::Choice choice = m_sampler.sample(ref, m_random());
+      const LightSampler::Choice choice = m_sampler.sample(ref, m_random(), kMiddle);
       if (choice.emitter) groupOf[choice.emitter] = choice.group;
     }
-    for (const auto& [emitter, group] : groupOf) sums[group] += m_sampler.probability(ref, *emitter, 0);
+    for (const auto& [emitter, group] : groupOf) sums[group] += m_sampler.probability(ref, *emitter, 0, kUp);
     for (const auto& [group, probability] : stated) EXPECT_NEAR(sums[group], probability, 0.002) << group;
   }
 }

@@ -12,6 +12,10 @@ namespace odis::test {
 
 using namespace odis::render;
 
+// For lights that are not divided into regions, where it does not matter how they are sampled.
+inline const Vec2 kMiddle(0.5f, 0.5f);
+inline const Vec3 kUp(0, 0, 1);
+
 class Random {
  public:
   explicit Random(uint64_t seed) : m_engine(seed) {}

@@ -45,7 +45,7 @@ double totalProbability(const LightSampler& sampler, const std::vector<const Emi
   double sum = 0;
   for (const Emitter* emitter : emitters)
     for (uint32_t part = 0; part < std::max(emitter->partCount(), 1u); ++part)
-      sum += sampler.probability(ref, *emitter, part);
+      sum += sampler.probability(ref, *emitter, part, kUp);
   return sum;
 }
 
@@ -124,7 +124,7 @@ TEST(LightTree, EveryLightThatShinesCanBeDrawn) {
     EXPECT_LT(totalProbability(sampler, emitters, ref), 1 + 1e-5);
     for (const Emitter* emitter : emitters)
       for (uint32_t part = 0; part < std::max(emitter->partCount(), 1u); ++part) {
-        const float probability = sampler.probability(ref, *emitter, part);
+        const float probability = sampler.probability(ref, *emitter, part, kUp);
         excluded += probability == 0;
         for (int k = 0; k < 20; ++k) {
           const EmitterSample s = emitter->sample(part, ref.p, {random(), random()});
@@ -187,12 +187,12 @@ TEST(LightTree, HoldsHundredsOfThousandsOfTriangles) {
     EXPECT_NEAR(totalProbability(sampler, emitters, ref), 1, 0.1);
     double away = 0;
     for (int k = 0; k < 1000; ++k) {
-      const LightSampler::Choice choice = sampler.sample(ref, random());
+      const LightSampler::Choice choice = sampler.sample(ref, random(), kMiddle);
       if (!choice.emitter) {
         ++away;
         continue;
       }
-      EXPECT_FLOAT_EQ(choice.probability, sampler.probability(ref, light, choice.part));
+      EXPECT_FLOAT_EQ(choice.probability, sampler.probability(ref, light, choice.part, kUp));
     }
     EXPECT_LT(away, 130);
   }
@@ -227,18 +227,18 @@ TEST(LightSampler, OneLightIsAlwaysChosen) {
   for (Emitter* emitter : std::vector<Emitter*>{&point, &sun, &sky}) {
     const LightSampler sampler(indexed({emitter}));
     const LightReference ref{{0, 0, 0}, {0, 0, 1}, false};
-    EXPECT_EQ(sampler.sample(ref, 0.999f).emitter, emitter);
-    EXPECT_EQ(sampler.sample(ref, 0.999f).probability, 1);
-    EXPECT_EQ(sampler.probability(ref, *emitter, 0), 1);
+    EXPECT_EQ(sampler.sample(ref, 0.999f, kMiddle).emitter, emitter);
+    EXPECT_EQ(sampler.sample(ref, 0.999f, kMiddle).probability, 1);
+    EXPECT_EQ(sampler.probability(ref, *emitter, 0, kUp), 1);
   }
 }
 
 TEST(LightSampler, NoLightIsNone) {
   const LightReference ref;
-  EXPECT_EQ(LightSampler().sample(ref, 0.5f).emitter, nullptr);
-  EXPECT_EQ(LightSampler(std::vector<const Emitter*>()).sample(ref, 0.5f).emitter, nullptr);
+  EXPECT_EQ(LightSampler().sample(ref, 0.5f, kMiddle).emitter, nullptr);
+  EXPECT_EQ(LightSampler(std::vector<const Emitter*>()).sample(ref, 0.5f, kMiddle).emitter, nullptr);
   PointLight dark({0, 0, 0}, Rgb(0, 0, 0));
-  EXPECT_EQ(LightSampler(indexed({&dark})).sample(ref, 0.5f).emitter, nullptr);
+  EXPECT_EQ(LightSampler(indexed({&dark})).sample(ref, 0.5f, kMiddle).emitter, nullptr);
 }
 
 // A tenth evenly, the rest by irradiance; an absurd one leaves the others their tenth.
@@ -247,27 +247,27 @@ TEST(LightSampler, DistantLightsAreChosenByIrradiance) {
       endless({0, 0, -1}, Rgb(kInfinity, 1, 1));
   const LightReference ref{{0, 0, 0}, {0, 0, 1}, false};
   const LightSampler two(indexed({&weak, &strong}));
-  EXPECT_NEAR(two.probability(ref, weak, 0), 0.05 + 0.9 * 0.25, 1e-6);
-  EXPECT_NEAR(two.probability(ref, strong, 0), 0.05 + 0.9 * 0.75, 1e-6);
+  EXPECT_NEAR(two.probability(ref, weak, 0, kUp), 0.05 + 0.9 * 0.25, 1e-6);
+  EXPECT_NEAR(two.probability(ref, strong, 0, kUp), 0.05 + 0.9 * 0.75, 1e-6);
   const LightSampler absurd(indexed({&strong, &endless}));
-  EXPECT_NEAR(absurd.probability(ref, strong, 0), 0.05, 1e-6);
+  EXPECT_NEAR(absurd.probability(ref, strong, 0, kUp), 0.05, 1e-6);
 
   // Near a lamp the lamp is chosen, far away the sky, and one of them always.
   PointLight a({1, 0, 1}, Rgb(1, 1, 1)), b({-1, 0, 1}, Rgb(1, 1, 1));
   const auto emitters = indexed({&weak, &a, &b});
   const LightSampler mixed(emitters);
   const LightReference near{{1, 0, 0.99f}, {0, 0, 1}, false}, far{{0, 0, -100}, {0, 0, 1}, false};
-  EXPECT_GT(mixed.probability(near, a, 0), 0.8f);
-  EXPECT_GT(mixed.probability(far, weak, 0), 0.9f);
-  EXPECT_EQ(mixed.probability({{0, 0, 5}, {0, 0, 1}, false}, weak, 0), 1);
+  EXPECT_GT(mixed.probability(near, a, 0, kUp), 0.8f);
+  EXPECT_GT(mixed.probability(far, weak, 0, kUp), 0.9f);
+  EXPECT_EQ(mixed.probability({{0, 0, 5}, {0, 0, 1}, false}, weak, 0, kUp), 1);
   EXPECT_NEAR(totalProbability(mixed, emitters, ref), 1, 1e-6);
-  EXPECT_NEAR(mixed.probability(ref, a, 0), mixed.probability(ref, b, 0), 1e-6);
+  EXPECT_NEAR(mixed.probability(ref, a, 0, kUp), mixed.probability(ref, b, 0, kUp), 1e-6);
   double counts[3] = {};
   Random random(4);
-  for (int i = 0; i < 30000; ++i) ++counts[mixed.sample(ref, random()).emitter->index()];
+  for (int i = 0; i < 30000; ++i) ++counts[mixed.sample(ref, random(), kMiddle).emitter->index()];
   double statistic = 0;
   for (const Emitter* emitter : emitters) {
-    const double e = 30000 * mixed.probability(ref, *emitter, 0);
+    const double e = 30000 * mixed.probability(ref, *emitter, 0, kUp);
     statistic += (counts[emitter->index()] - e) * (counts[emitter->index()] - e) / e;
   }
   EXPECT_GT(odis::test::chi2PValue(statistic, 2), 0.01);

@@ -33,12 +33,12 @@ struct Lamp {
     sampler = LightSampler(scene->emitters());
   }
   EmitterSample sample(const LightReference& ref, float uChoice, const Vec2& u, float& probability) const {
-    const LightSampler::Choice choice = sampler.sample(ref, uChoice);
+    const LightSampler::Choice choice = sampler.sample(ref, uChoice, u);
     probability = choice.probability;
-    return choice.emitter ? choice.emitter->sample(choice.part, ref.p, u) : EmitterSample{};
+    return choice.emitter ? choice.emitter->sample(choice.part, ref.p, choice.u) : EmitterSample{};
   }
   float pdf(const LightReference& ref, const SurfacePoint& at) const {
-    return sampler.probability(ref, *light, light->part(at)) * light->pdf(ref.p, at);
+    return sampler.probability(ref, *light, light->part(at), normalize(at.p - ref.p)) * light->pdf(ref.p, at);
   }
   // Over all points that lie in the direction, which may hide each other.
   float directionPdf(const LightReference& ref, const Vec3& w) const {

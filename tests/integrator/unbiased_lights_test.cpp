@@ -37,6 +37,28 @@ std::string lampRoom(int size) {
          "value=\"0.3\"/></emitter>";
 }
 
+// A room that only part of the sky looks into, through what is missing of its roof; the sky falls into regions.
+std::string openRoom(int size) {
+  const auto wall = [](const std::string& transform) {
+    return "<shape type=\"rectangle\"><transform name=\"to_world\"><scale value=\"2\"/>" + transform +
+           "</transform><bsdf type=\"twosided\"><bsdf type=\"diffuse\"/></bsdf></shape>";
+  };
+  return test::sensor("origin=\"0,0.4,1.9\" target=\"0,0,0\" up=\"0,1,0\"", 60, size, size) +
+         wall("<rotate x=\"1\" angle=\"-90\"/><translate y=\"-1\"/>") +
+         wall("<rotate x=\"1\" angle=\"90\"/><translate y=\"1\" z=\"-2.6\"/>") +
+         wall("<translate z=\"-2\"/>") + wall("<translate z=\"2\"/>") +
+         wall("<rotate y=\"1\" angle=\"90\"/><translate x=\"-2\"/>") +
+         wall("<rotate y=\"1\" angle=\"-90\"/><translate x=\"2\"/>") +
+         "<shape type=\"sphere\"><point name=\"center\" x=\"-0.4\" y=\"-0.4\" z=\"-0.6\"/><float "
+         "name=\"radius\" "
+         "value=\"0.6\"/><bsdf type=\"roughconductor\"><float name=\"alpha\" value=\"0.3\"/></bsdf></shape>"
+         "<emitter type=\"sunsky\"><vector name=\"sun_direction\" x=\"0.3\" y=\"0.6\" z=\"0.5\"/>"
+         "<float name=\"sky_scale\" value=\"10\"/><float name=\"sun_scale\" value=\"1\"/>"
+         "<float name=\"sun_radius_scale\" value=\"20\"/></emitter>"
+         "<emitter type=\"point\"><point name=\"position\" x=\"1.2\" y=\"0.3\" z=\"0.5\"/>"
+         "<rgb name=\"intensity\" value=\"0.2\"/></emitter>";
+}
+
 // Tables for no reason, and values that are none.
 class AdversarialLights : public LightModel {
  public:
@@ -64,19 +86,42 @@ struct LampRoom {
   static std::string text() { return lampRoom(16); }
   static constexpr int kMaxDepth = 5;
 };
-class UnbiasedLightsTest : public test::AgainstPath<LampRoom> {
+struct OpenRoom {
+  static std::string text() { return openRoom(16); }
+  static constexpr int kMaxDepth = 4;
+};
+
+template <class Scene>
+class UnbiasedLights : public test::AgainstPath<Scene> {
  protected:
+  static constexpr int kTests = 7;
   static RenderOptions guidedOptions() {
-    RenderOptions options = AgainstPath::guidedOptions();
+    RenderOptions options = test::AgainstPath<Scene>::guidedOptions();
     options.guideOptions.cellsPerDiagonal = 3;  // so that the few samples are enough to be believed
     return options;
   }
+  static void expectLearnedUnbiased() {
+    test::AgainstPath<Scene>::expectUnbiased(guidedOptions(), 128, kTests);
+  }
+  static void expectAdversarialUnbiased() {
+    RenderOptions options = guidedOptions();
+    options.guideOptions.lights = std::make_shared<AdversarialLights>();
+    options.refineSpp = 1;
+    test::AgainstPath<Scene>::expectUnbiased(options, 256, kTests);
+  }
+  static void expectStubbornUnbiased() {
+    RenderOptions options = guidedOptions();
+    options.guideOptions.lights = std::make_shared<StubbornLights>();
+    options.refineSpp = 1;
+    options.pilotWeight = 0;
+    test::AgainstPath<Scene>::expectUnbiased(options, 256, kTests);
+  }
 };
-
-constexpr int kTests = 4;
+using UnbiasedLightsTest = UnbiasedLights<LampRoom>;
+using UnbiasedRegionsTest = UnbiasedLights<OpenRoom>;
 
 TEST_F(UnbiasedLightsTest, Learned) {
-  expectUnbiased(guidedOptions(), 128, kTests);
+  expectLearnedUnbiased();
 }
 
 TEST_F(UnbiasedLightsTest, Hierarchy) {
@@ -88,18 +133,25 @@ TEST_F(UnbiasedLightsTest, Hierarchy) {
 // Lamps are mostly left to the directions that hit them: fails if their densities there were those of another place, or
 // those without what was learned.
 TEST_F(UnbiasedLightsTest, Stubborn) {
-  RenderOptions options = guidedOptions();
-  options.guideOptions.lights = std::make_shared<StubbornLights>();
-  options.refineSpp = 1;
-  options.pilotWeight = 0;
-  expectUnbiased(options, 256, kTests);
+  expectStubbornUnbiased();
 }
 
 TEST_F(UnbiasedLightsTest, Adversarial) {
-  RenderOptions options = guidedOptions();
-  options.guideOptions.lights = std::make_shared<AdversarialLights>();
-  options.refineSpp = 1;
-  expectUnbiased(options, 256, kTests);
+  expectAdversarialUnbiased();
+}
+
+TEST_F(UnbiasedRegionsTest, Learned) {
+  expectLearnedUnbiased();
+}
+
+// Next-event estimation mostly looks into a sixteenth of the sky: fails if a direction's density were that of another
+// region.
+TEST_F(UnbiasedRegionsTest, Stubborn) {
+  expectStubbornUnbiased();
+}
+
+TEST_F(UnbiasedRegionsTest, Adversarial) {
+  expectAdversarialUnbiased();
 }
 
 }  // namespace

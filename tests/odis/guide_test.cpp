@@ -421,6 +421,29 @@ TEST(Lights, TablesFollowTheRootOfWhatGroupsGive) {
   EXPECT_EQ(result[1].lightShare, 0);  // has seen nothing
 }
 
+TEST(Lights, PartsOfALightAreToldApartWhereThatGainsMuch) {
+  std::vector<CellStatistics> cells(3);
+  for (CellStatistics& cell : cells) {
+    cell.level = kCellLevels - 1;
+    cell.count = 1e6;
+  }
+  cells[0].lightSquares = {1e6, 16e6, 0, 0, 0};       // one part of the four is all there is
+  cells[1].lightSquares = {1e6, 1e6, 2e6, 1e6, 1e6};  // all parts are about the same
+  cells[2].lightSquares = {1e6, 0, 0, 0, 0};          // the light gives nothing
+  std::vector<Cell> result(3);
+  const LightParts parts[] = {{1, 4}};
+  const std::vector<float> tables = tabulateLights(result, cells, ShrunkLightSquares(), 5, parts);
+  const auto probability = [&](size_t cell, size_t group) {
+    return tables[cell * 6 + group + 1] - tables[cell * 6 + group];
+  };
+  EXPECT_NEAR(probability(0, 0), 0.2, 1e-6);
+  EXPECT_NEAR(probability(0, 1), 0.8, 1e-6);
+  // The light as a whole: X is 4 times what a part gives, or the root of the mean square of that.
+  const double light = std::sqrt(4 * 5e6) / (std::sqrt(4 * 5e6) + std::sqrt(1e6));
+  for (size_t part = 1; part < 5; ++part) EXPECT_NEAR(probability(1, part), light / 4, 1e-6);
+  EXPECT_EQ(probability(2, 0), 1);
+}
+
 TEST(Lights, ASquareIsEstimatedWhateverTheChoiceWas) {
   // Two groups that always give 2 and 6, chosen with 0.9 and 0.1; then the other way round.
   for (const float first : {0.9f, 0.1f}) {

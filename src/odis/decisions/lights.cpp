@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 namespace odis {
 
@@ -12,8 +13,31 @@ constexpr double kPriorSamples = 30;
 // The share of the choices that follows what was learned where a cell has seen enough, and how many samples are half
 // enough.
 constexpr double kShare = 0.9, kHalfEnough = 20;
+// Of a light in parts: the second moment of the best choice among them, over that of an even one, below which the best is
+// taken, and above which the even one, which keeps samples stratified over the whole light, together with the pilot's.
+constexpr double kMuchGained = 0.6, kLittleGained = 0.9;
 // No weight is more than this, so that sums can be kept.
 constexpr double kMostWeight = 1e30;
+
+// Draws the probabilities of a light's parts together where choosing among them gains little; the light's own remains
+// the best for the choice among its parts.
+void evenOut(std::span<double> weights) {
+  double sum = 0, squares = 0;
+  for (const double weight : weights) {
+    sum += weight;
+    squares += weight * weight;
+  }
+  if (!(sum > 0)) return;
+  const double count = double(weights.size()), ratio = sum * sum / (count * squares);
+  const double best = std::clamp((kLittleGained - ratio) / (kLittleGained - kMuchGained), 0.0, 1.0);
+  double moment = 0;
+  for (double& weight : weights) {
+    const double probability = best * weight / sum + (1 - best) / count;
+    if (weight > 0) moment += weight * weight / probability;
+    weight = probability;
+  }
+  for (double& weight : weights) weight *= std::sqrt(moment);
+}
 
 }  // namespace
 
@@ -27,18 +51,22 @@ LightSquares ShrunkLightSquares::predict(const CellStatistics& cell, const Light
 }
 
 std::vector<float> tabulateLights(std::vector<Cell>& result, std::span<const CellStatistics> cells,
-                                  const LightModel& model, uint32_t groups) {
+                                  const LightModel& model, uint32_t groups,
+                                  std::span<const LightParts> parts) {
   std::vector<LightSquares> squares(cells.size());
   std::vector<float> table(cells.size() * (groups + 1));
   forEachFromCoarse(cells, [&](size_t c) {
     const uint32_t parent = cells[c].parent;
     squares[c] = model.predict(cells[c], parent == kNoCell ? nullptr : &squares[parent]);
-    double total = 0;
-    std::array<double, kMostLightGroups> weights;
+    std::array<double, kMostLightGroups> weights{};
     for (uint32_t g = 0; g < groups; ++g) {
       const double weight = std::sqrt(squares[c][g]);
-      total += weights[g] = weight > 0 ? std::min(weight, kMostWeight) : 0;
+      weights[g] = weight > 0 ? std::min(weight, kMostWeight) : 0;
     }
+    for (const LightParts& light : parts)
+      if (light.first <= groups && light.count <= groups - light.first)
+        evenOut(std::span(weights).subspan(light.first, light.count));
+    const double total = std::accumulate(weights.begin(), weights.end(), 0.0);
     result[c].lightShare = total > 0 ? float(kShare * cells[c].count / (cells[c].count + kHalfEnough)) : 0;
     float* cdf = &table[c * (groups + 1)];
     double sum = 0;

@@ -30,8 +30,10 @@ class ShrunkLightSquares : public LightModel {
 };
 
 // Tables of `groups` + 1 entries for each cell, one after the other, and the cells' shares (Cell::lightShare). The best
-// probability of a group is in proportion to the root of its squared contribution.
+// probability of a group is in proportion to the root of its squared contribution. Of a light in parts these follow it
+// only where that gains much over drawing each as often as the others.
 std::vector<float> tabulateLights(std::vector<Cell>& result, std::span<const CellStatistics> cells,
-                                  const LightModel& model, uint32_t groups);
+                                  const LightModel& model, uint32_t groups,
+                                  std::span<const LightParts> parts = {});
 
 }  // namespace odis

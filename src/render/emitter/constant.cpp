@@ -22,6 +22,10 @@ EmitterSample ConstantEnvironment::sample(uint32_t, const Vec3&, const Vec2& u) 
           .delta = false};
 }
 
+Vec2 ConstantEnvironment::invert(const Vec3& wi) const {
+  return sphereToSquare(wi);
+}
+
 float ConstantEnvironment::pdf(const Vec3&, const Vec3&) const {
   return 1 / kSphereSolidAngle;
 }

@@ -12,6 +12,8 @@ class ConstantEnvironment final : public EnvironmentEmitter {
   EmitterSample sample(uint32_t part, const Vec3& ref, const Vec2& u) const override;
   float meanIrradiance() const override { return kPi * average(m_radiance); }
   Rgb radiance(const Vec3&) const override { return m_radiance; }
+  bool invertible() const override { return true; }
+  Vec2 invert(const Vec3& wi) const override;
   float pdf(const Vec3& ref, const Vec3& wi) const override;
 
  private:

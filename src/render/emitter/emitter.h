@@ -32,6 +32,10 @@ class Emitter {
   // What an emitter infinitely far away gives a surface, on average over all ways to face (W/m^2, average
   // over channels), for choosing among lights. Approximate is fine.
   virtual float meanIrradiance() const { return 0; }
+  // Of an emitter infinitely far away: whether invert() knows the numbers that sample() takes to a direction.
+  virtual bool invertible() const { return false; }
+  // These numbers, but for rounding; any where sample() never goes.
+  virtual Vec2 invert(const Vec3& /*wi*/) const { return {0, 0}; }
 
   // The emitter's place among those of its scene.
   uint32_t index() const { return m_index; }

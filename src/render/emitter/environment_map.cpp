@@ -147,15 +147,22 @@ EmitterSample EnvironmentMap::sample(uint32_t, const Vec3&, const Vec2& u) const
       .wi = world / scale, .distance = kInfinity, .radiance = lookUp({x, s.x.y}), .pdf = pdf, .delta = false};
 }
 
+Vec2 EnvironmentMap::inTable(const Vec2& uv) const {
+  float x = uv.x - 0.5f / float(m_width);
+  if (x < 0) x += 1;
+  return {std::min(x, kOneMinusEpsilon), std::min(uv.y, kOneMinusEpsilon)};
+}
+
+Vec2 EnvironmentMap::invert(const Vec3& wi) const {
+  return m_table.invert(inTable(toSpherical(normalize(transformVector(m_toLocal, wi))).uv));
+}
+
 float EnvironmentMap::pdf(const Vec3&, const Vec3& wi) const {
   const Vec3 local = transformVector(m_toLocal, wi);
   const float inverseScale = length(local);
   const Spherical at = toSpherical(local / inverseScale);
   if (!(at.sinTheta > 0)) return 0;
-  float x = at.uv.x - 0.5f / float(m_width);
-  if (x < 0) x += 1;
-  const Vec2 cell(std::min(x, kOneMinusEpsilon), std::min(at.uv.y, kOneMinusEpsilon));
-  return m_table.pdf(cell) / (2 * kPi * kPi * at.sinTheta) /
+  return m_table.pdf(inTable(at.uv)) / (2 * kPi * kPi * at.sinTheta) /
          (inverseScale * inverseScale * inverseScale * m_determinant);
 }
 

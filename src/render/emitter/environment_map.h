@@ -19,10 +19,14 @@ class EnvironmentMap final : public EnvironmentEmitter {
   float meanIrradiance() const override { return average(m_integral) / 4; }
   Rgb radiance(const Vec3& wi) const override;
   float pdf(const Vec3& ref, const Vec3& wi) const override;
+  bool invertible() const override { return true; }
+  Vec2 invert(const Vec3& wi) const override;
   uint64_t bytes() const { return m_pixels.size() * sizeof(Rgb) + m_table.bytes(); }
 
  private:
   const Rgb& pixel(int x, int y) const { return m_pixels[size_t(y) * size_t(m_width) + size_t(x)]; }
+  // Where the table has a direction of the image's space.
+  Vec2 inTable(const Vec2& uv) const;
   Rgb lookUp(const Vec2& uv) const;
   std::vector<float> patchWeights();
 

@@ -13,6 +13,9 @@ constexpr float kUniformShare = 0.1f;
 
 // How many emitters outside of the tree are groups of their own.
 constexpr uint32_t kMostInfiniteGroups = 8;
+// Environments have grids of at most so many columns and rows, and so many groups are left to the tree if it has the
+// lights.
+constexpr uint32_t kFinestGrid = 4, kTreeGroups = 8;
 
 // No weight is more than this, so that sums can be kept.
 constexpr float kMostWeight = 1e28f;
@@ -24,7 +27,10 @@ float usable(float weight) {
 }  // namespace
 
 LightSampler::LightSampler(const std::vector<const Emitter*>& emitters)
-    : m_emitters(emitters), m_probability(emitters.size(), 0.0f), m_groupOf(emitters.size(), 0) {
+    : m_emitters(emitters),
+      m_probability(emitters.size(), 0.0f),
+      m_groupOf(emitters.size(), 0),
+      m_divided(emitters.size(), 0) {
   // What is somewhere goes into the tree.
   std::vector<LightBounds> lights;
   std::vector<float> weights;
@@ -37,12 +43,11 @@ LightSampler::LightSampler(const std::vector<const Emitter*>& emitters)
       m_emitterOf.push_back(i);
     }
     if (parts > 0) continue;
-    m_groupOf[i] = std::min(uint32_t(m_infinite.size()), kMostInfiniteGroups - 1);
     m_infinite.push_back(i);
     weights.push_back(usable(emitters[i]->meanIrradiance()));
     m_infiniteIrradiance += weights.back();
   }
-  m_infiniteGroups = std::min(uint32_t(m_infinite.size()), kMostInfiniteGroups);
+  divide(uint32_t(lights.size()));
   m_tree = LightTree(lights, kMostLightGroups - m_infiniteGroups);
   if (m_infinite.empty()) return;
 
@@ -61,8 +66,61 @@ float LightSampler::treeProbability(const LightReference& ref) const {
   return lerp(kUniformShare, irradiance / (irradiance + m_infiniteIrradiance), 0.5f);
 }
 
+void LightSampler::divide(uint32_t lights) {
+  const uint32_t count = uint32_t(m_infinite.size());
+  uint32_t divisible = 0;
+  for (const uint32_t emitter : m_infinite) divisible += m_emitters[emitter]->invertible();
+  // The finest grid that leaves some groups to the lights of the tree.
+  const uint32_t most = kMostLightGroups - std::min(lights, kTreeGroups);
+  m_side = kFinestGrid;
+  while (m_side > 1 && count + divisible * (regions() - 1) > most) m_side /= 2;
+  if (count > kMostInfiniteGroups) m_side = 1;
+
+  for (uint32_t member = 0; member < count; ++member) {
+    const uint32_t emitter = m_infinite[member];
+    if (member >= kMostInfiniteGroups) {
+      m_groupOf[emitter] = kMostInfiniteGroups - 1;
+      continue;
+    }
+    m_divided[emitter] = m_side > 1 && m_emitters[emitter]->invertible();
+    m_groupOf[emitter] = uint32_t(m_memberOf.size());
+    if (m_divided[emitter]) m_dividedLights.push_back({m_groupOf[emitter], regions()});
+    m_memberOf.resize(m_memberOf.size() + (m_divided[emitter] ? regions() : 1), member);
+  }
+  m_infiniteGroups = uint32_t(m_memberOf.size());
+}
+
 uint32_t LightSampler::groupEnd(uint32_t group) const {
-  return group + 1 == m_infiniteGroups ? uint32_t(m_infinite.size()) : group + 1;
+  return group + 1 == m_infiniteGroups ? uint32_t(m_infinite.size()) : groupBegin(group) + 1;
+}
+
+uint32_t LightSampler::regionAt(uint32_t emitter, const Vec2& u) const {
+  return m_groupOf[emitter] + cellAt(u.y, m_side) * m_side + cellAt(u.x, m_side);
+}
+
+uint32_t LightSampler::drawRegion(const LightReference& ref, float probability, uint32_t emitter,
+                                  Vec2& u) const {
+  const LearnedLights& learned = ref.learned;
+  const float* cdf = learned.cdf + m_groupOf[emitter];
+  // What every region gets, whatever was learned of it.
+  const float even = (1 - learned.share) * probability / float(regions());
+  const auto weight = [&](uint32_t first, uint32_t count) {
+    return float(count) * even + learned.share * (cdf[first + count] - cdf[first]);
+  };
+  // Draws one of the pieces of `size` regions each, as many as the grid has columns, from the region `first` on.
+  const auto draw = [&](uint32_t first, uint32_t size, float& x) {
+    x *= weight(first, m_side * size);
+    uint32_t piece = 0;
+    float width = weight(first, size);
+    for (; x >= width && piece + 1 < m_side; width = weight(first + ++piece * size, size)) x -= width;
+    // Rounding must not carry it across the border.
+    x = std::min((float(piece) + x / width) / float(m_side),
+                 float(piece + 1) / float(m_side) * kOneMinusEpsilon);
+    return piece;
+  };
+  const uint32_t row = draw(0, m_side, u.y);
+  const uint32_t column = draw(row * m_side, 1, u.x);
+  return m_groupOf[emitter] + row * m_side + column;
 }
 
 uint32_t LightSampler::groupOf(const Emitter& emitter, uint32_t part) const {
@@ -75,7 +133,8 @@ float LightSampler::withinGroup(const LightReference& ref, const Emitter& emitte
   const uint32_t index = emitter.index();
   if (m_probability[index] > 0) {
     const uint32_t group = m_groupOf[index];
-    return m_probability[index] / (m_cdf[groupEnd(group)] - m_cdf[group]);
+    if (isDivided(index)) return float(regions());
+    return m_probability[index] / (m_cdf[groupEnd(group)] - m_cdf[groupBegin(group)]);
   }
   return m_tree.probabilityInGroup(ref, m_firstLight[index] + part);
 }
@@ -103,8 +162,8 @@ LightSampler::Choice LightSampler::drawFromAll(const LightReference& ref, float 
 
 LightSampler::Choice LightSampler::drawFromGroup(const LightReference& ref, uint32_t group, float u) const {
   if (group < m_infiniteGroups) {
-    const uint32_t end = groupEnd(group);
-    const uint32_t index = std::clamp(findCell(m_cdf, lerp(u, m_cdf[group], m_cdf[end])), group, end - 1);
+    const uint32_t begin = groupBegin(group), end = groupEnd(group);
+    const uint32_t index = std::clamp(findCell(m_cdf, lerp(u, m_cdf[begin], m_cdf[end])), begin, end - 1);
     const uint32_t emitter = m_infinite[index];
     return {m_emitters[emitter], 0, (1 - treeProbability(ref)) * m_probability[emitter], group};
   }
@@ -116,38 +175,50 @@ LightSampler::Choice LightSampler::drawFromGroup(const LightReference& ref, uint
   return {m_emitters[emitter], light.light - m_firstLight[emitter], probability * light.probability, group};
 }
 
-LightSampler::Choice LightSampler::sample(const LightReference& ref, float u) const {
+LightSampler::Choice LightSampler::sample(const LightReference& ref, float uChoice, const Vec2& u) const {
   const LearnedLights& learned = ref.learned;
-  if (!(learned.share > 0)) return drawFromAll(ref, u);
   Choice choice;
-  if (u < learned.share) {
+  if (!(learned.share > 0)) {
+    choice = drawFromAll(ref, uChoice);
+    choice.u = u;
+    if (choice.emitter && isDivided(choice.emitter->index()))
+      choice.group = regionAt(choice.emitter->index(), u);
+    return choice;
+  }
+  if (uChoice < learned.share) {
     const std::span<const float> cdf(learned.cdf, groupCount() + 1);
-    u = std::min(u / learned.share, kOneMinusEpsilon);
-    const uint32_t group = findCell(cdf, u);
-    const float within = (u - cdf[group]) / (cdf[group + 1] - cdf[group]);
+    uChoice = std::min(uChoice / learned.share, kOneMinusEpsilon);
+    const uint32_t group = findCell(cdf, uChoice);
+    const float within = (uChoice - cdf[group]) / (cdf[group + 1] - cdf[group]);
     choice = drawFromGroup(ref, group, std::min(within, kOneMinusEpsilon));
   } else {
-    choice = drawFromAll(ref, std::min((u - learned.share) / (1 - learned.share), kOneMinusEpsilon));
+    choice = drawFromAll(ref, std::min((uChoice - learned.share) / (1 - learned.share), kOneMinusEpsilon));
   }
-  if (choice.emitter)
-    choice.probability =
-        mixed(learned, choice.probability, choice.group, withinGroup(ref, *choice.emitter, choice.part));
+  if (!choice.emitter) return choice;
+  // A region is drawn anew, from all of its emitter's: thus u stays stratified over the emitter.
+  choice.u = u;
+  const uint32_t emitter = choice.emitter->index();
+  if (isDivided(emitter)) choice.group = drawRegion(ref, choice.probability, emitter, choice.u);
+  choice.probability =
+      mixed(learned, choice.probability, choice.group, withinGroup(ref, *choice.emitter, choice.part));
   return choice;
 }
 
-float LightSampler::probability(const LightReference& ref, const Emitter& emitter, uint32_t part) const {
+float LightSampler::probability(const LightReference& ref, const Emitter& emitter, uint32_t part,
+                                const Vec3& wi) const {
   const uint32_t index = emitter.index();
   const float probability = m_probability[index] > 0
                                 ? (1 - treeProbability(ref)) * m_probability[index]
                                 : treeProbability(ref) * m_tree.probability(ref, m_firstLight[index] + part);
   if (!(ref.learned.share > 0)) return probability;
-  return mixed(ref.learned, probability, groupOf(emitter, part), withinGroup(ref, emitter, part));
+  const uint32_t group = isDivided(index) ? regionAt(index, emitter.invert(wi)) : groupOf(emitter, part);
+  return mixed(ref.learned, probability, group, withinGroup(ref, emitter, part));
 }
 
 float LightSampler::groupProbability(const LightReference& ref, uint32_t group) const {
   const float probability =
       group < m_infiniteGroups
-          ? (1 - treeProbability(ref)) * (m_cdf[groupEnd(group)] - m_cdf[group])
+          ? (1 - treeProbability(ref)) * (m_cdf[groupEnd(group)] - m_cdf[groupBegin(group)]) * ownShare(group)
           : treeProbability(ref) * m_tree.groupProbability(ref, group - m_infiniteGroups);
   return ref.learned.share > 0 ? mixed(ref.learned, probability, group, 1) : probability;
 }
@@ -155,7 +226,8 @@ float LightSampler::groupProbability(const LightReference& ref, uint32_t group) 
 uint64_t LightSampler::bytes() const {
   return m_emitters.capacity() * sizeof(const Emitter*) + m_firstLight.capacity() * sizeof(uint32_t) +
          m_emitterOf.capacity() * sizeof(uint32_t) + m_tree.bytes() +
-         (m_infinite.capacity() + m_groupOf.capacity()) * sizeof(uint32_t) +
+         (m_infinite.capacity() + m_groupOf.capacity() + m_memberOf.capacity()) * sizeof(uint32_t) +
+         m_divided.capacity() + m_dividedLights.capacity() * sizeof(LightParts) +
          (m_cdf.capacity() + m_probability.capacity()) * sizeof(float);
 }
 

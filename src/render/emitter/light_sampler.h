@@ -12,7 +12,8 @@ namespace odis::render {
 // by their mean irradiance. Between the two the irradiance decides that the tree may give the reference. A
 // tenth of both choices is spread evenly, so that none is starved by a bad estimate.
 //
-// Lights fall into groups. Where something was learned of them (LightReference::learned), a share of the choices draws a
+// Lights fall into groups; a few environments are divided into several: a grid over the unit square that their sample()
+// takes to directions. Where something was learned of groups (LightReference::learned), a share of the choices draws a
 // group from the table there, and a light within the group as ever.
 class LightSampler {
  public:
@@ -23,34 +24,54 @@ class LightSampler {
   struct Choice {
     const Emitter* emitter = nullptr;  // null if no light shines upon the reference
     uint32_t part = 0;
-    float probability = 0;  // discrete
+    float probability = 0;  // discrete; of a divided environment relative, see probability()
     uint32_t group = 0;
+    Vec2 u{0, 0};  // for sampling the part
   };
-  // Chooses with u in [0, 1).
-  Choice sample(const LightReference& ref, float u) const;
+  // Chooses with uChoice in [0, 1). The point u of [0, 1)^2 comes back as it is, or moved into the region of an environment
+  // that was chosen by what was learned.
+  Choice sample(const LightReference& ref, float uChoice, const Vec2& u) const;
   // The probability with which sample() chooses the part of the emitter. It is zero only for parts that give
-  // the reference nothing.
-  float probability(const LightReference& ref, const Emitter& emitter, uint32_t part) const;
+  // the reference nothing. Of a divided environment it is that of its region around `wi`, over what the region has of the
+  // environment's own density: always what the density of a direction is to be multiplied with.
+  float probability(const LightReference& ref, const Emitter& emitter, uint32_t part, const Vec3& wi) const;
   // At most kMostLightGroups.
   uint32_t groupCount() const { return m_infiniteGroups + m_tree.groupCount(); }
+  // Which groups are regions of a divided environment.
+  const std::vector<LightParts>& dividedLights() const { return m_dividedLights; }
   // The probability with which sample() chooses a light of the group.
   float groupProbability(const LightReference& ref, uint32_t group) const;
 
   uint64_t bytes() const;
 
  private:
+  // Gives groups to the emitters outside of the tree, which holds so many lights.
+  void divide(uint32_t lights);
+  uint32_t regions() const { return m_side * m_side; }
   // The probability of choosing from the tree.
   float treeProbability(const LightReference& ref) const;
   // Choices without what was learned, from all lights or from a group; probabilities are those of sample() then.
   Choice drawFromAll(const LightReference& ref, float u) const;
   Choice drawFromGroup(const LightReference& ref, uint32_t group, float u) const;
-  // The group that a light belongs to, and the probability of the light within it.
+  // Draws a region of a divided environment, whose probability without what was learned is given, and stretches u into
+  // it. Says which group that is.
+  uint32_t drawRegion(const LightReference& ref, float probability, uint32_t emitter, Vec2& u) const;
+  // The region of a divided environment that this point of the unit square lies in, as a group.
+  uint32_t regionAt(uint32_t emitter, const Vec2& u) const;
+  bool isDivided(uint32_t emitter) const { return m_divided[emitter]; }
+  // The group that a light of emitters not divided belongs to, and the probability of the light within it; of a region
+  // over what the region has of its emitter's density.
   uint32_t groupOf(const Emitter& emitter, uint32_t part) const;
   float withinGroup(const LightReference& ref, const Emitter& emitter, uint32_t part) const;
   // A probability of sample() with what was learned, from the one without and that within the group.
   static float mixed(const LearnedLights& learned, float probability, uint32_t group, float withinGroup);
-  // Of emitters outside of the tree, in m_infinite: the group is [group, this).
+  // Of emitters outside of the tree: which of m_infinite are in the group.
+  uint32_t groupBegin(uint32_t group) const { return m_memberOf[group]; }
   uint32_t groupEnd(uint32_t group) const;
+  // How much of its emitters' light a group outside of the tree has: all, or a region its part.
+  float ownShare(uint32_t group) const {
+    return isDivided(m_infinite[groupBegin(group)]) ? 1 / float(regions()) : 1.0f;
+  }
 
   std::vector<const Emitter*> m_emitters;
   std::vector<uint32_t> m_firstLight;  // of each emitter: the number of its part 0 in the tree
@@ -60,9 +81,13 @@ class LightSampler {
   std::vector<float> m_cdf;          // of these, size n + 1
   std::vector<float> m_probability;  // of each emitter, among those outside of the tree; 0 for others
   float m_infiniteIrradiance = 0;    // the sum of their mean irradiances
-  std::vector<uint32_t> m_groupOf;   // of each emitter outside of the tree
+  std::vector<uint32_t> m_groupOf;   // of each emitter outside of the tree: the first
+  std::vector<uint8_t> m_divided;    // each emitter: whether it has as many groups as the grid has cells
+  uint32_t m_side = 1;               // how many columns and rows that grid has
+  std::vector<LightParts> m_dividedLights;
   // The first groups are emitters outside of the tree, each by itself if they are few, the others those of the tree.
   uint32_t m_infiniteGroups = 0;
+  std::vector<uint32_t> m_memberOf;  // for each of these groups the first of m_infinite in it
 };
 
 }  // namespace odis::render

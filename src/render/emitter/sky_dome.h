@@ -20,6 +20,8 @@ class SkyDome final : public EnvironmentEmitter {
   float meanIrradiance() const override { return m_table.meanIrradiance(); }
   Rgb radiance(const Vec3& wi) const override;
   float pdf(const Vec3& ref, const Vec3& wi) const override { return m_table.pdf(ref, wi); }
+  bool invertible() const override { return true; }
+  Vec2 invert(const Vec3& wi) const override { return m_table.invert(wi); }
 
  private:
   std::vector<Rgb> tabulate(int width, int rows) const;

@@ -27,9 +27,9 @@ LightEstimate sampleLight(const PathSettings& settings, const SurfacePoint& at, 
   LightEstimate result;
   const float uChoice = sampler.get1D();
   const Vec2 u = sampler.get2D();
-  const LightSampler::Choice choice = settings.lights->sample(reference, uChoice);
+  const LightSampler::Choice choice = settings.lights->sample(reference, uChoice, u);
   if (!choice.emitter) return result;
-  const EmitterSample light = choice.emitter->sample(choice.part, at.p, u);
+  const EmitterSample light = choice.emitter->sample(choice.part, at.p, choice.u);
   if (!(light.pdf > 0) || isBlack(light.radiance)) return result;
   result.group = choice.group;
   result.wi = light.wi;
@@ -168,7 +168,9 @@ void addEmission(const PathSettings& settings, Path& path, Batch& batch, int dep
                  const Emitter& emitter, uint32_t part, float emitterPdf) {
   if (isBlack(emission)) return;
   const float lightPdf =
-      path.bySampling ? emitterPdf * settings.lights->probability(path.previous, emitter, part) : 0;
+      path.bySampling && emitterPdf > 0
+          ? emitterPdf * settings.lights->probability(path.previous, emitter, part, path.ray.direction)
+          : 0;
   const float weight = path.bySampling ? powerHeuristic(path.directionPdf, lightPdf) : 1;
   path.radiance += path.throughput * emission * weight;
   if (depth == 1) {

@@ -198,8 +198,10 @@ class Renderer {
     if (m_stopped) return;
     const Clock::time_point start = Clock::now();
     GuideOptions guideOptions = m_options.guideOptions;
-    if (m_options.lights == LightChoiceKind::learned && m_lights.groupCount() > 1)
+    if (m_options.lights == LightChoiceKind::learned && m_lights.groupCount() > 1) {
       guideOptions.lightGroups = m_lights.groupCount();
+      guideOptions.lightParts = m_lights.dividedLights();
+    }
     m_builder = std::make_unique<GuideBuilder>(guideOptions);
     if (m_options.guide == GuideKind::oracle) {
       m_progress.begin("oracle", m_pixels * uint64_t(m_options.oracleSpp));

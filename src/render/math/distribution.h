@@ -43,6 +43,11 @@ inline float invertCell(std::span<const float> cdf, uint32_t cell, float u) {
   return std::min((float(cell) + within) / float(cdf.size() - 1), kOneMinusEpsilon);
 }
 
+// The inverse of invertCell.
+inline float unsampleCell(std::span<const float> cdf, uint32_t cell, float x) {
+  return lerp(x * float(cdf.size() - 1) - float(cell), cdf[cell], cdf[cell + 1]);
+}
+
 inline uint32_t cellAt(float x, uint32_t count) {
   return std::min(uint32_t(std::max(x, 0.0f) * float(count)), count - 1);
 }
@@ -68,6 +73,8 @@ class PiecewiseConstant1D {
     return cellPdf(m_cdf, cellAt(x, size()));
   }
   uint32_t size() const { return uint32_t(m_cdf.size()) - 1; }
+  // The number that sample() takes to x in [0, 1), but for rounding.
+  float invert(float x) const { return unsampleCell(m_cdf, cellAt(x, size()), x); }
   double sum() const { return m_sum; }  // of the weights; 0 if the uniform distribution stands in
   uint64_t bytes() const { return m_cdf.size() * sizeof(float); }
 
@@ -97,6 +104,11 @@ class PiecewiseConstant2D {
     if (!(x.x >= 0 && x.x < 1 && x.y >= 0 && x.y < 1)) return 0;
     const std::span<const float> cdf = row(cellAt(x.y, m_marginal.size()));
     return cellPdf(cdf, cellAt(x.x, m_width)) * m_marginal.pdf(x.y);
+  }
+  // The numbers that sample() takes to x in [0, 1)^2, but for rounding.
+  Vec2 invert(const Vec2& x) const {
+    const std::span<const float> cdf = row(cellAt(x.y, m_marginal.size()));
+    return {unsampleCell(cdf, cellAt(x.x, m_width), x.x), m_marginal.invert(x.y)};
   }
   double sum() const { return m_marginal.sum(); }
   uint64_t bytes() const { return m_rows.size() * sizeof(float) + m_marginal.bytes(); }

@@ -17,9 +17,9 @@ DrawnLight drawLight(const PathSettings& settings, const SurfacePoint& at, const
   const float uChoice = sampler.get1D();
   const Vec2 u = sampler.get2D();
   if (!at.shape->bsdf().traits().evaluable) return result;
-  const LightSampler::Choice choice = settings.lights->sample(lightReference(at, wo), uChoice);
+  const LightSampler::Choice choice = settings.lights->sample(lightReference(at, wo), uChoice, u);
   if (!choice.emitter) return result;
-  const EmitterSample light = choice.emitter->sample(choice.part, at.p, u);
+  const EmitterSample light = choice.emitter->sample(choice.part, at.p, choice.u);
   if (!(light.pdf > 0) || isBlack(light.radiance)) return result;
   ++counts.shadowRays;
   if (settings.scene->occluded(Scene::spawn(at, light.wi, light.distance))) return result;
@@ -62,10 +62,10 @@ struct Arrival {
 };
 
 Rgb emissionOf(const PathSettings& settings, const Arrival& arrival, const Rgb& emission,
-               const Emitter& emitter, uint32_t part, float emitterPdf) {
+               const Emitter& emitter, uint32_t part, const Vec3& wi, float emitterPdf) {
   if (isBlack(emission) || !arrival.bySampling) return emission;
-  return emission *
-         powerHeuristic(arrival.pdf, emitterPdf * settings.lights->probability(arrival.from, emitter, part));
+  return emission * powerHeuristic(arrival.pdf, emitterPdf * settings.lights->probability(arrival.from,
+                                                                                          emitter, part, wi));
 }
 
 Rgb emissionMet(const PathSettings& settings, const Arrival& arrival, const Ray& ray, bool hit,
@@ -73,10 +73,10 @@ Rgb emissionMet(const PathSettings& settings, const Arrival& arrival, const Ray&
   Rgb sum(0, 0, 0);
   if (!hit) {
     for (const EnvironmentEmitter* e : settings.scene->environments())
-      sum += emissionOf(settings, arrival, e->radiance(ray.direction), *e, 0,
+      sum += emissionOf(settings, arrival, e->radiance(ray.direction), *e, 0, ray.direction,
                         arrival.bySampling ? e->pdf(arrival.from.p, ray.direction) : 0);
   } else if (const SurfaceEmitter* e = at.shape->emitter()) {
-    sum = emissionOf(settings, arrival, e->radiance(at, -ray.direction), *e, e->part(at),
+    sum = emissionOf(settings, arrival, e->radiance(at, -ray.direction), *e, e->part(at), ray.direction,
                      arrival.bySampling ? e->pdf(arrival.from.p, at) : 0);
   }
   return sum;
