@@ -72,5 +72,47 @@ TEST(Sampler, IndependentSamplesOfAPixelDiffer) {
   EXPECT_NE(a.get1D(), b.get1D());
 }
 
+// Draws the numbers of the camera, the first vertex and two later ones: for each its purpose and value.
+std::vector<std::pair<Purposes, float>> numbersOf(Sampler sampler) {
+  std::vector<std::pair<Purposes, float>> numbers;
+  const auto add = [&](Purposes purpose, const Vec2& u) {
+    numbers.push_back({purpose, u.x});
+    numbers.push_back({purpose, u.y});
+  };
+  add(kPixelAndLens, sampler.get2D());
+  add(kPixelAndLens, sampler.get2D());
+  for (int depth = 1; depth <= 3; ++depth) {
+    sampler.startVertex(depth);
+    const uint32_t later = depth > 1 ? kDimensionsPerVertex : 0;
+    numbers.push_back({kFirstLightChoice << later, sampler.get1D()});
+    add(kFirstLightPoint << later, sampler.get2D());
+    numbers.push_back({kFirstDirection << later, sampler.get1D()});
+    add(kFirstDirection << later, sampler.get2D());
+    numbers.push_back({kFirstSurvival << later, sampler.get1D()});
+  }
+  return numbers;
+}
+
+TEST(Sampler, RedrawsTheNumbersForSomePurposesAndNoOthers) {
+  const auto before = numbersOf(Sampler(SamplerKind::independent, 1, 2, 3));
+  for (const Purposes redrawn : {kPixelAndLens, kFirstLightChoice, kFirstLightPoint, kFirstDirection,
+                                 kFirstSurvival, kLaterLightChoice, kLaterLightPoint, kLaterDirection,
+                                 kLaterSurvival, kFirstDirection | kLaterSurvival, kAllPurposes}) {
+    const auto after = numbersOf(Sampler(SamplerKind::independent, 1, 2, 3, redrawn));
+    for (size_t i = 0; i < before.size(); ++i)
+      EXPECT_EQ(before[i].second != after[i].second, (before[i].first & redrawn) != 0) << i << " " << redrawn;
+  }
+}
+
+TEST(Sampler, SkippedNumbersLeaveTheOthersWhereTheyAre) {
+  Sampler all(SamplerKind::sobol, 1, 2, 3), some(SamplerKind::sobol, 1, 2, 3);
+  all.startVertex(2);
+  all.get1D();
+  all.get2D();
+  some.startVertex(2);
+  some.skip(2);
+  EXPECT_EQ(all.get1D(), some.get1D());
+}
+
 }  // namespace
 }  // namespace odis::render

@@ -67,7 +67,7 @@ uint64_t renderTile(const Pass& pass, const PathSettings& settings, int x0, int 
       const Vec2i pixel(film.crop.x + int(index) % film.crop.width,
                         film.crop.y + int(index) / film.crop.width);
       Sampler sampler(pass.sampler, pass.seed, uint32_t(pixel.y) * uint32_t(film.width) + uint32_t(pixel.x),
-                      first + round);
+                      first + round, pass.redrawn);
       float filterWeight;
       const Ray ray = cameraRay(*settings.scene, pixel, sampler, filterWeight);
       paths.emplace_back(ray, sampler);

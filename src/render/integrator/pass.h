@@ -41,6 +41,7 @@ struct Pass {
   // The samples [first, first + count) of a pixel, given its index; must not depend on anything that was
   // rendered.
   std::function<std::pair<uint32_t, uint32_t>(uint32_t pixel)> samples;
+  Purposes redrawn = 0;  // independent numbers for these are others than without it
 
   std::span<const float> pixelValues;  // about what each pixel's luminance is; for learned roulette only
 

@@ -22,6 +22,9 @@ Vec3 facing(const SurfacePoint& at, const Vec3& wo) {
   return wo.z < 0 ? -at.shading.n : at.shading.n;
 }
 
+// How many numbers sampleLight() draws.
+constexpr uint32_t kLightNumbers = 2;
+
 LightEstimate sampleLight(const PathSettings& settings, const SurfacePoint& at, const Vec3& wo,
                           const LightReference& reference, Sampler& sampler) {
   LightEstimate result;
@@ -306,6 +309,8 @@ bool extend(const PathSettings& settings, Path& path, uint32_t index, const Vert
       batch.errands.push_back({index, path.throughput * direct});
       batch.shadowRays.push_back(Scene::spawn(at, light.wi, light.distance));
     }
+  } else {
+    sampler.skip(kLightNumbers);
   }
 
   // Sample where the path goes on.

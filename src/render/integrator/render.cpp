@@ -9,6 +9,8 @@
 #include <memory>
 
 #include "render/integrator/combine.h"
+#include "render/integrator/path_text.h"
+#include "render/integrator/sample_image.h"
 #include "render/rivals/inverse_variance.h"
 #include "render/rivals/open_pgl.h"
 #include "render/rivals/ppg.h"
@@ -28,6 +30,7 @@ constexpr size_t kManyPixels = 200000;
 constexpr int kManySamples = 8;
 // Seeds of passes that are no part of the image.
 constexpr uint64_t kOracleSeed = 0x6f7261636c65ull;
+constexpr uint64_t kSampleImageSeed = 0x73616d706c65ull;
 // How many samples per pixel a pass takes at most, so that there is progress and an end in sight.
 constexpr uint32_t kSamplesPerPass = 8;
 // How many iterations of a rival are combined by their variances, as Müller 2019 does.
@@ -91,16 +94,7 @@ class Renderer {
       throw OptionError("--replay: a pixel of --integrator restir is made of many paths");
     const Crop& crop = m_scene.film().crop;
     const uint32_t index = uint32_t(pixel.y - crop.y) * uint32_t(crop.width) + uint32_t(pixel.x - crop.x);
-    PathSettings settings = pathSettings();
-    if (m_rival) {
-      runRival(sample);
-      settings.rival = m_rival.get();
-    } else if (m_options.integrator == IntegratorKind::odis && sample >= pilotCount(index)) {
-      runPilot();
-      buildGuide();
-      runRemaining(std::min(sample - pilotCount(index), lastRefinement()));
-      useGuide(settings);
-    }
+    const PathSettings settings = settingsOf(index, sample);
     Sampler sampler(m_options.sampler, m_options.seed,
                     uint32_t(pixel.y) * uint32_t(m_scene.film().width) + uint32_t(pixel.x), sample);
     float filterWeight;
@@ -111,7 +105,36 @@ class Renderer {
     return path;
   }
 
+  // Everything up to the last sample, then what `use` asks for.
+  void samples(const std::function<void(const SampleRenderer&)>& use) {
+    if (m_options.integrator == IntegratorKind::restir)
+      throw OptionError("--integrator restir: a pixel is made of many paths, it has no samples of its own");
+    if (m_options.integrator == IntegratorKind::odis && m_pilotSpp >= m_options.spp)
+      throw OptionError("--pilot-spp: all samples are the pilot's, expected fewer");
+    Pass pass = basicPass();
+    pass.path = settingsOf(0, uint32_t(m_options.spp) - 1);
+    pass.pixelValues = m_pixelValues;
+    pass.seed ^= kSampleImageSeed;
+    use([&](uint32_t sample, Purposes redrawn) {
+      return renderSampleImage(pass, sample, redrawn, m_progress, [this] { return stop(); });
+    });
+  }
+
  private:
+  // What a sample of a pixel is traced with, after everything that comes before it.
+  PathSettings settingsOf(uint32_t pixel, uint32_t sample) {
+    PathSettings settings = pathSettings();
+    if (m_rival) {
+      runRival(sample);
+      settings.rival = m_rival.get();
+    } else if (m_options.integrator == IntegratorKind::odis && sample >= pilotCount(pixel)) {
+      runPilot();
+      buildGuide();
+      runRemaining(std::min(sample - pilotCount(pixel), lastRefinement()));
+      useGuide(settings);
+    }
+    return settings;
+  }
   PathSettings pathSettings() const {
     PathSettings settings;
     settings.scene = &m_scene;
@@ -456,24 +479,18 @@ RenderResult render(const Scene& scene, const RenderOptions& options, Progress& 
   return Renderer(scene, options, progress).run();
 }
 
+void renderSamples(const Scene& scene, const RenderOptions& options, Progress& progress,
+                   const std::function<void(const SampleRenderer&)>& use) {
+  const tbb::global_control limit = limitThreads(options.threads);
+  Renderer(scene, options, progress).samples(use);
+}
+
 std::string replay(const Scene& scene, const RenderOptions& options, Vec2i pixel, int sample) {
   const tbb::global_control limit = limitThreads(options.threads);
   Progress quiet;
   std::vector<PilotVertex> vertices;
   const Path path = Renderer(scene, options, quiet).trace(pixel, uint32_t(sample), vertices);
-  std::string text = fmt::format("pixel {},{} sample {}: radiance {:.6g} {:.6g} {:.6g}\n", pixel.x, pixel.y,
-                                 sample, path.radiance.x, path.radiance.y, path.radiance.z);
-  for (const PilotVertex& v : vertices)
-    text += fmt::format(
-        "  vertex {}: p ({:.5g} {:.5g} {:.5g}) n ({:.3f} {:.3f} {:.3f}) wi ({:.3f} {:.3f} {:.3f}){} pdf "
-        "{:.4g} weight "
-        "({:.4g} {:.4g} {:.4g}) direct ({:.4g} {:.4g} {:.4g}) arriving ({:.4g} {:.4g} {:.4g}) roughness "
-        "{:.3g} next at "
-        "{:.5g}\n",
-        v.depth, v.position.x, v.position.y, v.position.z, v.normal.x, v.normal.y, v.normal.z, v.wi.x, v.wi.y,
-        v.wi.z, v.discrete ? " (delta)" : "", v.pdf, v.weight.x, v.weight.y, v.weight.z, v.direct.x,
-        v.direct.y, v.direct.z, v.radiance.x, v.radiance.y, v.radiance.z, v.roughness, v.distance);
-  return text;
+  return fmt::format("pixel {},{} sample {}: ", pixel.x, pixel.y, sample) + pathText(path, vertices);
 }
 
 }  // namespace odis::render

@@ -6,6 +6,7 @@
 
 #include "render/integrator/render.h"
 #include "render/math/vec.h"
+#include "render/sampler/purposes.h"
 
 namespace odis::render {
 
@@ -47,11 +48,17 @@ inline uint64_t mixBits(uint64_t x) {
 // shuffled and scrambled anew (Burley 2020, "Practical Hash-based Owen Scrambling"); or independent numbers.
 class Sampler {
  public:
-  Sampler(SamplerKind kind, uint64_t seed, uint32_t pixel, uint32_t sample)
-      : m_kind(kind), m_sample(sample), m_base(mixBits(mixBits(seed + 0x9e3779b97f4a7c15ull) ^ pixel)) {}
+  // Independent numbers for the purposes in `redrawn` are others than without it; Sobol' points are not.
+  Sampler(SamplerKind kind, uint64_t seed, uint32_t pixel, uint32_t sample, Purposes redrawn = 0)
+      : m_kind(kind),
+        m_sample(sample),
+        m_redrawn(redrawn),
+        m_base(mixBits(mixBits(seed + 0x9e3779b97f4a7c15ull) ^ pixel)) {}
 
   // Every vertex of a path starts at a dimension of its own, whatever the vertices before it used.
-  void startVertex(int depth) { m_dimension = 8 * uint32_t(depth); }
+  void startVertex(int depth) { m_dimension = kDimensionsPerVertex * uint32_t(depth); }
+  // Leaves out numbers that a vertex has no use for, so that those after them keep their dimensions.
+  void skip(uint32_t count) { m_dimension += count; }
 
   float get1D() {
     const uint64_t hash = nextHash();
@@ -73,10 +80,13 @@ class Sampler {
 
  private:
   uint64_t nextHash() {
-    // Independent numbers differ by sample; Sobol' points share their scrambling among the samples of a
-    // pixel.
-    const uint64_t stream = m_kind == SamplerKind::independent ? (uint64_t(m_sample) + 1) << 32 : 0;
-    return mixBits(m_base ^ mixBits(stream + ++m_dimension));
+    // Independent numbers differ by sample and by whether they are redrawn; Sobol' points share their scrambling
+    // among the samples of a pixel.
+    ++m_dimension;
+    uint64_t stream = 0;
+    if (m_kind == SamplerKind::independent)
+      stream = (uint64_t(m_sample) + 1) << 32 | uint64_t(isFor(m_redrawn, m_dimension)) << 63;
+    return mixBits(m_base ^ mixBits(stream + m_dimension));
   }
   uint32_t shuffledIndex(uint32_t seed) const {
     return reverseBits(owenScrambleReversed(reverseBits(m_sample), seed));
@@ -86,6 +96,7 @@ class Sampler {
   SamplerKind m_kind;
   uint32_t m_sample;
   uint32_t m_dimension = 0;
+  Purposes m_redrawn;
   uint64_t m_base;
 };
 

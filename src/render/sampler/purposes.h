@@ -1,0 +1,38 @@
+// What the random numbers of a path are for. Every purpose has a dimension of its own, so that the numbers for some
+// can be drawn anew while all others stay as they are.
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+
+namespace odis::render {
+
+// Each vertex of a path has so many dimensions; the camera is vertex 0.
+inline constexpr uint32_t kDimensionsPerVertex = 8;
+
+// A set of purposes, a bit each. The camera and the first vertex have bits of their own, all later vertices share
+// theirs.
+using Purposes = uint32_t;
+
+inline constexpr Purposes kPixelAndLens =
+    1u << 1 | 1u << 2;  // where in the pixel and through which point of the lens
+inline constexpr Purposes kFirstLightChoice = 1u
+                                              << 9;  // next-event estimation at the first vertex: which light
+inline constexpr Purposes kFirstLightPoint = 1u << 10;  // and which point or direction of it
+inline constexpr Purposes kFirstDirection =
+    1u << 11 | 1u << 12;  // where the path goes on: which lobe, BSDF or map, whither
+inline constexpr Purposes kFirstSurvival = 1u << 13;  // whether it does: decided here or where it arrives
+// The same at all vertices but the first.
+inline constexpr Purposes kLaterLightChoice = kFirstLightChoice << kDimensionsPerVertex;
+inline constexpr Purposes kLaterLightPoint = kFirstLightPoint << kDimensionsPerVertex;
+inline constexpr Purposes kLaterDirection = kFirstDirection << kDimensionsPerVertex;
+inline constexpr Purposes kLaterSurvival = kFirstSurvival << kDimensionsPerVertex;
+inline constexpr Purposes kAllPurposes = ~0u;
+
+// Whether the number of a dimension, which counts from 1, is for one of the purposes.
+inline uint32_t isFor(Purposes purposes, uint32_t dimension) {
+  constexpr uint32_t kLater = 2 * kDimensionsPerVertex;
+  return purposes >> std::min(dimension, kLater | (dimension & (kDimensionsPerVertex - 1))) & 1u;
+}
+
+}  // namespace odis::render
