@@ -21,6 +21,17 @@ static double scaleOf(const std::vector<Rgb>& reference) {
   return sum > 0 ? double(reference.size()) / sum : 1.0;
 }
 
+std::vector<render::Rgbd> relMseWeights(const ColorImage& reference) {
+  const double scale = scaleOf(reference.pixels);
+  std::vector<render::Rgbd> weights(reference.pixels.size());
+  for (size_t i = 0; i < weights.size(); ++i)
+    for (int channel = 0; channel < 3; ++channel) {
+      const double truth = scale * reference.pixels[i][channel];
+      weights[i][channel] = scale * scale / (truth * truth + kRelMseEpsilon) / 3;
+    }
+  return weights;
+}
+
 // The mean of the values without the largest `share` of them. Reorders the values.
 static double trimmedMean(std::vector<double>& values, double share) {
   const auto kept = values.size() - size_t(share * double(values.size()));
@@ -41,14 +52,11 @@ std::vector<float> displayedFlip(const ColorImage& image, const ColorImage& refe
 ReferenceError referenceError(const ColorImage& reference, const std::vector<Rgb>& variance) {
   if (variance.size() != reference.pixels.size()) throw std::invalid_argument("the images differ in size");
   if (variance.empty()) throw std::invalid_argument("the images have no pixels");
-  const double scale = scaleOf(reference.pixels);
+  const std::vector<render::Rgbd> weights = relMseWeights(reference);
   std::vector<double> relative(variance.size());
   ReferenceError result;
   for (size_t i = 0; i < variance.size(); ++i) {
-    for (int channel = 0; channel < 3; ++channel) {
-      const double truth = scale * reference.pixels[i][channel];
-      relative[i] += scale * scale * variance[i][channel] / (truth * truth + kRelMseEpsilon) / 3;
-    }
+    for (int channel = 0; channel < 3; ++channel) relative[i] += weights[i][channel] * variance[i][channel];
     result.relMse += relative[i] / double(variance.size());
   }
   result.trimmedRelMse = trimmedMean(relative, kTrimmedShare);
@@ -63,7 +71,7 @@ static void requireSameSize(const ColorImage& image, const ColorImage& reference
 
 std::vector<double> relativeErrors(const ColorImage& image, const ColorImage& reference) {
   requireSameSize(image, reference);
-  const double scale = scaleOf(reference.pixels);
+  const std::vector<render::Rgbd> weights = relMseWeights(reference);
   std::vector<double> errors(image.pixels.size());
   for (size_t i = 0; i < errors.size(); ++i) {
     if (!render::isFinite(image.pixels[i])) {
@@ -71,8 +79,8 @@ std::vector<double> relativeErrors(const ColorImage& image, const ColorImage& re
       continue;
     }
     for (int channel = 0; channel < 3; ++channel) {
-      const double value = scale * image.pixels[i][channel], truth = scale * reference.pixels[i][channel];
-      errors[i] += (value - truth) * (value - truth) / (truth * truth + kRelMseEpsilon) / 3;
+      const double difference = double(image.pixels[i][channel]) - reference.pixels[i][channel];
+      errors[i] += weights[i][channel] * difference * difference;
     }
   }
   return errors;

@@ -32,6 +32,10 @@ struct ErrorMetrics {
 // Throws std::invalid_argument if the sizes differ or are zero, or if the reference is not finite everywhere.
 ErrorMetrics compareImages(const ColorImage& image, const ColorImage& reference);
 
+// What relMSE multiplies the squared difference of each pixel's channels with before it adds them up and averages over
+// pixels, scales included. Throws std::invalid_argument if the reference is not finite everywhere.
+std::vector<render::Rgbd> relMseWeights(const ColorImage& reference);
+
 // The part of relMSE and of its trimmed mean that a reference brings in itself, from the variance of its pixels:
 // the mean of variance / (R^2 + 0.01), everything scaled as above. Throws as above.
 struct ReferenceError {
