@@ -46,6 +46,7 @@ Command addMontageCommand(CLI::App& parent);
 Command addCompareCommand(CLI::App& parent, const std::string& commandLine);
 Command addAgreementCommand(CLI::App& parent);
 Command addBenchCommand(CLI::App& parent);
+Command addAnalyzeCommand(CLI::App& parent);
 
 // Runs the whole command line; errors go to stderr. Returns an ExitCode.
 int runCommandLine(int argc, char** argv);

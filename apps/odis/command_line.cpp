@@ -61,6 +61,7 @@ int runCommandLine(int argc, char** argv) {
   for (int i = 0; i < argc; ++i) commandLine += (i > 0 ? " " : "") + std::string(argv[i]);
   const std::vector<Command> commands{addRenderCommand(app, commandLine),
                                       addCompareCommand(app, commandLine),
+                                      addAnalyzeCommand(app),
                                       addAgreementCommand(app),
                                       addBenchCommand(app),
                                       addMetricsCommand(app),

@@ -181,6 +181,27 @@ TEST_F(Odis, ComparesAndResumes) {
 
 // A comparison that was cut off after some results, the last of them half written, ends as one that was not: only
 // what is missing is rendered.
+TEST_F(Odis, AnalyzesVariance) {
+  const Outcome table = run("analyze room.xml --spp 2 --reference-spp 4 --resolution 12x8 -q -o split.json");
+  ASSERT_EQ(table.code, 0) << table.text;
+  EXPECT_EQ(table.text.rfind("| room, 12 x 8: % of the variance | path | odis |", 0), 0u) << table.text;
+  std::ifstream stream(file("split.json"));
+  const nlohmann::json json = nlohmann::json::parse(stream);
+  const nlohmann::json& scene = json.at("scenes").at(0);
+  EXPECT_EQ(scene.at("scene"), "room");
+  ASSERT_EQ(scene.at("methods").size(), 2u);
+  EXPECT_GT(scene.at("methods").at(1).at("variance"), 0.0);
+  EXPECT_EQ(scene.at("methods").at(0).at("shares").at(0).at("cause"), "pixel and lens");
+  // Of several scenes, a table a method as well.
+  write("other.xml", "<scene version=\"3.0.0\"><emitter type=\"constant\"/></scene>");
+  const Outcome both = run("analyze room.xml other.xml --spp 2 --reference-spp 4 --pixels 64 -q");
+  EXPECT_EQ(both.code, 0) << both.text;
+  EXPECT_NE(both.text.find("| path: % of the variance | pixel, lens |"), std::string::npos) << both.text;
+  EXPECT_NE(both.text.find("\n| mean |"), std::string::npos) << both.text;
+  expectFailure("analyze room.xml --methods restir=--integrator\\ restir", 2, "made of many paths");
+  expectFailure("analyze room.xml -o split.txt", 2, "expected a name that ends in .json");
+}
+
 TEST_F(Odis, InterruptedComparisonGoesOn) {
   const std::string arguments = "compare room.xml -o out --spp 2,4 --seeds 3 --reference-spp 16";
   ASSERT_EQ(run(arguments).code, 0);
