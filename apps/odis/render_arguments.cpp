@@ -42,6 +42,11 @@ void MethodArguments::addTo(CLI::App& app) {
       ->check(CLI::IsMember({"nothing", "mean"}))
       ->capture_default_str()
       ->group(group);
+  app.add_option("--shadow-rays", shadowRays,
+                 "Of guided paths: all, or by roulette where the light would add little to the pixel")
+      ->check(CLI::IsMember({"all", "roulette"}))
+      ->capture_default_str()
+      ->group(group);
   app.add_option("--pilot-spp", pilotSpp,
                  "Samples per pixel of the pilot; 0.25: one in 2x2 pixels; 0: that in large images of less "
                  "than 8 samples, else 1")
@@ -113,6 +118,7 @@ void MethodArguments::apply(RenderOptions& options) const {
   options.guideBounces = guideBounces;
   options.pilotSpp = pilotSpp;
   options.lights = lights == "learned" ? LightChoiceKind::learned : LightChoiceKind::hierarchy;
+  options.shadowRays = shadowRays == "all" ? ShadowRayKind::all : ShadowRayKind::roulette;
   options.refineSpp = refineSpp;
   options.oracleSpp = oracleSpp;
   options.pilotWeight = pilotWeight;

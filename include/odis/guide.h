@@ -87,6 +87,13 @@ inline float survivalProbability(const Cell& cell, float throughput) {
   return survival < 1 ? std::max(survival, kLeast) : 1;  // 1 for what is not a number
 }
 
+// The probability with which a shadow ray should be traced for light that, if nothing hides it, adds so much to the pixel
+// (over an estimate of the pixel's value, as luminance). In (0, 1].
+inline float shadowRayProbability(float contribution) {
+  constexpr float kEnough = 0.05f, kLeast = 0.2f;
+  return contribution < kEnough ? std::max(contribution / kEnough, kLeast) : 1;  // 1 for what is not a number
+}
+
 // What is known in a cell about the choice of a light: a share of the choices draws a group of lights from a table,
 // the others choose as ever.
 struct LearnedLights {

@@ -76,7 +76,7 @@ struct IndirectRoom {
 };
 class UnbiasedTest : public test::AgainstPath<IndirectRoom> {};
 
-constexpr int kTests = 15;
+constexpr int kTests = 16;
 
 TEST_F(UnbiasedTest, Histogram) {
   expectUnbiased(guidedOptions(), 96, kTests);
@@ -130,6 +130,12 @@ TEST_F(UnbiasedTest, RouletteByThroughput) {
 TEST_F(UnbiasedTest, NothingForEndedPaths) {
   RenderOptions options = guidedOptions();
   options.guideOptions.controlVariate = false;
+  expectUnbiased(options, 96, kTests);
+}
+
+TEST_F(UnbiasedTest, EveryShadowRay) {
+  RenderOptions options = guidedOptions();
+  options.shadowRays = ShadowRayKind::all;
   expectUnbiased(options, 96, kTests);
 }
 

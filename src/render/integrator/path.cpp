@@ -193,7 +193,8 @@ void addEmission(const PathSettings& settings, Path& path, Batch& batch, int dep
 // Records the vertex, but for what only the complete path knows.
 void record(const PathSettings& settings, Path& path, Batch& batch, const SurfacePoint& at, const Vec3& wo,
             const BsdfSample& next, const Rgb& weight, float arrival, float survival,
-            const LightReference& reference, const LightEstimate& light, const Rgb& direct, int depth) {
+            const LightReference& reference, const LightEstimate& light, const Rgb& direct, float asked,
+            int depth) {
   const Bsdf& bsdf = at.shape->bsdf();
   PendingRecord& p = batch.records.emplace_back();
   p.previous = path.lastRecord;
@@ -219,7 +220,7 @@ void record(const PathSettings& settings, Path& path, Batch& batch, const Surfac
   v.light = luminance(path.throughput * light.radiance);
   if (!isBlack(direct)) {
     v.lightGroup = light.group;
-    v.lightGroupProbability = settings.lights->groupProbability(reference, light.group);
+    v.lightGroupProbability = asked * settings.lights->groupProbability(reference, light.group);
   }
   v.lightDirection = toOdis(light.wi);
   v.lightPdf = light.pdf;
@@ -305,9 +306,6 @@ bool extend(const PathSettings& settings, Path& path, uint32_t index, const Vert
     if (!isBlack(light.radiance)) {
       const float mixed = light.pdf > 0 ? guide.pdf(light.bsdf.pdf, light.bsdf.guidablePdf, light.wi) : 0;
       direct = light.radiance * (light.pdf > 0 ? powerHeuristic(light.pdf, mixed) : 1.0f);
-      ++path.counts.shadowRays;
-      batch.errands.push_back({index, path.throughput * direct});
-      batch.shadowRays.push_back(Scene::spawn(at, light.wi, light.distance));
     }
   } else {
     sampler.skip(kLightNumbers);
@@ -332,9 +330,26 @@ bool extend(const PathSettings& settings, Path& path, uint32_t index, const Vert
     weight /= survival;
   }
 
+  // A shadow ray, though not always where the light would add little to the pixel.
+  float asked = 1;
+  if (!isBlack(direct)) {
+    if (settings.shadowRoulette && cell)
+      asked = shadowRayProbability(luminance(path.throughput * direct) / path.pixelValue);
+    if (asked == 1 || sampler.get1D() < asked) {
+      direct /= asked;
+      light.radiance /= asked;
+      ++path.counts.shadowRays;
+      batch.errands.push_back({index, path.throughput * direct});
+      batch.shadowRays.push_back(Scene::spawn(at, light.wi, light.distance));
+    } else {
+      direct = light.radiance = Rgb(0, 0, 0);
+    }
+  }
+
   if (!survives) weight = Rgb(0, 0, 0);
   if (batch.recording)
-    record(settings, path, batch, at, wo, next, weight, arrival, survival, reference, light, direct, depth);
+    record(settings, path, batch, at, wo, next, weight, arrival, survival, reference, light, direct, asked,
+           depth);
   if (!survives) return false;
 
   path.throughput *= weight;

@@ -23,6 +23,7 @@ struct PathSettings {
   const Guide* guide = nullptr;           // null, and no rival: BSDF sampling only
   const DirectionGuide* rival = nullptr;  // guides in the place of `guide`
   int guideBounces = -1;                  // -1: all
+  bool shadowRoulette = false;            // of guided paths
   bool learnedRoulette = false;           // by what `guide` knows of where a path arrives
   bool learnedLights = false;             // next-event estimation chooses by what it knows
   bool features = false;                  // fill Path::first

@@ -214,6 +214,7 @@ class Renderer {
   void useGuide(PathSettings& settings) const {
     settings.guide = &m_guide;
     settings.learnedLights = m_options.lights == LightChoiceKind::learned;
+    settings.shadowRoulette = m_options.shadowRays == ShadowRayKind::roulette;
     settings.learnedRoulette = m_options.roulette == RouletteKind::learned;
   }
 

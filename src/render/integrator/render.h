@@ -20,6 +20,7 @@ enum class SamplerKind { sobol, independent };
 enum class GuideKind { histogram, oracle };
 enum class RouletteKind { throughput, learned };
 enum class LightChoiceKind { hierarchy, learned };
+enum class ShadowRayKind { all, roulette };
 
 struct RenderOptions {
   IntegratorKind integrator = IntegratorKind::odis;
@@ -39,8 +40,9 @@ struct RenderOptions {
 
   // odis only
   GuideKind guide = GuideKind::histogram;
-  RouletteKind roulette = RouletteKind::learned;      // of the guided samples
-  LightChoiceKind lights = LightChoiceKind::learned;  // likewise
+  RouletteKind roulette = RouletteKind::learned;       // of the guided samples
+  LightChoiceKind lights = LightChoiceKind::learned;   // likewise
+  ShadowRayKind shadowRays = ShadowRayKind::roulette;  // likewise
   // Guided samples per pixel that the guide learns from, too: it is rebuilt after 1, 3, 7, ... if as many are left.
   int refineSpp = 3;
   // Samples per pixel of the pilot; 0.25 is one sample per 2x2 pixels. 0: 0.25 where that is enough to learn from (the

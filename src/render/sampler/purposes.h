@@ -21,7 +21,8 @@ inline constexpr Purposes kFirstLightChoice = 1u
 inline constexpr Purposes kFirstLightPoint = 1u << 10;  // and which point or direction of it
 inline constexpr Purposes kFirstDirection =
     1u << 11 | 1u << 12;  // where the path goes on: which lobe, BSDF or map, whither
-inline constexpr Purposes kFirstSurvival = 1u << 13;  // whether it does: decided here or where it arrives
+inline constexpr Purposes kFirstSurvival =
+    1u << 13 | 1u << 14;  // whether it does: decided here or where it arrives; whether the light is asked for
 // The same at all vertices but the first.
 inline constexpr Purposes kLaterLightChoice = kFirstLightChoice << kDimensionsPerVertex;
 inline constexpr Purposes kLaterLightPoint = kFirstLightPoint << kDimensionsPerVertex;
