@@ -82,7 +82,7 @@ struct Cell {
 // next-event estimation: what the pilot saw come back from there, for what cost, decides. In (0, 1].
 //   throughput   the path's up to the vertex, over (an estimate of) its pixel's value; both as luminance
 inline float survivalProbability(const Cell& cell, float throughput) {
-  constexpr float kLeast = 0.2f;  // so that no path weighs more than five times as much for it
+  constexpr float kLeast = 0.3f;  // so that no path weighs more than three times as much for it
   const float survival = throughput * cell.worth;
   return survival < 1 ? std::max(survival, kLeast) : 1;  // 1 for what is not a number
 }
