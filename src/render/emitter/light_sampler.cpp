@@ -160,11 +160,13 @@ LightSampler::Choice LightSampler::drawFromAll(const LightReference& ref, float 
           m_infiniteGroups + m_tree.groupOf(light.light)};
 }
 
-LightSampler::Choice LightSampler::drawFromGroup(const LightReference& ref, uint32_t group, float u) const {
+LightSampler::Choice LightSampler::drawFromGroup(const LightReference& ref, uint32_t group, float u,
+                                                 float& within) const {
   if (group < m_infiniteGroups) {
     const uint32_t begin = groupBegin(group), end = groupEnd(group);
     const uint32_t index = std::clamp(findCell(m_cdf, lerp(u, m_cdf[begin], m_cdf[end])), begin, end - 1);
     const uint32_t emitter = m_infinite[index];
+    within = withinGroup(ref, *m_emitters[emitter], 0);
     return {m_emitters[emitter], 0, (1 - treeProbability(ref)) * m_probability[emitter], group};
   }
   const float probability = treeProbability(ref) * m_tree.groupProbability(ref, group - m_infiniteGroups);
@@ -172,6 +174,7 @@ LightSampler::Choice LightSampler::drawFromGroup(const LightReference& ref, uint
   const LightTree::Choice light = m_tree.sampleGroup(ref, group - m_infiniteGroups, u);
   if (light.light == LightTree::kNone) return {};
   const uint32_t emitter = m_emitterOf[light.light];
+  within = light.probability;
   return {m_emitters[emitter], light.light - m_firstLight[emitter], probability * light.probability, group};
 }
 
@@ -185,34 +188,39 @@ LightSampler::Choice LightSampler::sample(const LightReference& ref, float uChoi
       choice.group = regionAt(choice.emitter->index(), u);
     return choice;
   }
+  float within = 0;
   if (uChoice < learned.share) {
     const std::span<const float> cdf(learned.cdf, groupCount() + 1);
     uChoice = std::min(uChoice / learned.share, kOneMinusEpsilon);
     const uint32_t group = findCell(cdf, uChoice);
-    const float within = (uChoice - cdf[group]) / (cdf[group + 1] - cdf[group]);
-    choice = drawFromGroup(ref, group, std::min(within, kOneMinusEpsilon));
+    const float rest = (uChoice - cdf[group]) / (cdf[group + 1] - cdf[group]);
+    choice = drawFromGroup(ref, group, std::min(rest, kOneMinusEpsilon), within);
   } else {
     choice = drawFromAll(ref, std::min((uChoice - learned.share) / (1 - learned.share), kOneMinusEpsilon));
+    if (choice.emitter) within = withinGroup(ref, *choice.emitter, choice.part);
   }
   if (!choice.emitter) return choice;
   // A region is drawn anew, from all of its emitter's: thus u stays stratified over the emitter.
   choice.u = u;
   const uint32_t emitter = choice.emitter->index();
   if (isDivided(emitter)) choice.group = drawRegion(ref, choice.probability, emitter, choice.u);
-  choice.probability =
-      mixed(learned, choice.probability, choice.group, withinGroup(ref, *choice.emitter, choice.part));
+  choice.probability = mixed(learned, choice.probability, choice.group, within);
   return choice;
 }
 
 float LightSampler::probability(const LightReference& ref, const Emitter& emitter, uint32_t part,
                                 const Vec3& wi) const {
   const uint32_t index = emitter.index();
-  const float probability = m_probability[index] > 0
-                                ? (1 - treeProbability(ref)) * m_probability[index]
-                                : treeProbability(ref) * m_tree.probability(ref, m_firstLight[index] + part);
-  if (!(ref.learned.share > 0)) return probability;
+  const bool infinite = m_probability[index] > 0;
+  if (!(ref.learned.share > 0))
+    return infinite ? (1 - treeProbability(ref)) * m_probability[index]
+                    : treeProbability(ref) * m_tree.probability(ref, m_firstLight[index] + part);
   const uint32_t group = isDivided(index) ? regionAt(index, emitter.invert(wi)) : groupOf(emitter, part);
-  return mixed(ref.learned, probability, group, withinGroup(ref, emitter, part));
+  const float within = withinGroup(ref, emitter, part);
+  const float probability =
+      infinite ? (1 - treeProbability(ref)) * m_probability[index]
+               : treeProbability(ref) * m_tree.groupProbability(ref, group - m_infiniteGroups) * within;
+  return mixed(ref.learned, probability, group, within);
 }
 
 float LightSampler::groupProbability(const LightReference& ref, uint32_t group) const {

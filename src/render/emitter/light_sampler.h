@@ -52,7 +52,8 @@ class LightSampler {
   float treeProbability(const LightReference& ref) const;
   // Choices without what was learned, from all lights or from a group; probabilities are those of sample() then.
   Choice drawFromAll(const LightReference& ref, float u) const;
-  Choice drawFromGroup(const LightReference& ref, uint32_t group, float u) const;
+  // `within` becomes the probability within the group, as withinGroup() has it.
+  Choice drawFromGroup(const LightReference& ref, uint32_t group, float u, float& within) const;
   // Draws a region of a divided environment, whose probability without what was learned is given, and stretches u into
   // it. Says which group that is.
   uint32_t drawRegion(const LightReference& ref, float probability, uint32_t emitter, Vec2& u) const;
