@@ -193,7 +193,7 @@ void addSconce(Draft& draft, const Room& room, size_t wall, float s, float z, do
 
 void addCove(Draft& draft, const Room& room, size_t wall, double power) {
   Random& random = draft.random;
-  const float length = room.length(wall), gap = float(random.range(0.12, 0.4)),
+  const float length = room.length(wall), gap = float(random.range(0.2, 0.6)),
               depth = float(random.range(0.1, 0.3));
   const float z = room.height - gap, lip = std::min(float(random.range(0.04, 0.12)), gap * 0.6f);
   Piece ledge;

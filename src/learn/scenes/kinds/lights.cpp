@@ -88,6 +88,9 @@ void buildLights(Draft& draft) {
   const double spread = random.logRange(1.5, 300);
   const bool balls = places.size() <= 150 && random.chance(0.5);
   std::vector<MeshData> meshes{size_t(groups)};
+  // Views are of some of them, too.
+  for (size_t i = 0; i < std::min<size_t>(places.size(), 4); ++i)
+    draft.scene.interests.push_back(random.pick(std::span<const Vec3>(places)));
   for (const Vec3& at : places) {
     if (balls)
       draft.scene.balls.push_back(
