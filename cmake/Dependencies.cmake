@@ -7,6 +7,7 @@ find_package(fmt REQUIRED)
 find_package(ZLIB REQUIRED)
 find_package(JPEG REQUIRED)
 find_package(nlohmann_json REQUIRED)
+find_package(tinyobjloader REQUIRED)
 
 # Debian 12 has Embree 3, later releases have Embree 4.
 find_package(embree 4 QUIET)

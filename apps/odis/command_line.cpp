@@ -12,6 +12,7 @@
 #include "command.h"
 #include "console.h"
 #include "eval/image_file.h"
+#include "learn/scenes/generate.h"
 #include "odis_version.h"
 #include "render/scene/error.h"
 #include "suggest.h"
@@ -67,7 +68,8 @@ int runCommandLine(int argc, char** argv) {
                                       addMetricsCommand(app),
                                       addImageCommand(app),
                                       addMontageCommand(app),
-                                      addSceneCommand(app)};
+                                      addSceneCommand(app),
+                                      addScenesCommand(app)};
   try {
     app.parse(argc, argv);
     for (const Command& command : commands)
@@ -81,6 +83,10 @@ int runCommandLine(int argc, char** argv) {
     return fail(kUsageError, error.what());
   } catch (const render::OptionError& error) {
     return fail(kUsageError, error.what());
+  } catch (const learn::AssetError& error) {
+    return fail(kUsageError, error.what());
+  } catch (const learn::GenerateError& error) {
+    return fail(kWriteError, error.what());
   } catch (const render::SceneError& error) {
     return fail(kSceneError, error.what());
   } catch (const eval::ImageError& error) {

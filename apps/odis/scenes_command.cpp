@@ -1,0 +1,142 @@
+// odis scenes: generate, sheet
+#include <fmt/format.h>
+#include <unistd.h>
+#include <CLI/CLI.hpp>
+
+#include <chrono>
+#include <filesystem>
+#include <memory>
+
+#include "command.h"
+#include "console.h"
+#include "learn/scenes/generate.h"
+#include "learn/scenes/sheet.h"
+#include "output.h"
+#include "render/image/write.h"
+#include "suggest.h"
+#include "validators.h"
+
+namespace odis::app {
+
+namespace {
+
+struct Arguments {
+  uint64_t seed = 0;
+  int count = 1;
+  std::string kind, output, hdri, textures, furniture, folder;
+  learn::SheetOptions sheet;
+  float exposure = 0;
+  bool quiet = false;
+};
+
+// "[3/10, 4.2 s left] what": one line that changes if stderr is a terminal, otherwise one for each.
+class Counter {
+ public:
+  Counter(int total, bool quiet) : m_total(total), m_quiet(quiet) {}
+  void done(const std::string& what) {
+    ++m_done;
+    if (m_quiet) return;
+    const bool terminal = isatty(STDERR_FILENO) == 1;
+    const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - m_start).count();
+    const double left = seconds / m_done * (m_total - m_done);
+    const char *start = terminal ? "\r\033[K" : "", *end = terminal && m_done < m_total ? "" : "\n";
+    say(fmt::format("{}[{}/{}, {} left] {}{}", start, m_done, m_total, durationText(left), what, end));
+  }
+
+ private:
+  int m_total, m_done = 0;
+  bool m_quiet;
+  std::chrono::steady_clock::time_point m_start = std::chrono::steady_clock::now();
+};
+
+const learn::Kind* kindNamed(const std::string& name) {
+  if (name.empty()) return nullptr;
+  if (const learn::Kind* kind = learn::findKind(name)) return kind;
+  std::vector<std::string> names;
+  std::string list;
+  for (const learn::Kind& kind : learn::kinds()) {
+    names.emplace_back(kind.name);
+    list += (list.empty() ? "" : ", ") + std::string(kind.name);
+  }
+  const std::string meant = nearest(name, names);
+  throw UsageError(fmt::format("--kind: found \"{}\", expected one of {}{}", name, list,
+                               meant.empty() ? "" : "\nDid you mean " + meant + "?"));
+}
+
+int generate(const Arguments& a) {
+  const learn::Kind* only = kindNamed(a.kind);
+  const learn::Assets assets(a.hdri, a.textures, a.furniture);
+  std::error_code error;
+  std::filesystem::create_directories(a.output, error);
+  if (error) throw WriteError(fmt::format("cannot make the folder \"{}\": {}", a.output, error.message()));
+  const InterruptScope interruptible;
+  Counter counter(a.count, a.quiet);
+  for (int i = 0; i < a.count && !InterruptScope::interrupted(); ++i) {
+    const uint64_t seed = a.seed + uint64_t(i);
+    const learn::Kind& kind = only ? *only : learn::kindOf(seed);
+    const bool made = learn::generateScene(seed, kind, assets, a.output);
+    counter.done(learn::sceneName(seed, kind) + (made ? "" : ": is there already"));
+  }
+  return InterruptScope::exitCode();
+}
+
+int sheet(const Arguments& a) {
+  checkWritable(a.output, {".png"});
+  const std::vector<std::string> names = learn::scenesIn(a.folder);
+  if (names.empty())
+    throw UsageError(
+        fmt::format("the folder \"{}\" holds no scenes, expected folders with a scene.xml", a.folder));
+  const InterruptScope interruptible;
+  ConsoleProgress progress(true);
+  Counter counter(int(names.size()), a.quiet);
+  learn::SheetPainter painter(a.sheet, names.size());
+  for (const std::string& name : names) {
+    if (!painter.add(a.folder, name, progress)) break;
+    counter.done(name);
+  }
+  const learn::Sheet& sheet = painter.sheet();
+  render::writePng(a.output, sheet.width, sheet.height, sheet.pixels.data(), a.exposure);
+  return InterruptScope::exitCode();
+}
+
+}  // namespace
+
+Command addScenesCommand(CLI::App& parent) {
+  CLI::App* app = parent.add_subcommand("scenes", "Make scenes to learn from, and look at them");
+  app->require_subcommand(1);
+  const auto a = std::make_shared<Arguments>();
+
+  CLI::App* sub =
+      app->add_subcommand("generate", "Make scenes: Mitsuba files, a folder each, two views each");
+  std::string list = "Kinds:";
+  for (const learn::Kind& kind : learn::kinds()) list += fmt::format("\n  {:<12} {}", kind.name, kind.what);
+  sub->footer(list);
+  sub->add_option("--seed", a->seed, "Of the first scene; the others have the next numbers")
+      ->capture_default_str();
+  sub->add_option("--count", a->count, "How many")->check(CLI::Range(1, 100'000'000))->capture_default_str();
+  sub->add_option("-o,--output", a->output, "Folder to make them in; what is there already is left alone")
+      ->required();
+  sub->add_option("--kind", a->kind, "All of this kind; default: of all kinds");
+  sub->add_option("--hdri", a->hdri, "Folder of environment maps (HDR, EXR); default: drawn skies");
+  sub->add_option("--textures", a->textures, "Folder of textures (PNG, JPEG) for walls, floors, ...");
+  sub->add_option("--furniture", a->furniture, "Folder of OBJ models, as scripts/furniture makes it");
+  sub->add_flag("-q,--quiet", a->quiet, "Print errors only");
+
+  sub = app->add_subcommand("sheet", "Render all scenes of a folder small, into one PNG with their names");
+  sub->add_option("FOLDER", a->folder, "Folder of scenes")->required();
+  sub->add_option("-o,--output", a->output, "PNG to write")->required();
+  sub->add_option("--spp", a->sheet.spp, "Samples per pixel")
+      ->check(CLI::Range(1, 65536))
+      ->capture_default_str();
+  sub->add_option("--width", a->sheet.width, "Of a picture, in pixels")
+      ->check(CLI::Range(16, 2048))
+      ->capture_default_str();
+  sub->add_option("--columns", a->sheet.columns, "Pictures in a row")
+      ->check(CLI::Range(1, 100))
+      ->capture_default_str();
+  sub->add_option("--exposure", a->exposure, "In stops")->check(stops())->capture_default_str();
+  sub->add_flag("-q,--quiet", a->quiet, "Print errors only");
+  return {app, [a, app] { return app->got_subcommand("generate") ? generate(*a) : sheet(*a); }};
+}
+
+}  // namespace odis::app

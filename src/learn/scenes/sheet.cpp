@@ -1,0 +1,92 @@
+#include "learn/scenes/sheet.h"
+
+#if defined(__GNUC__)
+#pragma GCC diagnostic push
+#pragma GCC diagnostic ignored "-Wunused-function"
+#endif
+#include <stb_easy_font.h>
+#if defined(__GNUC__)
+#pragma GCC diagnostic pop
+#endif
+
+#include <algorithm>
+#include <filesystem>
+
+#include "render/scene/scene.h"
+
+namespace odis::learn {
+
+using render::Rgb;
+
+namespace {
+
+constexpr int kGap = 4, kTextHeight = 12;
+const Rgb kBackground(0.02f), kInk(0.7f);
+
+}  // namespace
+
+std::vector<std::string> scenesIn(const std::string& folder) {
+  std::vector<std::string> names;
+  for (const auto& entry : std::filesystem::directory_iterator(folder))
+    if (std::filesystem::exists(entry.path() / "scene.xml") &&
+        entry.path().filename().string().find(".part-") == std::string::npos)
+      names.push_back(entry.path().filename().string());
+  std::sort(names.begin(), names.end());
+  return names;
+}
+
+SheetPainter::SheetPainter(const SheetOptions& options, size_t count) : m_options(options) {
+  const int columns = int(std::min(count, size_t(options.columns))),
+            rows = int((count + size_t(columns) - 1) / size_t(columns));
+  m_cellHeight = options.width * 3 / 4 + kTextHeight + kGap;
+  m_sheet.width = columns * (options.width + kGap) + kGap;
+  m_sheet.height = rows * m_cellHeight + kGap;
+  m_sheet.pixels.assign(size_t(m_sheet.width) * size_t(m_sheet.height), kBackground);
+}
+
+bool SheetPainter::add(const std::string& folder, const std::string& name, render::Progress& progress) {
+  const std::string path = folder + "/" + name + "/scene.xml";
+  render::Warnings warnings;
+  const render::FilmSettings film = render::Scene::load(path, {}, warnings)->film();
+  const int height = std::min(m_options.width * film.height / film.width, m_options.width * 3 / 4);
+  render::LoadOptions load;
+  load.resolution = render::Vec2i(std::max(1, height * film.width / film.height), height);
+  const auto scene = render::Scene::load(path, load, warnings);
+  render::RenderOptions options;
+  options.integrator = render::IntegratorKind::path;
+  options.spp = m_options.spp;
+  options.maxDepth = scene->integrator().maxDepth;
+  options.rrDepth = scene->integrator().rrDepth;
+  const render::RenderResult result = render::render(*scene, options, progress);
+  if (result.stats.interrupted) return false;
+
+  const int column = int(m_next % size_t(m_options.columns)), row = int(m_next / size_t(m_options.columns));
+  const int left = kGap + column * (m_options.width + kGap) + (m_options.width - result.frame.width) / 2;
+  const int top = kGap + row * m_cellHeight;
+  for (int y = 0; y < result.frame.height; ++y)
+    std::copy_n(result.frame.color.begin() + std::ptrdiff_t(y) * result.frame.width, result.frame.width,
+                m_sheet.pixels.begin() + (std::ptrdiff_t(top) + y) * m_sheet.width + left);
+  drawText(kGap + column * (m_options.width + kGap), top + m_options.width * 3 / 4 + 2, m_options.width,
+           name);
+  ++m_next;
+  return true;
+}
+
+void SheetPainter::drawText(int x, int y, int width, const std::string& text) {
+  struct Corner {
+    float x, y, z;
+    uint8_t color[4];
+  };
+  std::vector<Corner> corners(4 * 400);
+  std::string shown = text;
+  const int quads = stb_easy_font_print(float(x), float(y), shown.data(), nullptr, corners.data(),
+                                        int(corners.size() * sizeof(Corner)));
+  for (int q = 0; q < quads; ++q) {
+    const Corner &from = corners[size_t(4 * q)], &to = corners[size_t(4 * q + 2)];
+    for (int py = int(from.y); py < int(to.y); ++py)
+      for (int px = int(from.x); px < std::min(int(to.x), x + width); ++px)
+        if (py < m_sheet.height) m_sheet.pixels[size_t(py) * size_t(m_sheet.width) + size_t(px)] = kInk;
+  }
+}
+
+}  // namespace odis::learn
