@@ -7,6 +7,7 @@
 #include <fstream>
 #include <map>
 #include <nlohmann/json.hpp>
+#include <pugixml.hpp>
 
 #include "learn/scenes/furniture.h"
 #include "learn/scenes/generate.h"
@@ -84,6 +85,27 @@ TEST(GenerateScene, EveryKindLoadsWithoutWarningsAndShowsSomething) {
       }
       fs::remove_all(moved);
     }
+}
+
+// Mitsuba samples a mesh's light by the cosine of its interpolated normals, others by that of its triangles.
+TEST(GenerateScene, MeshesThatEmitHaveTheNormalsOfTheirTriangles) {
+  const TemporaryFolder folder;
+  size_t emitting = 0;
+  for (const Kind& kind : kinds()) {
+    ASSERT_TRUE(generateScene(1, kind, Assets(), folder.path("")));
+    const fs::path file = fs::path(folder.path("")) / sceneName(1, kind) / "content.xml";
+    pugi::xml_document content;
+    ASSERT_TRUE(content.load_file(file.c_str())) << file;
+    for (const pugi::xml_node shape : content.child("scene").children("shape")) {
+      if (std::string(shape.attribute("type").value()) != "ply") continue;
+      const bool flat =
+          shape.find_child_by_attribute("boolean", "name", "face_normals").attribute("value").as_bool();
+      EXPECT_EQ(flat, bool(shape.child("emitter")))
+          << file << ": " << shape.child("string").attribute("value").value();
+      emitting += bool(shape.child("emitter"));
+    }
+  }
+  EXPECT_GT(emitting, 20u);
 }
 
 TEST(GenerateScene, SkipsWhatIsThereAndLeavesNoParts) {

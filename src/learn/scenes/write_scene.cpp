@@ -79,6 +79,8 @@ class Writer {
     const std::string name = fmt::format("meshes/{:03}.ply", m_meshes++);
     write(name, encodePly(mesh));
     m_xml += fmt::format("  <shape type=\"ply\">\n    <string name=\"filename\" value=\"{}\"/>\n", name);
+    // Renderers differ in what an interpolated normal does to emitted light: docs/agreement.md.
+    if (!render::isBlack(radiance)) m_xml += "    <boolean name=\"face_normals\" value=\"true\"/>\n";
     finishShape(material, radiance);
   }
   void writeBall(const Ball& ball) {
