@@ -44,6 +44,21 @@ void expectSound(const MeshData& mesh, const std::string& what) {
   EXPECT_EQ(wrong, 0u) << what;
 }
 
+// The least distance between a point and a mesh, sampled on each triangle.
+float distanceTo(const MeshData& mesh, const Vec3& p) {
+  constexpr int kSteps = 12;
+  float least = 1e9f;
+  for (const render::Triangle& t : mesh.triangles)
+    for (int i = 0; i <= kSteps; ++i)
+      for (int j = 0; i + j <= kSteps; ++j) {
+        const Vec3 q = mesh.positions[t[0]] +
+                       (mesh.positions[t[1]] - mesh.positions[t[0]]) * (float(i) / kSteps) +
+                       (mesh.positions[t[2]] - mesh.positions[t[0]]) * (float(j) / kSteps);
+        least = std::min(least, render::length(q - p));
+      }
+  return least;
+}
+
 TEST(Solids, NormalsAgreeWithTheWinding) {
   MeshData mesh;
   addBox(mesh, {0, 0, 0}, {1, 2, 3});
@@ -215,6 +230,20 @@ TEST(Random, StreamsAreIndependentOfEachOther) {
     product += (x - 0.5) * (b.unit() - 0.5);
   }
   EXPECT_LT(std::abs(product / kDraws), 4.0 / 12 / std::sqrt(double(kDraws)));
+}
+
+TEST(Lamps, BulbsAndTheirGlassTouchNothing) {
+  const Assets none;
+  for (uint64_t key = 0; key < 60; ++key) {
+    Draft draft("lamps", key, none);
+    for (const Piece& lamp :
+         {makeTableLamp(draft, 10), makeFloorLamp(draft, 10), makePendant(draft, 0.5f, 10)})
+      for (const Ball& ball : lamp.balls) {
+        const float room = ball.material == kNoMaterial ? ball.radius + 0.001f : ball.radius * 0.999f;
+        for (const Part& part : lamp.parts)
+          EXPECT_GT(distanceTo(part.mesh, ball.center), room) << "seed " << key;
+      }
+  }
 }
 
 }  // namespace

@@ -22,13 +22,14 @@ Rgb radianceOf(Random& random, double power, double area) {
   return lightColor(random) * float(power / (M_PI * area));
 }
 
-void addBulb(Draft& draft, Piece& piece, const Vec3& at, double power) {
+void addBulb(Draft& draft, Piece& piece, const Vec3& at, double power, float room) {
   Random& random = draft.random;
-  const auto radius = float(random.logRange(0.02, 0.08));
+  constexpr float kGlass = 2;  // at most so many times as wide as the bulb
+  const float radius = std::min(float(random.logRange(0.02, 0.08)), 0.95f * room / kGlass);
   piece.balls.push_back({at, radius, kNoMaterial, radianceOf(random, power, 4 * M_PI * radius * radius)});
   if (!random.chance(0.08)) return;
   draft.tag("bulb in glass");
-  piece.balls.push_back({at, radius * float(random.range(1.3, 2)), draft.materials.glass(), Rgb(0.0f)});
+  piece.balls.push_back({at, radius * float(random.range(1.3, kGlass)), draft.materials.glass(), Rgb(0.0f)});
 }
 
 static MaterialId shadeMaterial(Draft& draft) {
@@ -51,7 +52,7 @@ Piece makeTableLamp(Draft& draft, double power) {
   addShade(shade, {0, 0, height - 0.02f}, radius, radius * float(random.range(0.5, 1)),
            radius * float(random.range(0.9, 1.6)), 0.003f, 32);
   piece.add(std::move(shade), shadeMaterial(draft));
-  addBulb(draft, piece, {0, 0, height + radius * 0.4f + 0.03f}, power);
+  addBulb(draft, piece, {0, 0, height + radius * 0.4f + 0.03f}, power, radius * 0.48f);
   piece.size = {2 * radius, 2 * radius, height + 1.5f * radius};
   return piece;
 }
@@ -79,7 +80,7 @@ Piece makeFloorLamp(Draft& draft, double power) {
              radius * float(random.range(0.9, 1.5)), 0.003f, 32);
   }
   piece.add(std::move(shade), bowl ? draft.materials.lacquer() : shadeMaterial(draft));
-  addBulb(draft, piece, {0, 0, height + (bowl ? 0.07f : 0.09f)}, power);
+  addBulb(draft, piece, {0, 0, height + (bowl ? 0.07f : 0.09f)}, power, bowl ? 0.03f : radius * 0.48f);
   piece.size = {2 * radius, 2 * radius, height + 0.3f};
   return piece;
 }
@@ -115,10 +116,11 @@ Piece makePendant(Draft& draft, float drop, double power) {
     default:  // a glass globe, or the bulb alone
       if (random.chance(0.4)) {
         draft.tag("bulb in glass");
-        piece.balls.push_back({bulb, radius * 0.6f, draft.materials.glass(), Rgb(0.0f)});
+        piece.balls.push_back(
+            {bulb, std::min(radius * 0.6f, radius * 0.4f + 0.045f), draft.materials.glass(), Rgb(0.0f)});
       }
   }
-  addBulb(draft, piece, bulb, power);
+  addBulb(draft, piece, bulb, power, radius * 0.4f);
   piece.size = {2 * radius, 2 * radius, drop + 2 * radius};
   return piece;
 }

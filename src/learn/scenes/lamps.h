@@ -10,8 +10,9 @@ Rgb lightColor(Random& random);
 // What a surface of so many square metres radiates at this power (W, of luminance): power / (pi area).
 Rgb radianceOf(Random& random, double power, double area);
 
-// Light bulbs are balls, bare or in a globe of glass.
-void addBulb(Draft& draft, Piece& piece, const Vec3& at, double power);
+// Light bulbs are balls, bare or in a globe of glass, of which nothing is further than `room` from the centre: a bulb that
+// touches its shade is lit differently by every renderer, as shadow rays end a little before the light.
+void addBulb(Draft& draft, Piece& piece, const Vec3& at, double power, float room);
 
 Piece makeTableLamp(Draft& draft, double power);
 Piece makeFloorLamp(Draft& draft, double power);  // with a shade, or a bowl that lights the ceiling
