@@ -67,6 +67,13 @@ bool Room::claim(const Vec3& center, const Vec2& half, float margin) {
   return true;
 }
 
+void Room::giveAway(size_t wall, float depth, float inset) {
+  const Vec2 u = along(wall);
+  const float s = length(wall) / 2 - 0.02f, d = depth / 2 - inset;
+  claim(at(wall, length(wall) / 2, depth / 2, 0), std::abs(u.x) > std::abs(u.y) ? Vec2(s, d) : Vec2(d, s), 0);
+  openings.push_back({wall, 0, length(wall), 0, height});
+}
+
 Room boxRoom(const Vec2& corner, float width, float depth, float height) {
   Room room;
   room.corners = {corner, corner + Vec2(width, 0), corner + Vec2(width, depth), corner + Vec2(0, depth)};

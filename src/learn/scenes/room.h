@@ -41,6 +41,9 @@ struct Room {
 
   // Takes a rectangle of the floor for something; false if a part of it is taken or outside.
   bool claim(const Vec3& center, const Vec2& half, float margin);
+  // Gives a wall away that something of this depth stands before, all along: takes the floor below it, less `inset`, and
+  // leaves no place for openings.
+  void giveAway(size_t wall, float depth, float inset);
 
  private:
   struct Rectangle {

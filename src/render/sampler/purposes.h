@@ -14,15 +14,15 @@ inline constexpr uint32_t kDimensionsPerVertex = 8;
 // theirs.
 using Purposes = uint32_t;
 
-inline constexpr Purposes kPixelAndLens =
-    1u << 1 | 1u << 2;  // where in the pixel and through which point of the lens
-inline constexpr Purposes kFirstLightChoice = 1u
-                                              << 9;  // next-event estimation at the first vertex: which light
-inline constexpr Purposes kFirstLightPoint = 1u << 10;  // and which point or direction of it
-inline constexpr Purposes kFirstDirection =
-    1u << 11 | 1u << 12;  // where the path goes on: which lobe, BSDF or map, whither
-inline constexpr Purposes kFirstSurvival =
-    1u << 13 | 1u << 14;  // whether it does: decided here or where it arrives; whether the light is asked for
+// Where in the pixel, and through which point of the lens.
+inline constexpr Purposes kPixelAndLens = 1u << 1 | 1u << 2;
+// Next-event estimation at the first vertex: which light, and which point or direction of it.
+inline constexpr Purposes kFirstLightChoice = 1u << 9;
+inline constexpr Purposes kFirstLightPoint = 1u << 10;
+// Where the path goes on: which lobe, BSDF or map, whither.
+inline constexpr Purposes kFirstDirection = 1u << 11 | 1u << 12;
+// Whether it does, decided here or where it arrives; whether the light is asked for.
+inline constexpr Purposes kFirstSurvival = 1u << 13 | 1u << 14;
 // The same at all vertices but the first.
 inline constexpr Purposes kLaterLightChoice = kFirstLightChoice << kDimensionsPerVertex;
 inline constexpr Purposes kLaterLightPoint = kFirstLightPoint << kDimensionsPerVertex;

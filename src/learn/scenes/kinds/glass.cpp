@@ -119,10 +119,7 @@ void addGlassWall(Draft& draft, Room& room, size_t wall) {
   if (bottom > 0.02f)
     frame.addBox({0.001f, depth - 0.03f, 0}, {length - 0.001f, depth + 0.08f, bottom}, material);
   draft.add(frame, room.at(wall, 0, 0, 0), room.angle(wall));
-  const Vec3 middle = room.at(wall, length / 2, depth / 2, 0);
-  const bool alongX = std::abs(u.x) > std::abs(u.y);
-  room.claim(middle, alongX ? Vec2(length / 2 - 0.02f, depth / 2) : Vec2(depth / 2, length / 2 - 0.02f), 0);
-  room.openings.push_back({wall, 0, length, 0, room.height});
+  room.giveAway(wall, depth, 0);
 }
 
 }  // namespace

@@ -102,12 +102,7 @@ void addNiches(Draft& draft, Room& room, double power) {
                  draft.materials.anything());
     draft.scene.interests.push_back(at + Vec3(0, 0, 0.2f));
   }
-  const Vec3 middle = room.at(wall, length / 2, depth / 2, 0);
-  const bool alongX = std::abs(u.x) > std::abs(u.y);
-  room.claim(
-      middle,
-      alongX ? Vec2(length / 2 - 0.02f, depth / 2 - 0.01f) : Vec2(depth / 2 - 0.01f, length / 2 - 0.02f), 0);
-  room.openings.push_back({wall, 0, length, 0, room.height});
+  room.giveAway(wall, depth, 0.01f);
 }
 
 }  // namespace
