@@ -15,6 +15,14 @@ if(NOT embree_FOUND)
   find_package(embree 3 REQUIRED)
 endif()
 
+# Whether it comes with a file for CMake, and with which targets, depends on the release.
+find_path(ZSTD_INCLUDE_DIR zstd.h REQUIRED)
+find_library(ZSTD_LIBRARY zstd REQUIRED)
+mark_as_advanced(ZSTD_INCLUDE_DIR ZSTD_LIBRARY)
+add_library(zstd INTERFACE)
+target_include_directories(zstd SYSTEM INTERFACE ${ZSTD_INCLUDE_DIR})
+target_link_libraries(zstd INTERFACE ${ZSTD_LIBRARY})
+
 # Optional, packaged by neither: docs/rivals.md.
 find_package(openpgl 0.6 QUIET)
 

@@ -21,7 +21,7 @@ struct Arguments {
   std::string output;
   eval::AnalyzeSettings settings;
   SceneArguments part;
-  int threads = 0;
+  int pixels = 14400, threads = 0;
   bool json = false, quiet = false;
 };
 
@@ -31,7 +31,7 @@ static int run(Arguments& a) {
   eval::AnalyzeSettings& settings = a.settings;
   settings.methods = parseMethods(a.methods, a.threads);
   settings.load = a.part.loadOptions();
-  if (settings.load.resolution || settings.load.crop) settings.pixels = 0;
+  if (!settings.load.crop) settings.load.pixels = a.pixels;
   if (!a.output.empty()) checkWritable(a.output, {".json"});
 
   const InterruptScope interruptible;
@@ -84,7 +84,7 @@ Command addAnalyzeCommand(CLI::App& parent) {
                   "Samples per pixel of what variances are relative to")
       ->check(positive)
       ->capture_default_str();
-  app->add_option("--pixels", settings.pixels,
+  app->add_option("--pixels", a->pixels,
                   "Make the images about so many pixels large, if --resolution and --crop say nothing")
       ->check(CLI::Range(1, 1 << 24))
       ->capture_default_str();

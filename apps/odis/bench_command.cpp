@@ -10,7 +10,6 @@
 #include "console.h"
 #include "eval/benchmark.h"
 #include "eval/compare.h"
-#include "eval/load_scene.h"
 
 namespace odis::app {
 
@@ -68,12 +67,11 @@ static int run(Arguments& a) {
     Row row{eval::sceneName(path), 0, {}};
     progress.setTitle(row.scene);
     render::Warnings warnings;
-    // The time of one loading: the size of the image, which may make it two, has no part in it.
     const auto start = std::chrono::steady_clock::now();
-    std::unique_ptr<render::Scene> scene = render::Scene::load(path, {}, warnings);
+    render::LoadOptions load;
+    load.pixels = a.pixels;
+    const std::unique_ptr<render::Scene> scene = render::Scene::load(path, load, warnings);
     row.secondsLoad = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-    scene.reset();
-    scene = eval::loadScene(path, {}, a.pixels, warnings);
     row.result = eval::benchmark(*scene, a.settings, progress);
     if (InterruptScope::interrupted()) return kInterrupted;
     if (a.json)

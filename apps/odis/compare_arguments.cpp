@@ -29,7 +29,7 @@ void CompareArguments::addTo(CLI::App& app) {
       ->check(positive)
       ->capture_default_str();
   app.add_option("--reference", settings.reference, "EXR file to use as the reference");
-  app.add_option("--pixels", settings.pixels, "Make the images about so many pixels large")->check(positive);
+  app.add_option("--pixels", pixels, "Make the images about so many pixels large")->check(positive);
   app.add_option("--max-depth", settings.maxDepth, "In place of the scenes'")->check(CLI::Range(-1, 1 << 20));
   app.add_option("--rr-depth", settings.rrDepth, "In place of the scenes'")->check(CLI::Range(1, 1 << 20));
   app.add_option("-o,--output", settings.folder, "Folder for report, results, references and images")
@@ -48,7 +48,8 @@ void CompareArguments::apply() {
   settings.load = part.loadOptions();
   if (settings.equalTime && settings.methods.size() < 2)
     throw UsageError("--equal-time is about a second method: there is only one");
-  if (settings.pixels > 0 && (settings.load.resolution || settings.load.crop))
+  settings.load.pixels = pixels;
+  if (pixels > 0 && (settings.load.resolution || settings.load.crop))
     throw UsageError("--pixels sets the size: it can't go with --resolution or --crop");
   if (!settings.reference.empty() && settings.scenes.size() > 1)
     throw UsageError("--reference is the image of one scene: it can't go with several");

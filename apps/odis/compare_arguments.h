@@ -14,7 +14,7 @@ struct CompareArguments {
   std::vector<std::string> methods{"path=--integrator path", "odis=--integrator odis"};
   std::string spp = "4";
   SceneArguments part;
-  int threads = 0;
+  int pixels = 0, threads = 0;
   bool images = false;  // PNGs too
   float exposure = 0;   // of these, in stops
   bool quiet = false;

@@ -1,7 +1,5 @@
 #include "eval/analyze.h"
 
-#include "eval/load_scene.h"
-
 namespace odis::eval {
 
 using namespace render;
@@ -10,7 +8,7 @@ static constexpr uint64_t kReferenceSeed = 0x7265666572656eull;
 
 SceneAnalysis analyzeScene(const AnalyzeSettings& settings, const std::string& path, Warnings& warnings,
                            Progress& progress) {
-  const std::unique_ptr<Scene> scene = loadScene(path, settings.load, settings.pixels, warnings);
+  const std::unique_ptr<Scene> scene = Scene::load(path, settings.load, warnings);
   const auto withDepths = [&](RenderOptions options) {
     options.maxDepth = settings.maxDepth.value_or(scene->integrator().maxDepth);
     options.rrDepth = settings.rrDepth.value_or(scene->integrator().rrDepth);

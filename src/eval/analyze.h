@@ -18,7 +18,6 @@ struct AnalyzeSettings {
   std::optional<int> maxDepth, rrDepth;  // replace the scene's
   uint64_t seed = 0;
   render::LoadOptions load;
-  int pixels = 14400;  // size of the images at the scene's aspect ratio; 0: as the scene or `load` has it
 };
 
 struct SceneAnalysis {

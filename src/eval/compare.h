@@ -29,7 +29,6 @@ struct CompareSettings {
   std::string reference;                 // an EXR file to use instead, "" for none; for one scene
   std::optional<int> maxDepth, rrDepth;  // replace the scene's
   render::LoadOptions load;
-  int pixels = 0;      // size of the images at the scene's aspect ratio; 0: as the scene or `load` has it
   bool fresh = false;  // forget earlier results
   std::string folder;  // where results, references and images go
 };

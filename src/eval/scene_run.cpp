@@ -5,7 +5,6 @@
 #include <ctime>
 #include <filesystem>
 
-#include "eval/load_scene.h"
 #include "eval/scene_hash.h"
 #include "odis_version.h"
 
@@ -21,7 +20,7 @@ SceneRun::SceneRun(const CompareSettings& settings, const std::string& path, Res
   m_record.file = path;
   observer.start(m_record.name, schedule.outlook());
   Warnings warnings;
-  m_scene = loadScene(path, settings.load, settings.pixels, warnings);
+  m_scene = Scene::load(path, settings.load, warnings);
   observer.warnings(warnings);
   m_record.hash = hashScene(path, settings.load.defines);
   m_record.width = m_scene->film().crop.width;

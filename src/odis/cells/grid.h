@@ -14,6 +14,8 @@ class CellGrid {
  public:
   CellGrid() = default;
   CellGrid(const Float3& origin, float finestEdge) : m_origin(origin), m_inverseEdge(1 / finestEdge) {}
+  Float3 origin() const { return m_origin; }
+  float finestEdge() const { return 1 / m_inverseEdge; }
 
   uint64_t key(const Float3& position, const Float3& normal, int level) const {
     const Float3 local = (position - m_origin) * m_inverseEdge;

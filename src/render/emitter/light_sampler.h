@@ -8,6 +8,14 @@
 
 namespace odis::render {
 
+// What a group of lights is.
+struct LightGroup {
+  bool infinite = false;    // emitters infinitely far away, or a region of one
+  uint32_t lights = 0;      // how many parts of emitters; of a region 1
+  LightBounds bounds;       // of the lights; of infinite ones nothing but a cone of directions towards them: axis, thetaO
+  float irradiance = 0;     // that infinite ones give on average over all ways to face, W/m^2
+};
+
 // Chooses among the parts of all emitters that are somewhere by a tree, and among those infinitely far away
 // by their mean irradiance. Between the two the irradiance decides that the tree may give the reference. A
 // tenth of both choices is spread evenly, so that none is starved by a bad estimate.
@@ -41,6 +49,13 @@ class LightSampler {
   const std::vector<LightParts>& dividedLights() const { return m_dividedLights; }
   // The probability with which sample() chooses a light of the group.
   float groupProbability(const LightReference& ref, uint32_t group) const;
+
+  // Chooses a light of the group, whatever was learned. The probability is that within the group: together with the
+  // density that the emitter states for its choice.u, all directions to the group's light integrate to one. No emitter if
+  // the group gives the reference nothing.
+  Choice sampleGroup(const LightReference& ref, uint32_t group, float uChoice, const Vec2& u) const;
+  // What the group is: for those who learn what to expect of it.
+  LightGroup describe(uint32_t group) const;
 
   uint64_t bytes() const;
 

@@ -1,5 +1,7 @@
 #include "render/scene/load_film.h"
 
+#include <cmath>
+
 #include "render/image/limits.h"
 #include "render/scene/names.h"
 
@@ -81,8 +83,14 @@ FilmSettings loadFilm(const Properties* node, const LoadOptions& options, Warnin
   result.width = dimension(film, "width", 768);
   result.height = dimension(film, "height", 576);
   result.filter = loadFilter(film.child("rfilter"), warnings);
-  if (options.resolution) {
-    const Vec2i size = *options.resolution;
+  std::optional<Vec2i> resolution = options.resolution;
+  if (!resolution && options.pixels > 0) {
+    const double aspect = double(result.width) / result.height;
+    resolution = Vec2i(std::max(1, int(std::lround(std::sqrt(options.pixels * aspect)))),
+                       std::max(1, int(std::lround(std::sqrt(options.pixels / aspect)))));
+  }
+  if (resolution) {
+    const Vec2i size = *resolution;
     if (size.x < 1 || size.y < 1 || size.x > kMaxSize || size.y > kMaxSize)
       throw OptionError("found the resolution " + std::to_string(size.x) + "x" + std::to_string(size.y) +
                         ", expected 1 to " + std::to_string(kMaxSize) + " pixels a side");
@@ -95,7 +103,7 @@ FilmSettings loadFilm(const Properties* node, const LoadOptions& options, Warnin
     const std::string fault = cropFault(result, crop.x, crop.y, crop.width, crop.height);
     if (!fault.empty()) throw OptionError(fault);
     result.crop = crop;
-  } else if (!options.resolution) {
+  } else if (!resolution) {
     const int64_t x = film.integer("crop_offset_x", 0), y = film.integer("crop_offset_y", 0);
     const int64_t width = film.integer("crop_width", result.width),
                   height = film.integer("crop_height", result.height);
@@ -104,7 +112,7 @@ FilmSettings loadFilm(const Properties* node, const LoadOptions& options, Warnin
     result.crop = {int(x), int(y), int(width), int(height)};
   }
   if (tooLarge(result.crop)) {
-    if (options.crop || options.resolution) throw OptionError(sizeFault(result.crop));
+    if (options.crop || resolution) throw OptionError(sizeFault(result.crop));
     throw SceneError(film.location, sizeFault(result.crop));
   }
   return result;

@@ -1,0 +1,218 @@
+#include "learn/data/make_shard.h"
+
+#include <fmt/format.h>
+#include <signal.h>
+#include <unistd.h>
+
+#include <filesystem>
+#include <fstream>
+
+#include "learn/scenes/generate.h"
+#include "learn/scenes/random.h"
+#include "odis_version.h"
+#include "render/image/replace_file.h"
+
+namespace odis::learn {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+constexpr const char* kViewFiles[] = {"scene.xml", "scene-b.xml"};
+constexpr double kValidationShare = 0.1;
+
+// A folder for what is generated only to be looked at, gone at the end.
+class ScratchFolder {
+ public:
+  ScratchFolder() {
+    std::string pattern = (fs::temp_directory_path() / "odis-scenes-XXXXXX").string();
+    if (!mkdtemp(pattern.data()))
+      throw render::WriteError(fmt::format("cannot make the folder \"{}\": {}", pattern, std::strerror(errno)));
+    m_path = pattern;
+  }
+  ~ScratchFolder() {
+    std::error_code ignored;
+    fs::remove_all(m_path, ignored);
+  }
+  ScratchFolder(const ScratchFolder&) = delete;
+  const std::string& path() const { return m_path; }
+
+ private:
+  std::string m_path;
+};
+
+nlohmann::ordered_json toJson(const Vec3& v) {
+  return {v.x, v.y, v.z};
+}
+
+nlohmann::ordered_json groupsJson(const render::LightSampler& lights) {
+  nlohmann::ordered_json result = nlohmann::ordered_json::array();
+  for (uint32_t group = 0; group < lights.groupCount(); ++group) {
+    const render::LightGroup g = lights.describe(group);
+    if (g.infinite)
+      result.push_back({{"infinite", true},
+                        {"lights", g.lights},
+                        {"axis", toJson(g.bounds.axis)},
+                        {"thetaO", g.bounds.thetaO},
+                        {"irradiance", g.irradiance}});
+    else
+      result.push_back({{"infinite", false},
+                        {"lights", g.lights},
+                        {"min", toJson(g.bounds.min)},
+                        {"max", toJson(g.bounds.max)},
+                        {"axis", toJson(g.bounds.axis)},
+                        {"thetaO", g.bounds.thetaO},
+                        {"thetaE", g.bounds.thetaE},
+                        {"phi", g.bounds.phi}});
+  }
+  return result;
+}
+
+// Adds a view's arrays, and returns what else there is to say of it.
+nlohmann::ordered_json addView(ShardWriter& writer, const std::string& file, size_t view, uint64_t seed,
+                               const DataSettings& settings) {
+  render::Warnings warnings;
+  render::LoadOptions load;
+  load.pixels = settings.pixels;
+  const auto scene = render::Scene::load(file, load, warnings);
+  const render::LightSampler lights(scene->emitters());
+  Random random = Random(seed).fork(fmt::format("data of view {}", view));
+  std::vector<Pilot> pilots;
+  for (int i = 0; i < settings.pilots; ++i) pilots.push_back(tracePilot(*scene, lights, random.bits()));
+  const ViewFrame frame = frameOf(pilots);
+  const std::vector<Target> targets =
+      traceTargets(*scene, lights, pilots, frame, settings.targets, random.bits());
+  for (size_t i = 0; i < pilots.size(); ++i) addColumns(writer, pilotPrefix(view, i), pilots[i], frame);
+  addColumns(writer, targetPrefix(view), targets, lights.groupCount(), frame);
+
+  nlohmann::ordered_json parts = nlohmann::ordered_json::array();
+  for (const LightParts& part : lights.dividedLights()) parts.push_back({part.first, part.count});
+  return {{"file", fs::path(file).filename().string()},
+          {"width", scene->film().crop.width},
+          {"height", scene->film().crop.height},
+          {"origin", {frame.origin.x, frame.origin.y, frame.origin.z}},
+          {"edge", frame.edge},
+          {"unit", frame.unit},
+          {"pilots", pilots.size()},
+          {"targets", targets.size()},
+          {"dividedLights", parts},
+          {"lightGroups", groupsJson(lights)}};
+}
+
+nlohmann::ordered_json sceneJson(const std::string& folder) {
+  std::ifstream stream(folder + "/scene.json");
+  nlohmann::ordered_json json = nlohmann::ordered_json::parse(stream, nullptr, false);
+  return json.is_object() ? json : nlohmann::ordered_json::object();
+}
+
+// What a process of this machine left half-made that was killed is removed.
+void removeAbandoned(const std::string& file) {
+  const std::string mine = fs::path(file).filename().string() + ".part-" + render::hostName() + "-";
+  std::error_code ignored;
+  for (const auto& entry : fs::directory_iterator(fs::path(file).parent_path(), ignored)) {
+    const std::string name = entry.path().filename().string();
+    if (!name.starts_with(mine)) continue;
+    const int process = std::atoi(name.c_str() + mine.size());
+    if (process > 0 && kill(process, 0) != 0 && errno == ESRCH) fs::remove(entry.path(), ignored);
+  }
+}
+
+}  // namespace
+
+DataSettings DataSettings::quick() {
+  DataSettings settings;
+  settings.pixels = 3072;
+  settings.targets.cells = 48;
+  settings.targets.pixels = 16;
+  return settings;
+}
+
+DataSettings DataSettings::quality() {
+  DataSettings settings;
+  settings.pixels = 57600;
+  settings.targets.cells = 768;
+  settings.targets.pixels = 256;
+  settings.targets.perTexel = 8;
+  settings.targets.outgoing = 1024;
+  settings.targets.lights = 4096;
+  return settings;
+}
+
+nlohmann::ordered_json toJson(const DataSettings& s) {
+  return {{"pixels", s.pixels},
+          {"pilots", s.pilots},
+          {"maxDepth", kDeepestPath},
+          {"cellTargets", s.targets.cells},
+          {"pixelTargets", s.targets.pixels},
+          {"samplesPerTexel", s.targets.perTexel},
+          {"outgoingSamples", s.targets.outgoing},
+          {"lightSamples", s.targets.lights}};
+}
+
+Split splitOf(uint64_t seed) {
+  return Random(seed).fork("split").unit() < kValidationShare ? Split::validation : Split::train;
+}
+
+const char* splitName(Split split) {
+  return split == Split::train ? "train" : "validation";
+}
+
+uint64_t seedOfName(const std::string& name) {
+  return Random(0).fork(name).bits();
+}
+
+std::string shardFile(const std::string& folder, const std::string& name) {
+  return (fs::path(folder) / (name + ".shard")).string();
+}
+
+std::string pilotPrefix(size_t view, size_t pilot) {
+  return fmt::format("view{}/pilot{}/", view, pilot);
+}
+
+std::string targetPrefix(size_t view) {
+  return fmt::format("view{}/target/", view);
+}
+
+ViewFrame viewFrame(const ShardReader& shard, size_t view) {
+  const nlohmann::json& json = shard.header().at("views").at(view);
+  const nlohmann::json& origin = json.at("origin");
+  return {{origin.at(0), origin.at(1), origin.at(2)}, json.at("edge"), json.at("unit")};
+}
+
+bool makeShard(const ShardSource& source, const DataSettings& settings, const Assets& assets,
+               const std::string& folder) {
+  const std::string file = shardFile(folder, source.name);
+  nlohmann::ordered_json made = toJson(settings);
+  if (source.kind) made["assets"] = assets.fingerprint();
+  if (fs::exists(file)) {
+    if (ShardReader(file).header().value("settings", nlohmann::json()) != nlohmann::json(made))
+      throw GenerateError(fmt::format("\"{}\" was made with other settings; expected an empty folder or "
+                                      "shards made the same way",
+                                      file));
+    return false;
+  }
+  removeAbandoned(file);
+
+  std::optional<ScratchFolder> scratch;
+  std::string sceneFolder = source.folder;
+  if (source.kind) {
+    scratch.emplace();
+    generateScene(source.seed, *source.kind, assets, scratch->path());
+    sceneFolder = scratch->path() + "/" + sceneName(source.seed, *source.kind);
+  }
+  ShardWriter writer;
+  nlohmann::ordered_json views = nlohmann::ordered_json::array();
+  for (const char* view : kViewFiles)
+    if (fs::exists(sceneFolder + "/" + view))
+      views.push_back(addView(writer, sceneFolder + "/" + view, views.size(), source.seed, settings));
+  writer.write(file, {{"software", "ODIS " ODIS_VERSION_STRING},
+                      {"name", source.name},
+                      {"seed", source.seed},
+                      {"split", splitName(splitOf(source.seed))},
+                      {"settings", made},
+                      {"scene", sceneJson(sceneFolder)},
+                      {"views", views}});
+  return true;
+}
+
+}  // namespace odis::learn

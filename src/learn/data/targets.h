@@ -1,0 +1,63 @@
+// What a network is to predict, where that is worth many samples: for some cells and some pixels, maps of the light that
+// arrives, what is scattered back and what it costs, and what each group of lights gives.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "learn/data/pilots.h"
+
+namespace odis::learn {
+
+// Maps are equal-area octahedral squares (odis/octahedral.h) of so many texels a side, row by row.
+inline constexpr int kTargetSize = 32;
+inline constexpr int kTargetTexels = kTargetSize * kTargetSize;
+
+struct TargetSettings {
+  int cells = 192, pixels = 64;  // how many of each
+  int perTexel = 2;              // samples of a map's texel; half of the texels lie below most surfaces
+  int outgoing = 256;            // samples of what is scattered back
+  int lights = 1024;             // samples of next-event estimation, of all groups together
+};
+
+// What a group of lights gives, as next-event estimation that chooses the group sees it: f |cos| Le V over the density
+// within the group, luminance; with and without the weight of MIS against the BSDF.
+struct LightMoments {
+  float mean = 0, rms = 0, misMean = 0, misRms = 0;
+  float probability = 0;  // with which the group is chosen if nothing was learned
+};
+
+struct Target {
+  bool pixel = false;         // of one vertex of a pixel's path, or of the vertices of a cell
+  uint32_t vertex = 0;        // that vertex, or one of the cell; counts through all pilots
+  uint32_t cellVertices = 0;  // usable ones in the cell, of all pilots
+  uint32_t starts = 0;        // at how many of them samples start
+  Float3 position, normal;    // means of these, the normal of unit length
+
+  // Maps of what arrives, each sample from one of these vertices: means and roots of mean squares of luminance.
+  // `indirect` is what is scattered, `emission` what lights shed without MIS weight; `lightPdf` the density with which
+  // next-event estimation finds that light (mean over the samples that met one), `rays` what a sample costs.
+  // Directions that no vertex scatters from have zero samples, and zeros.
+  std::vector<float> indirect, indirectRms, emission, emissionRms, lightPdf, rays;
+  std::vector<uint8_t> samples;
+
+  Float3 outgoing;        // mean of what the vertices scatter back along their paths, next-event estimate included
+  float outgoingRms = 0;  // of its luminance
+  float outgoingRays = 0;
+
+  std::vector<LightMoments> lights;  // of each group
+};
+
+// Chooses cells in proportion to the root of how many vertices they have and pixels evenly, and traces their samples: the
+// same for the same seed. There are fewer targets than asked for where the pilots saw fewer cells or pixels.
+std::vector<Target> traceTargets(const render::Scene& scene, const render::LightSampler& lights,
+                                 std::span<const Pilot> pilots, const ViewFrame& frame,
+                                 const TargetSettings& settings, uint64_t seed);
+
+// Adds the arrays of the targets; radiance in the frame's unit.
+void addColumns(ShardWriter& writer, const std::string& prefix, std::span<const Target> targets, size_t groups,
+                const ViewFrame& frame);
+// Throws ShardError.
+std::vector<Target> readTargets(const ShardReader& reader, const std::string& prefix, const ViewFrame& frame);
+
+}  // namespace odis::learn
