@@ -41,6 +41,7 @@ struct Command {
 Command addRenderCommand(CLI::App& parent, const std::string& commandLine);
 Command addSceneCommand(CLI::App& parent);
 Command addScenesCommand(CLI::App& parent);
+Command addDatasetCommand(CLI::App& parent);
 Command addMetricsCommand(CLI::App& parent);
 Command addImageCommand(CLI::App& parent);
 Command addMontageCommand(CLI::App& parent);

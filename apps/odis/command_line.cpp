@@ -12,6 +12,7 @@
 #include "command.h"
 #include "console.h"
 #include "eval/image_file.h"
+#include "learn/data/shard_file.h"
 #include "learn/scenes/generate.h"
 #include "odis_version.h"
 #include "render/scene/error.h"
@@ -20,7 +21,7 @@
 namespace odis::app {
 
 static constexpr const char* kExitCodes =
-    "Exit codes: 0 all went well, 1 internal error, 2 wrong usage, 3 a scene or image can't be read,\n"
+    "Exit codes: 0 all went well, 1 internal error, 2 wrong usage, 3 a scene, image or shard can't be read,\n"
     "4 an output can't be written, 130 interrupted by Ctrl-C, 143 by SIGTERM (what was rendered is written).";
 
 static int fail(ExitCode code, const std::string& message) {
@@ -69,7 +70,8 @@ int runCommandLine(int argc, char** argv) {
                                       addImageCommand(app),
                                       addMontageCommand(app),
                                       addSceneCommand(app),
-                                      addScenesCommand(app)};
+                                      addScenesCommand(app),
+                                      addDatasetCommand(app)};
   try {
     app.parse(argc, argv);
     for (const Command& command : commands)
@@ -88,6 +90,8 @@ int runCommandLine(int argc, char** argv) {
   } catch (const learn::GenerateError& error) {
     return fail(kWriteError, error.what());
   } catch (const render::SceneError& error) {
+    return fail(kSceneError, error.what());
+  } catch (const learn::ShardError& error) {
     return fail(kSceneError, error.what());
   } catch (const eval::ImageError& error) {
     return fail(kSceneError, error.what());

@@ -1,14 +1,13 @@
 // odis scenes: generate, sheet
 #include <fmt/format.h>
-#include <unistd.h>
 #include <CLI/CLI.hpp>
 
-#include <chrono>
 #include <filesystem>
 #include <memory>
 
 #include "command.h"
 #include "console.h"
+#include "counter.h"
 #include "learn/scenes/generate.h"
 #include "learn/scenes/sheet.h"
 #include "output.h"
@@ -27,26 +26,6 @@ struct Arguments {
   learn::SheetOptions sheet;
   float exposure = 0;
   bool quiet = false;
-};
-
-// "[3/10, 4.2 s left] what": one line that changes if stderr is a terminal, otherwise one for each.
-class Counter {
- public:
-  Counter(int total, bool quiet) : m_total(total), m_quiet(quiet) {}
-  void done(const std::string& what) {
-    ++m_done;
-    if (m_quiet) return;
-    const bool terminal = isatty(STDERR_FILENO) == 1;
-    const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - m_start).count();
-    const double left = seconds / m_done * (m_total - m_done);
-    const char *start = terminal ? "\r\033[K" : "", *end = terminal && m_done < m_total ? "" : "\n";
-    say(fmt::format("{}[{}/{}, {} left] {}{}", start, m_done, m_total, durationText(left), what, end));
-  }
-
- private:
-  int m_total, m_done = 0;
-  bool m_quiet;
-  std::chrono::steady_clock::time_point m_start = std::chrono::steady_clock::now();
 };
 
 const learn::Kind* kindNamed(const std::string& name) {
@@ -70,12 +49,16 @@ int generate(const Arguments& a) {
   std::filesystem::create_directories(a.output, error);
   if (error) throw WriteError(fmt::format("cannot make the folder \"{}\": {}", a.output, error.message()));
   const InterruptScope interruptible;
-  Counter counter(a.count, a.quiet);
+  Counter counter(size_t(a.count), a.quiet);
   for (int i = 0; i < a.count && !InterruptScope::interrupted(); ++i) {
     const uint64_t seed = a.seed + uint64_t(i);
     const learn::Kind& kind = only ? *only : learn::kindOf(seed);
     const bool made = learn::generateScene(seed, kind, assets, a.output);
-    counter.done(learn::sceneName(seed, kind) + (made ? "" : ": is there already"));
+    const std::string name = learn::sceneName(seed, kind);
+    if (made)
+      counter.done(name);
+    else
+      counter.skipped(name + ": is there already");
   }
   return InterruptScope::exitCode();
 }
@@ -88,7 +71,7 @@ int sheet(const Arguments& a) {
         fmt::format("the folder \"{}\" holds no scenes, expected folders with a scene.xml", a.folder));
   const InterruptScope interruptible;
   ConsoleProgress progress(true);
-  Counter counter(int(names.size()), a.quiet);
+  Counter counter(names.size(), a.quiet);
   learn::SheetPainter painter(a.sheet, names.size());
   for (const std::string& name : names) {
     if (!painter.add(a.folder, name, progress)) break;

@@ -26,8 +26,8 @@ class ShardObserver {
   virtual bool cancelled() const { return false; }
 };
 
-// Makes all shards that are not there, `jobs` at a time, each by one thread. A scene that can't be used fails alone;
-// rethrows WriteError, after which nothing new begins.
+// Makes all shards that are not there, `jobs` at a time, each by one thread. A scene that can't be used fails alone. Throws
+// WriteError, after which nothing new begins.
 void makeShards(const std::vector<ShardSource>& sources, const DataSettings& settings, const Assets& assets,
                 const std::string& folder, int jobs, ShardObserver& observer);
 
@@ -39,19 +39,25 @@ struct Inspection {
   nlohmann::ordered_json manifest;
   std::vector<std::string> complaints;  // each names the file
 };
-// Calls with the number of shards done.
+// Called with how many shards are done, from any thread but never two at once.
 using CountProgress = std::function<void(size_t done, size_t total)>;
 
-// Reads the shards that are in the folder and describes them; `verify` also unpacks all of them.
-Inspection inspectShards(const std::string& folder, bool verify, const CountProgress& progress);
-// Compares the shards with the manifest: size, CRC-32, shards too few and too many, files left half-made. `verify` also
-// unpacks all of them.
-Inspection checkDataset(const std::string& folder, bool verify, const CountProgress& progress);
+// Puts the shards of other folders into this one: linked where that can be done, else copied. Throws WriteError, and
+// ShardError if two of them have the same name and are not the same.
+void gatherShards(const std::vector<std::string>& folders, const std::string& into,
+                  const CountProgress& progress);
+// Reads and unpacks all shards of a folder and describes them in a manifest. Shards that are damaged or were made with
+// other settings than the first are complained about, and left out.
+Inspection describeShards(const std::string& folder, const CountProgress& progress);
+// Compares the shards with the folder's manifest: size and CRC-32, too few and too many, files left half-made. Throws
+// ShardError if there is no manifest.
+Inspection checkShards(const std::string& folder, const CountProgress& progress);
 
 // Throws ShardError if there is none or if it is not one.
 nlohmann::ordered_json readManifest(const std::string& folder);
+// Throws WriteError.
 void writeManifest(const std::string& folder, const nlohmann::ordered_json& manifest);
-// Of the sources, those that the manifest has no shard of.
+// The names of the sources that the manifest has no shard of.
 std::vector<std::string> missingShards(const std::vector<ShardSource>& sources,
                                        const nlohmann::ordered_json& manifest);
 

@@ -27,7 +27,8 @@ class ScratchFolder {
   ScratchFolder() {
     std::string pattern = (fs::temp_directory_path() / "odis-scenes-XXXXXX").string();
     if (!mkdtemp(pattern.data()))
-      throw render::WriteError(fmt::format("cannot make the folder \"{}\": {}", pattern, std::strerror(errno)));
+      throw render::WriteError(
+          fmt::format("cannot make the folder \"{}\": {}", pattern, std::strerror(errno)));
     m_path = pattern;
   }
   ~ScratchFolder() {
@@ -186,9 +187,10 @@ bool makeShard(const ShardSource& source, const DataSettings& settings, const As
   if (source.kind) made["assets"] = assets.fingerprint();
   if (fs::exists(file)) {
     if (ShardReader(file).header().value("settings", nlohmann::json()) != nlohmann::json(made))
-      throw GenerateError(fmt::format("\"{}\" was made with other settings; expected an empty folder or "
-                                      "shards made the same way",
-                                      file));
+      throw GenerateError(
+          fmt::format("\"{}\" was made with other settings; expected an empty folder or "
+                      "shards made the same way",
+                      file));
     return false;
   }
   removeAbandoned(file);

@@ -10,7 +10,7 @@
 namespace odis::learn {
 
 struct DataSettings {
-  int pixels = 8192;  // of a view, about
+  int pixels = 14400;  // of a view, about; four pilots are as many paths as that of an image of 640 x 360
   int pilots = 4;
   TargetSettings targets;
 

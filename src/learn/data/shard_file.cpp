@@ -76,8 +76,7 @@ void ShardWriter::addBytes(const std::string& name, const char* type, const Shap
   ZSTD_CCtx_setParameter(context.get(), ZSTD_c_compressionLevel, kLevel);
   ZSTD_CCtx_setParameter(context.get(), ZSTD_c_checksumFlag, 1);
   std::string frame(ZSTD_compressBound(planes.size()), '\0');
-  const size_t size =
-      ZSTD_compress2(context.get(), frame.data(), frame.size(), planes.data(), planes.size());
+  const size_t size = ZSTD_compress2(context.get(), frame.data(), frame.size(), planes.data(), planes.size());
   if (ZSTD_isError(size)) throw std::runtime_error(fmt::format("{}: {}", name, ZSTD_getErrorName(size)));
   m_arrays[name] = {{"type", type}, {"shape", shape}, {"offset", m_frames.size()}, {"bytes", size}};
   m_frames.append(frame, 0, size);
@@ -102,7 +101,8 @@ ShardReader::ShardReader(const std::string& path) : ShardReader(path, shardBytes
 ShardReader::ShardReader(const std::string& path, std::string bytes)
     : m_path(path), m_bytes(std::move(bytes)) {
   if (m_bytes.size() < kPrefix || m_bytes.compare(0, kMagic.size(), kMagic) != 0)
-    throw ShardError(fmt::format("{}: is no shard of a data set, expected it to begin with {}", path, kMagic));
+    throw ShardError(
+        fmt::format("{}: is no shard of a data set, expected it to begin with {}", path, kMagic));
   if (wordAt(m_bytes, 8) != kFormat)
     throw ShardError(fmt::format("{}: found format {}, expected {}", path, wordAt(m_bytes, 8), kFormat));
   const size_t length = wordAt(m_bytes, 12);
@@ -133,8 +133,8 @@ void ShardReader::parse() {
     array.elementSize = sizeOfElement(array.type);
     array.elements = countOf(array.shape);
     if (array.elementSize == 0)
-      throw ShardError(fmt::format("{}: {}: found the type \"{}\", expected |u1, <u2, <u4, <i4 or <f2", m_path, name,
-                                   array.type));
+      throw ShardError(fmt::format("{}: {}: found the type \"{}\", expected |u1, <u2, <u4, <i4 or <f2",
+                                   m_path, name, array.type));
     if (array.elements > kMostBytes / array.elementSize)
       throw ShardError(fmt::format("{}: {}: is larger than any array may be", m_path, name));
     if (array.bytes > m_bytes.size() || array.offset > m_bytes.size() - array.bytes)
@@ -143,7 +143,8 @@ void ShardReader::parse() {
     m_arrays.emplace_back(name, array);
   }
   if (expected != m_bytes.size())
-    throw ShardError(fmt::format("{}: found {} bytes of arrays, expected {}", m_path, m_bytes.size(), expected));
+    throw ShardError(
+        fmt::format("{}: found {} bytes of arrays, expected {}", m_path, m_bytes.size(), expected));
 }
 
 const ShardReader::Array& ShardReader::find(const std::string& name, const char* type) const {

@@ -13,8 +13,8 @@ struct MapColumn {
   bool radiance;
 };
 constexpr MapColumn kMaps[] = {
-    {"indirect", &Target::indirect, true},   {"indirectRms", &Target::indirectRms, true},
-    {"emission", &Target::emission, true},   {"emissionRms", &Target::emissionRms, true},
+    {"indirect", &Target::indirect, true},  {"indirectRms", &Target::indirectRms, true},
+    {"emission", &Target::emission, true},  {"emissionRms", &Target::emissionRms, true},
     {"lightPdf", &Target::lightPdf, false}, {"rays", &Target::rays, false},
 };
 
@@ -33,8 +33,8 @@ constexpr LightColumn kLights[] = {
 
 }  // namespace
 
-void addColumns(ShardWriter& writer, const std::string& prefix, std::span<const Target> targets, size_t groups,
-                const ViewFrame& frame) {
+void addColumns(ShardWriter& writer, const std::string& prefix, std::span<const Target> targets,
+                size_t groups, const ViewFrame& frame) {
   const size_t count = targets.size();
   const auto add = [&]<class T>(const char* name, const Shape& shape, const std::vector<T>& values) {
     writer.add(prefix + name, shape, std::span<const T>(values));
@@ -82,12 +82,14 @@ void addColumns(ShardWriter& writer, const std::string& prefix, std::span<const 
   for (const LightColumn& c : kLights) {
     std::vector<Half> values;
     for (const Target& t : targets)
-      for (const LightMoments& m : t.lights) values.push_back(toHalf(c.radiance ? m.*c.field / frame.unit : m.*c.field));
+      for (const LightMoments& m : t.lights)
+        values.push_back(toHalf(c.radiance ? m.*c.field / frame.unit : m.*c.field));
     add(c.name, {count, groups}, values);
   }
 }
 
-std::vector<Target> readTargets(const ShardReader& reader, const std::string& prefix, const ViewFrame& frame) {
+std::vector<Target> readTargets(const ShardReader& reader, const std::string& prefix,
+                                const ViewFrame& frame) {
   const auto pixel = reader.read<uint8_t>(prefix + "pixel");
   const size_t count = pixel.size();
   const auto vertex = readColumn<uint32_t>(reader, prefix + "vertex", count);

@@ -108,10 +108,10 @@ class Tracer {
         Sampler numbers = sampler(arriving, uint32_t(texel), uint32_t(i));
         const Start& start = pick(starts, numbers.get1D());
         const Vec2 u = numbers.get2D();
-        const Vec3 wi = render::fromOdis(
-            squareToDirection({(float(texel % kTargetSize) + u.x) / kTargetSize,
-                               (float(texel / kTargetSize) + u.y) / kTargetSize}));
-        if (!start.both && dot(wi, start.normal) <= 0) continue;
+        const Vec3 wi =
+            render::fromOdis(squareToDirection({(float(texel % kTargetSize) + u.x) / kTargetSize,
+                                                (float(texel / kTargetSize) + u.y) / kTargetSize}));
+        if (!start.both && render::dot(wi, start.normal) <= 0) continue;
         Path& path = paths.emplace_back(render::Scene::spawn(start.at, wi), numbers);
         // Emission met directly counts whole, and tells how next-event estimation would have found it.
         path.bySampling = true;
@@ -251,7 +251,8 @@ class Vertices {
     const render::Crop& crop = m_scene.film().crop;
     const Vec2 pixel(float(crop.x + int(v.pixel) % crop.width) + 0.5f,
                      float(crop.y + int(v.pixel) / crop.width) + 0.5f);
-    return render::length(render::fromOdis(v.position) - m_scene.sensor().ray(pixel, Vec2(0.5f, 0.5f)).origin);
+    return render::length(render::fromOdis(v.position) -
+                          m_scene.sensor().ray(pixel, Vec2(0.5f, 0.5f)).origin);
   }
 
   const render::Scene& m_scene;
@@ -279,7 +280,8 @@ std::vector<Target> traceTargets(const render::Scene& scene, const render::Light
   vertices.forEach([&](uint32_t index, const PilotVertex& v) {
     if (v.depth == 1) ++path;
     if (!isUsable(v)) return;
-    cells[grid.key(positionOf(stepsOf(v.position, frame), frame), unpacked(packed(v.normal)), 0)].push_back(index);
+    cells[grid.key(positionOf(stepsOf(v.position, frame), frame), unpacked(packed(v.normal)), 0)].push_back(
+        index);
     if (path != lastPath) pixels.emplace_back(1, index);
     lastPath = path;
   });

@@ -41,7 +41,7 @@ struct Target {
   std::vector<float> indirect, indirectRms, emission, emissionRms, lightPdf, rays;
   std::vector<uint8_t> samples;
 
-  Float3 outgoing;        // mean of what the vertices scatter back along their paths, next-event estimate included
+  Float3 outgoing;  // mean of what the vertices scatter back along their paths, next-event estimate included
   float outgoingRms = 0;  // of its luminance
   float outgoingRays = 0;
 
@@ -55,8 +55,8 @@ std::vector<Target> traceTargets(const render::Scene& scene, const render::Light
                                  const TargetSettings& settings, uint64_t seed);
 
 // Adds the arrays of the targets; radiance in the frame's unit.
-void addColumns(ShardWriter& writer, const std::string& prefix, std::span<const Target> targets, size_t groups,
-                const ViewFrame& frame);
+void addColumns(ShardWriter& writer, const std::string& prefix, std::span<const Target> targets,
+                size_t groups, const ViewFrame& frame);
 // Throws ShardError.
 std::vector<Target> readTargets(const ShardReader& reader, const std::string& prefix, const ViewFrame& frame);
 

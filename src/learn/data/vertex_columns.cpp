@@ -18,7 +18,7 @@ constexpr uint8_t kNoGroup = 0xff;
 struct HalfColumn {
   const char* name;
   float PilotVertex::*field;
-  bool radiance;
+  bool radiance, ofLight = false;
 };
 constexpr HalfColumn kHalves[] = {
     {"pdf", &PilotVertex::pdf, false},
@@ -31,8 +31,8 @@ constexpr HalfColumn kHalves[] = {
     {"emissionLightPdf", &PilotVertex::emissionLightPdf, false},
     {"light", &PilotVertex::light, true},
     {"lightPdf", &PilotVertex::lightPdf, false},
-    {"lightBsdfPdf", &PilotVertex::lightBsdfPdf, false},
-    {"lightGuidablePdf", &PilotVertex::lightGuidablePdf, false},
+    {"lightBsdfPdf", &PilotVertex::lightBsdfPdf, false, true},
+    {"lightGuidablePdf", &PilotVertex::lightGuidablePdf, false, true},
     {"lightGroupProbability", &PilotVertex::lightGroupProbability, false},
 };
 
@@ -50,11 +50,12 @@ constexpr ColorColumn kColors[] = {
 struct DirectionColumn {
   const char* name;
   Float3 PilotVertex::*field;
+  bool ofLight = false;
 };
 constexpr DirectionColumn kDirections[] = {
     {"normal", &PilotVertex::normal},
     {"wi", &PilotVertex::wi},
-    {"lightDirection", &PilotVertex::lightDirection},
+    {"lightDirection", &PilotVertex::lightDirection, true},
 };
 
 int32_t stepsAlong(float x, float origin, float edge) {
@@ -143,7 +144,7 @@ void addColumns(ShardWriter& writer, const std::string& prefix, const Pilot& pil
   std::vector<int32_t> positions(3 * count);
   std::vector<Half> distances(count);
   std::vector<uint16_t> rays(count);
-  std::vector<uint8_t> groups(count), flags(count);
+  std::vector<uint8_t> groups(count), flags(count), lit(count);
   for (size_t i = 0; i < count; ++i) {
     const PilotVertex& v = vertices[i];
     const PositionSteps steps = stepsOf(v.position, frame);
@@ -151,18 +152,22 @@ void addColumns(ShardWriter& writer, const std::string& prefix, const Pilot& pil
     distances[i] = toHalf(v.distance / frame.edge);
     rays[i] = uint16_t(std::clamp(v.raysAfter, 0.0f, 65535.0f));
     groups[i] = v.lightGroup < kMostLightGroups ? uint8_t(v.lightGroup) : kNoGroup;
+    // Of light that gave nothing, what its weight would have been is left out.
+    lit[i] = v.light > 0;
     flags[i] = uint8_t((v.discrete ? kDiscrete : 0) | (v.both ? kBoth : 0));
   }
   add("position", {3, count}, positions);
   for (const DirectionColumn& c : kDirections)
-    add(c.name, {2, count}, packedDirections(count, [&](size_t i) { return vertices[i].*c.field; }));
-  for (const ColorColumn& c : kColors)
-    add(c.name, {3, count}, packedColors(count, [&](size_t i) {
-          return vertices[i].*c.field * (c.radiance ? toUnits : 1.0f);
+    add(c.name, {2, count}, packedDirections(count, [&](size_t i) {
+          return c.ofLight && !lit[i] ? Float3{0, 0, 1} : vertices[i].*c.field;
         }));
+  for (const ColorColumn& c : kColors)
+    add(c.name, {3, count},
+        packedColors(count, [&](size_t i) { return vertices[i].*c.field * (c.radiance ? toUnits : 1.0f); }));
   for (const HalfColumn& c : kHalves) {
     std::vector<Half> values(count);
-    for (size_t i = 0; i < count; ++i) values[i] = toHalf(vertices[i].*c.field * (c.radiance ? toUnits : 1.0f));
+    for (size_t i = 0; i < count; ++i)
+      if (!c.ofLight || lit[i]) values[i] = toHalf(vertices[i].*c.field * (c.radiance ? toUnits : 1.0f));
     add(c.name, {count}, values);
   }
   add("distance", {count}, distances);
@@ -194,8 +199,8 @@ Pilot readColumns(const ShardReader& reader, const std::string& prefix, const Vi
   for (const ColorColumn& c : kColors) {
     const auto values = readColumn<Half>(reader, prefix + c.name, count, 3);
     for (size_t i = 0; i < count; ++i)
-      vertices[i].*c.field = Float3{values[i], values[count + i], values[2 * count + i]} *
-                             (c.radiance ? frame.unit : 1.0f);
+      vertices[i].*c.field =
+          Float3{values[i], values[count + i], values[2 * count + i]} * (c.radiance ? frame.unit : 1.0f);
   }
   for (const HalfColumn& c : kHalves) {
     const auto values = readColumn<Half>(reader, prefix + c.name, count);

@@ -10,10 +10,11 @@ namespace odis::render {
 
 // What a group of lights is.
 struct LightGroup {
-  bool infinite = false;    // emitters infinitely far away, or a region of one
-  uint32_t lights = 0;      // how many parts of emitters; of a region 1
-  LightBounds bounds;       // of the lights; of infinite ones nothing but a cone of directions towards them: axis, thetaO
-  float irradiance = 0;     // that infinite ones give on average over all ways to face, W/m^2
+  bool infinite = false;  // emitters infinitely far away, or a region of one
+  uint32_t lights = 0;    // how many parts of emitters; of a region 1
+  LightBounds
+      bounds;  // of the lights; of infinite ones nothing but a cone of directions towards them: axis, thetaO
+  float irradiance = 0;  // that infinite ones give on average over all ways to face, W/m^2
 };
 
 // Chooses among the parts of all emitters that are somewhere by a tree, and among those infinitely far away

@@ -46,7 +46,8 @@ struct IntegratorSettings {
 struct LoadOptions {
   std::map<std::string, std::string> defines;  // -D key=value
   std::optional<Vec2i> resolution;  // replaces the film's size; keeps the file's crop only if absent
-  int pixels = 0;  // without a resolution: about so many pixels, at the film's own aspect ratio; 0: as the file has it
+  int pixels =
+      0;  // without a resolution: about so many pixels, at the film's own aspect ratio; 0: as the file has it
   std::optional<Crop> crop;
 };
 

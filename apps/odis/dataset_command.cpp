@@ -1,0 +1,112 @@
+// odis dataset: generate, merge, check, info
+#include <fmt/format.h>
+#include <CLI/CLI.hpp>
+
+#include <filesystem>
+#include <memory>
+
+#include "command.h"
+#include "console.h"
+#include "counter.h"
+#include "dataset_generate.h"
+#include "dataset_range.h"
+#include "learn/data/dataset.h"
+#include "learn/data/dataset_info.h"
+
+namespace odis::app {
+
+namespace {
+
+struct Arguments {
+  std::string folder, output, seeds;
+  std::vector<std::string> folders;
+  bool json = false, quiet = false;
+};
+
+learn::CountProgress countingOn(bool quiet) {
+  if (quiet) return [](size_t, size_t) {};
+  return [counter = std::shared_ptr<Counter>()](size_t, size_t total) mutable {
+    if (!counter) counter = std::make_shared<Counter>(total, false);
+    counter->done("shards");
+  };
+}
+
+int complain(const std::vector<std::string>& complaints) {
+  for (const std::string& text : complaints) say(fmt::format("error: {}\n", text));
+  return complaints.empty() ? kOk : kSceneError;
+}
+
+int merge(const Arguments& a) {
+  std::string folder = a.output;
+  if (folder.empty()) {
+    if (a.folders.size() > 1) throw UsageError("several folders are merged into another one: expected -o");
+    folder = a.folders.front();
+  } else {
+    std::filesystem::create_directories(folder);
+    learn::gatherShards(a.folders, folder, countingOn(a.quiet));
+  }
+  learn::Inspection found = learn::describeShards(folder, countingOn(a.quiet));
+  if (!a.seeds.empty()) {
+    const Range seeds = parseRange("--seeds", a.seeds);
+    for (const std::string& name :
+         learn::missingShards(learn::seedSources(seeds.first, seeds.last), found.manifest))
+      found.complaints.push_back(learn::shardFile(folder, name) + ": is missing");
+  }
+  // A manifest of less than all would make the rest look as if it did not belong.
+  if (const int code = complain(found.complaints); code != kOk) return code;
+  learn::writeManifest(folder, found.manifest);
+  fmt::print("{}", learn::datasetText(found.manifest));
+  return kOk;
+}
+
+int check(const Arguments& a) {
+  const learn::Inspection found = learn::checkShards(a.folder, countingOn(a.quiet));
+  if (const int code = complain(found.complaints); code != kOk) {
+    say(fmt::format("error: {} faults\n", found.complaints.size()));
+    return code;
+  }
+  fmt::print("{} shards are as the manifest says\n", found.manifest.at("shards").size());
+  return kOk;
+}
+
+int info(const Arguments& a) {
+  if (std::filesystem::is_directory(a.folder)) {
+    const nlohmann::ordered_json manifest = learn::readManifest(a.folder);
+    fmt::print("{}", a.json ? manifest.dump(1) + "\n" : learn::datasetText(manifest));
+  } else {
+    const learn::ShardReader shard(a.folder);
+    fmt::print("{}", a.json ? shard.header().dump(1) + "\n" : learn::shardText(shard));
+  }
+  return kOk;
+}
+
+}  // namespace
+
+Command addDatasetCommand(CLI::App& parent) {
+  CLI::App* app = parent.add_subcommand("dataset", "Make data to learn from: docs/dataset.md");
+  app->require_subcommand(1);
+  const auto a = std::make_shared<Arguments>();
+  const Generator generator = addDatasetGenerate(*app);
+
+  CLI::App* merging = app->add_subcommand("merge", "Collect shards: unpack all, write the folder's manifest.json");
+  merging->add_option("FOLDER", a->folders, "Folders of shards")->required();
+  merging->add_option("-o,--output", a->output, "Gather them in this folder: linked where possible, else copied");
+  merging->add_option("--seeds", a->seeds, "Fail if the scene of one of these is missing: FIRST-LAST");
+  merging->add_flag("-q,--quiet", a->quiet, "Print errors and the summary only");
+
+  CLI::App* checking = app->add_subcommand("check", "Compare the shards of a folder with its manifest");
+  checking->add_option("FOLDER", a->folder, "Folder of a data set")->required();
+  checking->add_flag("-q,--quiet", a->quiet, "Print errors and the summary only");
+
+  CLI::App* asking = app->add_subcommand("info", "Say what a data set holds, or a shard");
+  asking->add_option("PATH", a->folder, "Folder of a data set, or a shard")->required();
+  asking->add_flag("--json", a->json, "Print the manifest, or the shard's header");
+
+  return {app, [=] {
+            if (generator.app->parsed()) return generator.run();
+            if (merging->parsed()) return merge(*a);
+            return checking->parsed() ? check(*a) : info(*a);
+          }};
+}
+
+}  // namespace odis::app

@@ -1,0 +1,122 @@
+#include "dataset_generate.h"
+
+#include <fmt/format.h>
+#include <CLI/CLI.hpp>
+
+#include <filesystem>
+#include <memory>
+#include <thread>
+
+#include "command.h"
+#include "console.h"
+#include "counter.h"
+#include "dataset_range.h"
+#include "learn/data/dataset.h"
+
+namespace odis::app {
+
+namespace {
+
+struct Arguments {
+  std::string scenes, seeds, shards, output, hdri, textures, furniture;
+  int of = 1, jobs = 0;
+  bool quick = false, quality = false, quiet = false;
+};
+
+// Shows what is done, and remembers what failed.
+class Observer : public learn::ShardObserver {
+ public:
+  Observer(size_t total, bool quiet) : m_counter(total, quiet) {}
+  void done(const learn::ShardSource& source, bool made) override {
+    m_made += made;
+    if (made)
+      m_counter.done(source.name);
+    else
+      m_counter.skipped(source.name + ": is there already");
+  }
+  void failed(const learn::ShardSource& source, const std::string& why) override {
+    ++m_failures;
+    say(fmt::format("error: {}: {}\n", source.name, why));
+    m_counter.skipped(source.name + ": failed");
+  }
+  bool cancelled() const override { return InterruptScope::interrupted(); }
+  int made() const { return m_made; }
+  int failures() const { return m_failures; }
+
+ private:
+  Counter m_counter;
+  int m_made = 0, m_failures = 0;
+};
+
+std::vector<learn::ShardSource> sourcesOf(const Arguments& a) {
+  const Range parts = a.shards.empty() ? Range{1, uint64_t(a.of)} : parseRange("--shards", a.shards);
+  if (parts.first < 1 || parts.last > uint64_t(a.of))
+    throw UsageError(fmt::format("--shards: found {}, expected parts from 1 to {} (--of)", a.shards, a.of));
+  std::vector<learn::ShardSource> all;
+  if (a.seeds.empty()) {
+    all = learn::folderSources(a.scenes);
+  } else {
+    const Range seeds = parseRange("--seeds", a.seeds);
+    all = learn::seedSources(seeds.first, seeds.last);
+  }
+  return learn::partOf(all, int(parts.first), int(parts.last), a.of);
+}
+
+int generate(const Arguments& a) {
+  const learn::DataSettings settings = a.quick     ? learn::DataSettings::quick()
+                                       : a.quality ? learn::DataSettings::quality()
+                                                   : learn::DataSettings();
+  const learn::Assets assets(a.hdri, a.textures, a.furniture);
+  const std::vector<learn::ShardSource> sources = sourcesOf(a);
+  std::error_code error;
+  std::filesystem::create_directories(a.output, error);
+  if (error) throw WriteError(fmt::format("cannot make the folder \"{}\": {}", a.output, error.message()));
+  const int jobs = a.jobs > 0 ? a.jobs : int(std::max(1u, std::thread::hardware_concurrency()));
+
+  const InterruptScope interruptible;
+  Observer observer(sources.size(), a.quiet);
+  learn::makeShards(sources, settings, assets, a.output, jobs, observer);
+  if (observer.failures() > 0) {
+    say(fmt::format("error: {} of {} scenes failed\n", observer.failures(), sources.size()));
+    return kSceneError;
+  }
+  if (InterruptScope::interrupted()) return InterruptScope::exitCode();
+  if (!a.quiet)
+    say(fmt::format("{} shards made, {} were there. The manifest: odis dataset merge {}\n", observer.made(),
+                    int(sources.size()) - observer.made(), a.output));
+  return kOk;
+}
+
+}  // namespace
+
+Generator addDatasetGenerate(CLI::App& parent) {
+  CLI::App* app = parent.add_subcommand("generate", "Make shards: a scene each, with its pilots and targets");
+  const auto a = std::make_shared<Arguments>();
+  CLI::Option* seeds =
+      app->add_option("--seeds", a->seeds, "Of scenes to generate, as in `odis scenes generate`: FIRST-LAST");
+  CLI::Option* scenes = app->add_option("--scenes", a->scenes, "Folder of scenes to use instead");
+  scenes->excludes(seeds);
+  app->add_option("-o,--output", a->output, "Folder to make them in; what is there already is left alone")
+      ->required();
+  app->add_option("--shards", a->shards,
+                  "Make these parts only, FIRST-LAST of the parts that --of cuts the seeds into");
+  app->add_option("--of", a->of, "Into how many parts, for many machines: a part each")
+      ->check(CLI::Range(1, 1'000'000))
+      ->capture_default_str();
+  app->add_option("--jobs", a->jobs, "Shards to make at a time, a thread each; 0: one a core")
+      ->check(CLI::Range(0, 4096))
+      ->capture_default_str();
+  app->add_option("--hdri", a->hdri, "Folder of environment maps for generated scenes (HDR, EXR)");
+  app->add_option("--textures", a->textures, "Folder of textures for them (PNG, JPEG)");
+  app->add_option("--furniture", a->furniture, "Folder of OBJ models for them, as scripts/furniture makes it");
+  CLI::Option* quick = app->add_flag("--quick", a->quick, "Small pilots, few targets: for a first look");
+  app->add_flag("--quality", a->quality, "Pilots as large as images, more and smoother targets")->excludes(quick);
+  app->add_flag("-q,--quiet", a->quiet, "Print errors only");
+  return {app, [a] {
+            if (a->seeds.empty() == a->scenes.empty())
+              throw UsageError("what to make shards of? expected --seeds or --scenes");
+            return generate(*a);
+          }};
+}
+
+}  // namespace odis::app

@@ -1,0 +1,73 @@
+#include "learn/data/dataset_info.h"
+
+#include <fmt/format.h>
+
+#include <map>
+
+namespace odis::learn {
+
+namespace {
+
+// Sums over shards.
+struct Totals {
+  uint64_t scenes = 0, views = 0, vertices = 0, targets = 0, bytes = 0;
+  void add(const nlohmann::ordered_json& shard) {
+    ++scenes;
+    views += shard.at("views").get<uint64_t>();
+    vertices += shard.at("vertices").get<uint64_t>();
+    targets += shard.at("targets").get<uint64_t>();
+    bytes += shard.at("bytes").get<uint64_t>();
+  }
+};
+
+std::string row(const std::string& name, const Totals& t) {
+  return fmt::format("{:<14}{:>8}{:>8}{:>14}{:>11}{:>12.1f}{:>13.2f}\n", name, t.scenes, t.views, t.vertices,
+                     t.targets, double(t.bytes) / 1e6,
+                     t.views > 0 ? double(t.bytes) / 1e6 / double(t.views) : 0.0);
+}
+
+}  // namespace
+
+std::string datasetText(const nlohmann::ordered_json& manifest) {
+  Totals all;
+  std::map<std::string, Totals> splits, kinds;
+  for (const nlohmann::ordered_json& shard : manifest.at("shards")) {
+    all.add(shard);
+    splits[shard.at("split")].add(shard);
+    kinds[shard.at("kind").get<std::string>()].add(shard);
+  }
+  std::string text = fmt::format("{:<14}{:>8}{:>8}{:>14}{:>11}{:>12}{:>13}\n", "", "scenes", "views", "vertices",
+                                 "targets", "MB", "MB a view");
+  text += row("all", all);
+  for (const auto& [name, totals] : splits) text += row(name, totals);
+  if (kinds.size() > 1)
+    for (const auto& [name, totals] : kinds) text += row("  " + (name.empty() ? "(others)" : name), totals);
+  return text;
+}
+
+std::string shardText(const ShardReader& shard) {
+  const nlohmann::json& header = shard.header();
+  std::string text;
+  try {
+    text += fmt::format("{}: {}, split {}, by {}\n", header.at("name").get<std::string>(),
+                        header.at("scene").value("kind", "a scene of its own"),
+                        header.at("split").get<std::string>(), header.at("software").get<std::string>());
+    for (const nlohmann::json& view : header.at("views"))
+      text += fmt::format("{}: {} x {} pixels, {} pilots, {} targets, {} groups of lights\n",
+                          view.at("file").get<std::string>(), view.at("width").get<int>(),
+                          view.at("height").get<int>(), view.at("pilots").get<int>(),
+                          view.at("targets").get<int>(), view.at("lightGroups").size());
+  } catch (const nlohmann::json::exception& e) {
+    throw ShardError(std::string("the header is not as expected: ") + e.what());
+  }
+  // Arrays of the same name, whichever view and pilot they are of.
+  std::map<std::string, uint64_t> bytes;
+  for (const auto& [name, size] : shard.arrays()) {
+    const bool target = name.find("/target/") != std::string::npos;
+    bytes[(target ? "target/" : "pilot/") + name.substr(name.rfind('/') + 1)] += size;
+  }
+  for (const auto& [name, size] : bytes) text += fmt::format("{:<30}{:>12} B\n", name, size);
+  return text;
+}
+
+}  // namespace odis::learn
