@@ -88,9 +88,11 @@ Command addDatasetCommand(CLI::App& parent) {
   const auto a = std::make_shared<Arguments>();
   const Generator generator = addDatasetGenerate(*app);
 
-  CLI::App* merging = app->add_subcommand("merge", "Collect shards: unpack all, write the folder's manifest.json");
+  CLI::App* merging =
+      app->add_subcommand("merge", "Collect shards: unpack all, write the folder's manifest.json");
   merging->add_option("FOLDER", a->folders, "Folders of shards")->required();
-  merging->add_option("-o,--output", a->output, "Gather them in this folder: linked where possible, else copied");
+  merging->add_option("-o,--output", a->output,
+                      "Gather them in this folder: linked where possible, else copied");
   merging->add_option("--seeds", a->seeds, "Fail if the scene of one of these is missing: FIRST-LAST");
   merging->add_flag("-q,--quiet", a->quiet, "Print errors and the summary only");
 

@@ -108,9 +108,11 @@ Generator addDatasetGenerate(CLI::App& parent) {
       ->capture_default_str();
   app->add_option("--hdri", a->hdri, "Folder of environment maps for generated scenes (HDR, EXR)");
   app->add_option("--textures", a->textures, "Folder of textures for them (PNG, JPEG)");
-  app->add_option("--furniture", a->furniture, "Folder of OBJ models for them, as scripts/furniture makes it");
+  app->add_option("--furniture", a->furniture,
+                  "Folder of OBJ models for them, as scripts/furniture makes it");
   CLI::Option* quick = app->add_flag("--quick", a->quick, "Small pilots, few targets: for a first look");
-  app->add_flag("--quality", a->quality, "Pilots as large as images, more and smoother targets")->excludes(quick);
+  app->add_flag("--quality", a->quality, "Pilots as large as images, more and smoother targets")
+      ->excludes(quick);
   app->add_flag("-q,--quiet", a->quiet, "Print errors only");
   return {app, [a] {
             if (a->seeds.empty() == a->scenes.empty())

@@ -36,8 +36,8 @@ std::string datasetText(const nlohmann::ordered_json& manifest) {
     splits[shard.at("split")].add(shard);
     kinds[shard.at("kind").get<std::string>()].add(shard);
   }
-  std::string text = fmt::format("{:<14}{:>8}{:>8}{:>14}{:>11}{:>12}{:>13}\n", "", "scenes", "views", "vertices",
-                                 "targets", "MB", "MB a view");
+  std::string text = fmt::format("{:<14}{:>8}{:>8}{:>14}{:>11}{:>12}{:>13}\n", "", "scenes", "views",
+                                 "vertices", "targets", "MB", "MB a view");
   text += row("all", all);
   for (const auto& [name, totals] : splits) text += row(name, totals);
   if (kinds.size() > 1)

@@ -49,16 +49,11 @@ Json describe(const ShardReader& shard, const std::string& bytes) {
     for (size_t pilot = 0; pilot < views[view].at("pilots").get<size_t>(); ++pilot)
       vertices += shard.shape(pilotPrefix(view, pilot) + "pdf").at(0);
   }
-  return {{"name", header.at("name")},
-          {"seed", header.at("seed")},
-          {"split", header.at("split")},
-          {"kind", header.at("scene").value("kind", "")},
-          {"views", views.size()},
-          {"pixels", pixels},
-          {"vertices", vertices},
-          {"targets", targets},
-          {"bytes", bytes.size()},
-          {"crc32", crcText(bytes)}};
+  return {{"name", header.at("name")},   {"seed", header.at("seed")},
+          {"split", header.at("split")}, {"kind", header.at("scene").value("kind", "")},
+          {"views", views.size()},       {"pixels", pixels},
+          {"vertices", vertices},        {"targets", targets},
+          {"bytes", bytes.size()},       {"crc32", crcText(bytes)}};
 }
 
 // Files of shards that were never finished.
@@ -195,7 +190,8 @@ nlohmann::ordered_json readManifest(const std::string& folder) {
   const std::string path = (fs::path(folder) / kManifestName).string();
   std::ifstream stream(path);
   if (!stream)
-    throw ShardError(fmt::format("{}: there is no manifest; \"odis dataset merge {}\" makes it", path, folder));
+    throw ShardError(
+        fmt::format("{}: there is no manifest; \"odis dataset merge {}\" makes it", path, folder));
   Json manifest = Json::parse(stream, nullptr, false);
   const auto isShard = [](const Json& shard) {
     return shard.is_object() && shard.contains("name") && shard["name"].is_string() &&

@@ -42,8 +42,8 @@ struct Target {
   std::vector<uint8_t> samples;
 
   Float3 outgoing;  // mean of what the vertices scatter back along their paths, next-event estimate included
-  float outgoingRms = 0;  // of its luminance
-  float outgoingRays = 0;
+  float outgoingRms = 0;   // of its luminance
+  float outgoingRays = 0;  // that this takes, the shadow ray at the vertex included
 
   std::vector<LightMoments> lights;  // of each group
 };

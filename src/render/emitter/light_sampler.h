@@ -52,8 +52,8 @@ class LightSampler {
   float groupProbability(const LightReference& ref, uint32_t group) const;
 
   // Chooses a light of the group, whatever was learned. The probability is that within the group: together with the
-  // density that the emitter states for its choice.u, all directions to the group's light integrate to one. No emitter if
-  // the group gives the reference nothing.
+  // density that the emitter states for its choice.u, all directions to the group's light integrate to one. No emitter where
+  // the group is known to give the reference nothing.
   Choice sampleGroup(const LightReference& ref, uint32_t group, float uChoice, const Vec2& u) const;
   // What the group is: for those who learn what to expect of it.
   LightGroup describe(uint32_t group) const;
