@@ -40,12 +40,11 @@ struct View {
 };
 
 Float3 texelDirection(int texel) {
-  return squareToDirection({(float(texel % kTargetSize) + 0.5f) / kTargetSize,
-                            (float(texel / kTargetSize) + 0.5f) / kTargetSize});
+  return squareToDirection(
+      {(float(texel % kTargetSize) + 0.5f) / kTargetSize, (float(texel / kTargetSize) + 0.5f) / kTargetSize});
 }
 
-const std::string kGrey =
-    "<bsdf type=\"diffuse\"><rgb name=\"reflectance\" value=\"0.4\"/></bsdf>";
+const std::string kGrey = "<bsdf type=\"diffuse\"><rgb name=\"reflectance\" value=\"0.4\"/></bsdf>";
 
 // A ball under a white sky sees the sky alone: radiance 1 from above its horizon, and scatters 0.4 of it.
 TEST(Targets, OfABallUnderAWhiteSky) {
@@ -93,7 +92,8 @@ TEST(Targets, OfABallUnderAWhiteSky) {
 
 // Inside of the furnace 1 is emitted and 1 scattered towards everything.
 TEST(Targets, OfTheFurnace) {
-  const View view(test::furnace("<bsdf type=\"diffuse\"><rgb name=\"reflectance\" value=\"0.5\"/></bsdf>"), 1);
+  const View view(test::furnace("<bsdf type=\"diffuse\"><rgb name=\"reflectance\" value=\"0.5\"/></bsdf>"),
+                  1);
   TargetSettings settings;
   settings.cells = 8;
   settings.pixels = 0;
@@ -115,14 +115,15 @@ TEST(Targets, OfTheFurnace) {
 
 // A lamp is seen in its direction, as large as it is.
 TEST(Targets, ShowALampWhereItIs) {
-  const View view(test::sensor("origin=\"0,2,3\" target=\"0,0,0\" up=\"0,1,0\"", 30, 16, 16) +
-                      "<shape type=\"rectangle\"><transform name=\"to_world\"><scale value=\"4\"/><rotate x=\"1\" "
-                      "angle=\"-90\"/></transform>" +
-                      kGrey +
-                      "</shape><shape type=\"sphere\"><point name=\"center\" x=\"2\" y=\"3\" z=\"-1\"/><float "
-                      "name=\"radius\" value=\"0.7\"/><bsdf type=\"diffuse\"/><emitter type=\"area\"><rgb "
-                      "name=\"radiance\" value=\"5\"/></emitter></shape>",
-                  1);
+  const View view(
+      test::sensor("origin=\"0,2,3\" target=\"0,0,0\" up=\"0,1,0\"", 30, 16, 16) +
+          "<shape type=\"rectangle\"><transform name=\"to_world\"><scale value=\"4\"/><rotate x=\"1\" "
+          "angle=\"-90\"/></transform>" +
+          kGrey +
+          "</shape><shape type=\"sphere\"><point name=\"center\" x=\"2\" y=\"3\" z=\"-1\"/><float "
+          "name=\"radius\" value=\"0.7\"/><bsdf type=\"diffuse\"/><emitter type=\"area\"><rgb "
+          "name=\"radiance\" value=\"5\"/></emitter></shape>",
+      1);
   TargetSettings settings;
   settings.cells = 0;
   settings.pixels = 30;
@@ -191,13 +192,14 @@ TEST(Targets, AgreeWithPilots) {
     Mean scattered, rays;
     for (const PilotVertex* v : members) {
       scattered.add(luminance(outgoing(*v)));
-      rays.add(1 + v->raysAfter);  // and a shadow ray
+      rays.add(v->raysAfter + float(v->lightGroup != kNoLightGroup));  // and a shadow ray
     }
     // Samples start at some of the vertices only: what these scatter back differs by a tenth or so across a cell.
     const double ofStarts = scattered.mean() * 0.1 / std::sqrt(double(t.starts));
-    const double z = (luminance(t.outgoing) - scattered.mean()) /
-                     std::sqrt(scattered.varianceOfMean() + double(t.outgoingRms) * t.outgoingRms / settings.outgoing +
-                               ofStarts * ofStarts);
+    const double z =
+        (luminance(t.outgoing) - scattered.mean()) /
+        std::sqrt(scattered.varianceOfMean() + double(t.outgoingRms) * t.outgoingRms / settings.outgoing +
+                  ofStarts * ofStarts);
     EXPECT_LT(std::abs(z), 4) << luminance(t.outgoing) << " against " << scattered.mean();
     EXPECT_NEAR(t.outgoingRays, rays.mean(), 0.05 * rays.mean());
   }
