@@ -48,6 +48,9 @@ struct Target {
   std::vector<LightMoments> lights;  // of each group
 };
 
+// Paths of targets begin at their vertices: roulette by throughput, which pilots' paths meet at a fixed depth, is as far
+// away from each as it is from a camera. That changes second moments and rays, not means.
+
 // Chooses cells in proportion to the root of how many vertices they have and pixels evenly, and traces their samples: the
 // same for the same seed. There are fewer targets than asked for where the pilots saw fewer cells or pixels.
 std::vector<Target> traceTargets(const render::Scene& scene, const render::LightSampler& lights,
