@@ -7,8 +7,8 @@
 
 #include "command.h"
 #include "console.h"
-#include "counter.h"
 #include "dataset_generate.h"
+#include "dataset_manifest.h"
 #include "dataset_range.h"
 #include "learn/data/dataset.h"
 #include "learn/data/dataset_info.h"
@@ -23,19 +23,6 @@ struct Arguments {
   bool json = false, quiet = false;
 };
 
-learn::CountProgress countingOn(bool quiet) {
-  if (quiet) return [](size_t, size_t) {};
-  return [counter = std::shared_ptr<Counter>()](size_t, size_t total) mutable {
-    if (!counter) counter = std::make_shared<Counter>(total, false);
-    counter->done("shards");
-  };
-}
-
-int complain(const std::vector<std::string>& complaints) {
-  for (const std::string& text : complaints) say(fmt::format("error: {}\n", text));
-  return complaints.empty() ? kOk : kSceneError;
-}
-
 int merge(const Arguments& a) {
   std::string folder = a.output;
   if (folder.empty()) {
@@ -45,18 +32,9 @@ int merge(const Arguments& a) {
     std::filesystem::create_directories(folder);
     learn::gatherShards(a.folders, folder, countingOn(a.quiet));
   }
-  learn::Inspection found = learn::describeShards(folder, countingOn(a.quiet));
-  if (!a.seeds.empty()) {
-    const Range seeds = parseRange("--seeds", a.seeds);
-    for (const std::string& name :
-         learn::missingShards(learn::seedSources(seeds.first, seeds.last), found.manifest))
-      found.complaints.push_back(learn::shardFile(folder, name) + ": is missing");
-  }
-  // A manifest of less than all would make the rest look as if it did not belong.
-  if (const int code = complain(found.complaints); code != kOk) return code;
-  learn::writeManifest(folder, found.manifest);
-  fmt::print("{}", learn::datasetText(found.manifest));
-  return kOk;
+  if (a.seeds.empty()) return collectManifest(folder, {}, a.quiet);
+  const Range seeds = parseRange("--seeds", a.seeds);
+  return collectManifest(folder, learn::seedSources(seeds.first, seeds.last), a.quiet);
 }
 
 int check(const Arguments& a) {

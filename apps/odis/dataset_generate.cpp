@@ -10,8 +10,8 @@
 #include "command.h"
 #include "console.h"
 #include "counter.h"
+#include "dataset_manifest.h"
 #include "dataset_range.h"
-#include "learn/data/dataset.h"
 
 namespace odis::app {
 
@@ -28,7 +28,6 @@ class Observer : public learn::ShardObserver {
  public:
   Observer(size_t total, bool quiet) : m_counter(total, quiet) {}
   void done(const learn::ShardSource& source, bool made) override {
-    m_made += made;
     if (made)
       m_counter.done(source.name);
     else
@@ -40,12 +39,11 @@ class Observer : public learn::ShardObserver {
     m_counter.skipped(source.name + ": failed");
   }
   bool cancelled() const override { return InterruptScope::interrupted(); }
-  int made() const { return m_made; }
   int failures() const { return m_failures; }
 
  private:
   Counter m_counter;
-  int m_made = 0, m_failures = 0;
+  int m_failures = 0;
 };
 
 std::vector<learn::ShardSource> sourcesOf(const Arguments& a) {
@@ -81,9 +79,9 @@ int generate(const Arguments& a) {
     return kSceneError;
   }
   if (InterruptScope::interrupted()) return InterruptScope::exitCode();
-  if (!a.quiet)
-    say(fmt::format("{} shards made, {} were there. The manifest: odis dataset merge {}\n", observer.made(),
-                    int(sources.size()) - observer.made(), a.output));
+  // Of a part nothing can be said of the whole: whoever runs the parts collects the manifest.
+  if (a.shards.empty()) return collectManifest(a.output, sources, a.quiet);
+  if (!a.quiet) say(fmt::format("When all parts are made: odis dataset merge {}\n", a.output));
   return kOk;
 }
 
