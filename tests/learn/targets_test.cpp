@@ -186,7 +186,7 @@ TEST(Targets, AgreeWithPilots) {
   for (const Target& t : targets) {
     const std::vector<const PilotVertex*>& members = cells.at(cellOf(*vertices[t.vertex]));
     EXPECT_EQ(t.cellVertices, members.size());
-    EXPECT_EQ(t.starts, std::min<size_t>(members.size(), 32));
+    EXPECT_EQ(t.starts, std::min<size_t>(members.size(), 256));
     if (members.size() < 400) continue;
     ++tests;
     Mean scattered, rays, depths;

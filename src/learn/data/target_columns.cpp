@@ -39,7 +39,8 @@ void addColumns(ShardWriter& writer, const std::string& prefix, std::span<const 
   const auto add = [&]<class T>(const char* name, const Shape& shape, const std::vector<T>& values) {
     writer.add(prefix + name, shape, std::span<const T>(values));
   };
-  std::vector<uint8_t> pixel, starts, samples;
+  std::vector<uint8_t> pixel, samples;
+  std::vector<uint16_t> starts;
   std::vector<uint32_t> vertex, cellVertices;
   std::vector<int32_t> positions(3 * count);
   std::vector<uint16_t> normals(2 * count);
@@ -47,7 +48,7 @@ void addColumns(ShardWriter& writer, const std::string& prefix, std::span<const 
   for (size_t i = 0; i < count; ++i) {
     const Target& t = targets[i];
     pixel.push_back(t.pixel);
-    starts.push_back(uint8_t(t.starts));
+    starts.push_back(uint16_t(t.starts));
     vertex.push_back(t.vertex);
     cellVertices.push_back(t.cellVertices);
     const PositionSteps steps = stepsOf(t.position, frame);
@@ -94,7 +95,7 @@ std::vector<Target> readTargets(const ShardReader& reader, const std::string& pr
   const size_t count = pixel.size();
   const auto vertex = readColumn<uint32_t>(reader, prefix + "vertex", count);
   const auto cellVertices = readColumn<uint32_t>(reader, prefix + "cellVertices", count);
-  const auto starts = readColumn<uint8_t>(reader, prefix + "starts", count);
+  const auto starts = readColumn<uint16_t>(reader, prefix + "starts", count);
   const auto positions = readColumn<int32_t>(reader, prefix + "position", count, 3);
   const auto normals = readColumn<uint16_t>(reader, prefix + "normal", count, 2);
   const auto outgoing = readColumn<Half>(reader, prefix + "outgoing", count, 3);

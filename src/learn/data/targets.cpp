@@ -23,7 +23,7 @@ using render::Vec3;
 namespace {
 
 // At how many vertices of a cell samples start, at most.
-constexpr size_t kMostStarts = 32;
+constexpr size_t kMostStarts = 256;
 
 // A vertex found again as a point on its surface, and a ray that ends there as its path's did.
 struct Start {
@@ -274,14 +274,20 @@ std::vector<Target> traceTargets(const render::Scene& scene, const render::Light
                                  const TargetSettings& settings, uint64_t seed) {
   const Vertices vertices(scene, pilots);
   const CellGrid grid(frame.origin, frame.edge);
-  std::map<uint64_t, std::vector<uint32_t>> cells;
+  struct Members {
+    std::vector<uint32_t> vertices;
+    bool scatter = false;  // whether any does: there is nothing to decide on black surfaces
+  };
+  std::map<uint64_t, Members> cells;
   std::vector<std::pair<double, uint32_t>> pixels;  // the first usable vertex of each path
   uint64_t lastPath = ~0ull, path = 0;
   vertices.forEach([&](uint32_t index, const PilotVertex& v) {
     if (v.depth == 1) ++path;
     if (!isUsable(v)) return;
-    cells[grid.key(positionOf(stepsOf(v.position, frame), frame), unpacked(packed(v.normal)), 0)].push_back(
-        index);
+    Members& members =
+        cells[grid.key(positionOf(stepsOf(v.position, frame), frame), unpacked(packed(v.normal)), 0)];
+    members.vertices.push_back(index);
+    members.scatter |= luminance(v.weight) > 0;
     if (path != lastPath) pixels.emplace_back(1, index);
     lastPath = path;
   });
@@ -291,7 +297,8 @@ std::vector<Target> traceTargets(const render::Scene& scene, const render::Light
   std::vector<Target> targets;
   std::vector<Start> starts;
   std::vector<std::pair<double, const std::vector<uint32_t>*>> weighted;
-  for (const auto& [key, members] : cells) weighted.emplace_back(std::sqrt(double(members.size())), &members);
+  for (const auto& [key, members] : cells)
+    if (members.scatter) weighted.emplace_back(std::sqrt(double(members.vertices.size())), &members.vertices);
   drawInOrder(weighted, random);
   const auto wanted = size_t(settings.cells);
   for (size_t i = 0; i < weighted.size() && targets.size() < wanted; ++i) {
