@@ -147,6 +147,10 @@ TEST(Targets, ShowALampWhereItIs) {
   EXPECT_GT(seen, 20);
 }
 
+double sqr(double x) {
+  return x * x;
+}
+
 // Sums of independent numbers, for tests of their means.
 struct Mean {
   double count = 0, sum = 0, squares = 0;
@@ -182,16 +186,17 @@ TEST(Targets, AgreeWithPilots) {
   std::map<uint64_t, std::vector<const PilotVertex*>> cells;
   for (const PilotVertex* v : vertices)
     if (isUsable(*v)) cells[cellOf(*v)].push_back(v);
-  int tests = 0;
+  int tests = 0, dark = 0;
   for (const Target& t : targets) {
     const std::vector<const PilotVertex*>& members = cells.at(cellOf(*vertices[t.vertex]));
     EXPECT_EQ(t.cellVertices, members.size());
     EXPECT_EQ(t.starts, std::min<size_t>(members.size(), 256));
     if (members.size() < 400) continue;
     ++tests;
-    Mean scattered, rays, depths;
+    Mean scattered, arriving, rays, depths;
     for (const PilotVertex* v : members) {
       scattered.add(luminance(outgoing(*v)));
+      arriving.add(sampleValue(*v));
       depths.add(v->depth);
       rays.add(v->raysAfter + float(v->lightGroup != kNoLightGroup));  // and a shadow ray
     }
@@ -202,10 +207,24 @@ TEST(Targets, AgreeWithPilots) {
         std::sqrt(scattered.varianceOfMean() + double(t.outgoingRms) * t.outgoingRms / settings.outgoing +
                   ofStarts * ofStarts);
     EXPECT_LT(std::abs(z), 4) << luminance(t.outgoing) << " against " << scattered.mean();
+    // Where the lamp is not seen, all that arrives is scattered light: its irradiance by the map and by the pilots.
+    if (*std::max_element(t.emission.begin(), t.emission.end()) == 0) {
+      ++dark;
+      double irradiance = 0, variance = sqr(0.1 * arriving.mean()) / t.starts + arriving.varianceOfMean();
+      for (int texel = 0; texel < kTargetTexels; ++texel) {
+        const auto i = size_t(texel);
+        const double weight = std::max(dot(texelDirection(texel), t.normal), 0.0f) * 4 * M_PI / kTargetTexels;
+        irradiance += weight * t.indirect[i];
+        variance += sqr(weight * t.indirectRms[i]) / std::max<int>(t.samples[i], 1);
+      }
+      EXPECT_LT(std::abs(irradiance - arriving.mean()) / std::sqrt(variance), 4)
+          << irradiance << " against " << arriving.mean();
+    }
     // Vertices deep in their paths meet roulette sooner, which no target does.
     if (depths.mean() < 1.2) EXPECT_NEAR(t.outgoingRays, rays.mean(), 0.05 * rays.mean());
   }
   EXPECT_GE(tests, 4);
+  EXPECT_GE(dark, 2);
 }
 
 TEST(Targets, AreTheSameForTheSameSeed) {
