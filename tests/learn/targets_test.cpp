@@ -63,7 +63,7 @@ TEST(Targets, OfABallUnderAWhiteSky) {
       const float cosine = dot(texelDirection(texel), t.normal);
       const auto i = size_t(texel);
       EXPECT_EQ(t.indirect[i], 0);
-      if (t.pixel && cosine > 0.2f) EXPECT_EQ(t.samples[i], 2);
+      if (t.pixel && cosine > 0.2f) EXPECT_GE(t.samples[i], 2);
       if (t.pixel && cosine < -0.2f) EXPECT_EQ(t.samples[i], 0);
       if (t.samples[i] == 0) continue;
       EXPECT_NEAR(t.emission[i], 1, 1e-5f);
@@ -108,7 +108,7 @@ TEST(Targets, OfTheFurnace) {
       squares += double(t.indirectRms[i]) * t.indirectRms[i] * t.samples[i];
     }
     const double mean = sum / samples, variance = squares / samples - mean * mean;
-    EXPECT_GE(samples, 1000);
+    EXPECT_GE(samples, 1024);
     EXPECT_LT(std::abs(mean - 1) / std::sqrt(variance / samples), 4) << mean;
   }
 }

@@ -103,22 +103,26 @@ class Tracer {
   void traceArriving(std::span<const Start> starts, Target& target) {
     std::vector<Path> paths;
     std::vector<int> texels;
-    for (int texel = 0; texel < kTargetTexels; ++texel)
-      for (int i = 0; i < m_settings.perTexel; ++i) {
-        Sampler numbers = sampler(arriving, uint32_t(texel), uint32_t(i));
-        const Start& start = pick(starts, numbers.get1D());
-        const Vec2 u = numbers.get2D();
-        const Vec3 wi =
-            render::fromOdis(squareToDirection({(float(texel % kTargetSize) + u.x) / kTargetSize,
-                                                (float(texel / kTargetSize) + u.y) / kTargetSize}));
-        if (!start.both && render::dot(wi, start.normal) <= 0) continue;
-        Path& path = paths.emplace_back(render::Scene::spawn(start.at, wi), numbers);
-        // Emission met directly counts whole, and tells how next-event estimation would have found it.
-        path.bySampling = true;
-        path.directionPdf = INFINITY;
-        path.previous = render::lightReference(start.at, start.wo);
-        texels.push_back(texel);
-      }
+    // Once all texels had their turns, some have another one until there are as many samples as half of the texels make.
+    const int turns = m_settings.perTexel * kTargetTexels;
+    const auto enough = size_t(turns / 2);
+    for (int turn = 0; turn < turns || (paths.size() < enough && turn < 2 * turns); ++turn) {
+      // A stride that visits every texel, so that additional turns are spread evenly.
+      constexpr int kStride = 389;
+      const int texel = turn * kStride % kTargetTexels;
+      Sampler numbers = sampler(arriving, uint32_t(texel), uint32_t(turn / kTargetTexels));
+      const Start& start = pick(starts, numbers.get1D());
+      const Vec2 u = numbers.get2D();
+      const Vec3 wi = render::fromOdis(squareToDirection({(float(texel % kTargetSize) + u.x) / kTargetSize,
+                                                          (float(texel / kTargetSize) + u.y) / kTargetSize}));
+      if (!start.both && render::dot(wi, start.normal) <= 0) continue;
+      Path& path = paths.emplace_back(render::Scene::spawn(start.at, wi), numbers);
+      // Emission met directly counts whole, and tells how next-event estimation would have found it.
+      path.bySampling = true;
+      path.directionPdf = INFINITY;
+      path.previous = render::lightReference(start.at, start.wo);
+      texels.push_back(texel);
+    }
     render::tracePaths(m_path, paths);
 
     std::vector<Moments> indirect(kTargetTexels), emission(kTargetTexels);

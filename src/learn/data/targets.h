@@ -15,9 +15,9 @@ inline constexpr int kTargetTexels = kTargetSize * kTargetSize;
 
 struct TargetSettings {
   int cells = 192, pixels = 64;  // how many of each
-  int perTexel = 2;              // samples of a map's texel; half of the texels lie below most surfaces
-  int outgoing = 256;            // samples of what is scattered back
-  int lights = 1024;             // samples of next-event estimation, of all groups together
+  int perTexel = 2;    // directions in a map's texel; half of them lie below most surfaces, and aren't traced
+  int outgoing = 256;  // samples of what is scattered back
+  int lights = 1024;   // samples of next-event estimation, of all groups together
 };
 
 // What a group of lights gives, as next-event estimation that chooses the group sees it: f |cos| Le V over the density
