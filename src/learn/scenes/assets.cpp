@@ -134,6 +134,13 @@ std::string Assets::texture(const std::string& path) const {
   return cached(path, shrunkTexture);
 }
 
+bool Assets::isVivid(const std::string& path) const {
+  const std::lock_guard lock(m_mutex);
+  const auto known = m_vivid.find(path);
+  if (known != m_vivid.end()) return known->second;
+  return m_vivid[path] = isVividTexture(path);
+}
+
 std::string Assets::environment(const std::string& path) const {
   return cached(path, shrunkEnvironment);
 }

@@ -40,6 +40,8 @@ class Assets {
   // A texture as the bytes of a PNG, an environment as those of an EXR, both made smaller if they are large.
   std::string texture(const std::string& path) const;
   std::string environment(const std::string& path) const;
+  // Whether a texture is of a stronger colour than walls and floors are.
+  bool isVivid(const std::string& path) const;
 
  private:
   std::string cached(const std::string& path, std::string (*read)(const std::string&)) const;
@@ -48,6 +50,7 @@ class Assets {
   std::vector<FurnitureModel> m_furniture;
   std::string m_fingerprint;
   mutable std::map<std::string, std::string> m_cache;
+  mutable std::map<std::string, bool> m_vivid;
   mutable std::mutex m_mutex;
 };
 

@@ -15,9 +15,10 @@ namespace {
 
 constexpr int kAttempts = 400;
 // Of the brightness of a scene's two views.
-constexpr double kMostContrast = 12;
-// The share of an image's blocks that some hundred paths each must find light in.
-constexpr double kLeastLit = 0.7;
+constexpr double kMostContrast = 8;
+// The share of an image's blocks that some hundred paths each must find light in, relative to the mean so much; and of
+// its pixels that one of a few paths must.
+constexpr double kLeastLit = 0.7, kLeastLight = 0.03, kLeastPixels = 0.5;
 
 std::shared_ptr<const render::Sensor> sensorOf(const View& view, const Vec2i& resolution) {
   const Vec3 forward = render::normalize(view.target - view.origin);
@@ -31,10 +32,11 @@ std::shared_ptr<const render::Sensor> sensorOf(const View& view, const Vec2i& re
 
 // What a coarse grid of camera rays meets.
 struct Look {
-  float near = 0, middle = 0;  // the distance of the nearest 5 % and 50 % of the rays, in metres
-  float open = 0;              // the share that meets nothing
-  float flattest = 0;          // the largest share that meets one plane
-  int planes = 0;              // how many different ones, in a coarse count
+  float near = 0, close = 0,
+        middle = 0;    // the distance of the nearest 5 %, 25 % and 50 % of the rays, in metres
+  float open = 0;      // the share that meets nothing
+  float flattest = 0;  // the largest share that meets one plane
+  int planes = 0;      // how many different ones, in a coarse count
 };
 
 Look lookAt(const render::Scene& scene, const View& view, float scale) {
@@ -69,6 +71,7 @@ Look lookAt(const render::Scene& scene, const View& view, float scale) {
   std::sort(distances.begin(), distances.end());
   Look look;
   look.near = distances[distances.size() / 20];
+  look.close = distances[distances.size() / 4];
   look.middle = distances[distances.size() / 2];
   look.open = float(open) / (kColumns * kRows);
   look.planes = int(planes.size());
@@ -95,12 +98,12 @@ View candidate(const Description& scene, Random& random, bool closeUp) {
   const Box box = boxAround(space.polygon, space.bottom, space.top);
   const Vec3 subject = scene.interests.empty() ? (box.min + box.max) * 0.5f
                                                : random.pick(std::span<const Vec3>(scene.interests));
-  view.fov = float(random.chance(0.8) ? random.range(45, 80) : random.range(28, 100));
+  view.fov = float(random.chance(0.8) ? random.range(55, 85) : random.range(35, 105));
   if (closeUp) {
     const auto distance = float(random.logRange(0.35, 1.2));
     const auto phi = float(random.range(0, 2 * M_PI)), lift = float(random.range(-0.1, 0.7));
     view.origin = subject + Vec3(std::cos(phi), std::sin(phi), lift) * distance;
-    view.fov = float(random.range(30, 55));
+    view.fov = float(random.range(35, 60));
     view.target = subject;
     return view;
   }
@@ -127,18 +130,20 @@ bool inside(const Description& scene, const Vec3& p, float margin) {
 float interest(const Description& scene, const render::Scene& loaded, const View& view, bool closeUp) {
   if (!inside(scene, view.origin, std::min(0.2f, scene.closest))) return 0;
   const Vec3 direction = render::normalize(view.target - view.origin);
-  if (std::abs(direction.z) > 0.9f) return 0;
+  if (std::abs(direction.z) > (closeUp ? 0.9f : 0.5f)) return 0;
   const View world = inWorld(scene, view);
   if (!isFree(loaded, world.origin, (closeUp ? 0.12f : scene.closest) * scene.scale)) return 0;
   const Look look = lookAt(loaded, world, scene.scale);
   if (look.near < (closeUp ? 0.15f : scene.closest)) return 0;
   if (look.open > (scene.indoors ? 0.4f : 0.65f)) return 0;
-  if (look.flattest > (closeUp ? 0.8f : 0.6f) || look.middle < (closeUp ? 0.2f : 1.4f)) return 0;
+  // Something near by may hide a part of the room, not most of it.
+  if (look.close < (closeUp ? 0.2f : 1.1f) || look.middle < (closeUp ? 0.3f : 1.6f)) return 0;
+  if (look.flattest > (closeUp ? 0.7f : scene.indoors ? 0.5f : 0.6f)) return 0;
   if (look.planes < (closeUp ? 2 : 5)) return 0;
-  return std::sqrt(float(look.planes)) * (1 - look.flattest);
+  return std::sqrt(float(look.planes) * std::min(look.middle, 5.0f)) * (1 - look.flattest);
 }
 
-// The mean luminance without the brightest tenth of the image, which are lights; 0 if too much of it is black.
+// The mean luminance without the brightest tenth of the image, which are lights; 0 if too much of it is next to black.
 // Pixels are put together in blocks first, so that noise is not taken for lights.
 float brightness(render::Scene& loaded, const View& world) {
   constexpr int kWidth = 40, kBlock = 4;
@@ -158,16 +163,20 @@ float brightness(render::Scene& loaded, const View& world) {
   options.maxDepth = 12;
   const render::RenderResult result = render::render(loaded, options, silent);
   std::vector<double> blocks(size_t(blocksX) * size_t(blocksY));
+  int lit = 0;
   for (int y = 0; y < resolution.y; ++y)
-    for (int x = 0; x < resolution.x; ++x)
-      blocks[size_t(y / kBlock) * size_t(blocksX) + size_t(x / kBlock)] +=
-          render::luminance(result.frame.color[size_t(y) * size_t(resolution.x) + size_t(x)]) /
-          (kBlock * kBlock);
+    for (int x = 0; x < resolution.x; ++x) {
+      const float light = render::luminance(result.frame.color[size_t(y) * size_t(resolution.x) + size_t(x)]);
+      lit += light > 0;
+      blocks[size_t(y / kBlock) * size_t(blocksX) + size_t(x / kBlock)] += light / (kBlock * kBlock);
+    }
+  if (lit < kLeastPixels * resolution.x * resolution.y) return 0;
   std::sort(blocks.begin(), blocks.end());
-  if (!(blocks[size_t(double(blocks.size()) * (1 - kLeastLit))] > 0)) return 0;
   double sum = 0;
   const size_t count = blocks.size() * 9 / 10;
   for (size_t i = 0; i < count; ++i) sum += blocks[i];
+  const double dark = blocks[size_t(double(blocks.size()) * (1 - kLeastLit))];
+  if (!(dark > kLeastLight * sum / double(count))) return 0;
   return float(sum / double(count));
 }
 
@@ -180,7 +189,7 @@ bool chooseViews(Description& scene, render::Scene& loaded, Random random) {
   for (const double closeUps : {0.1, 0.2}) {
     const bool closeUp = random.chance(closeUps);
     // The best of a few that will do.
-    const int wanted = random.integer(2, 8);
+    const int wanted = random.integer(3, 10);
     int found = 0;
     float best = 0;
     View chosen;

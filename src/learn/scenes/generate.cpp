@@ -18,7 +18,7 @@ namespace fs = std::filesystem;
 namespace {
 
 // Raised when the same seed gives another scene than before.
-constexpr int kVersion = 1;
+constexpr int kVersion = 2;
 // A draft that no camera sees anything of is thrown away.
 constexpr int kDrafts = 30, kViewings = 3;
 

@@ -8,8 +8,8 @@ using render::kPi;
 
 Rgb lightColor(Random& random) {
   Rgb color(1.0f);
-  if (random.chance(0.12)) {
-    color = hue(random.unit(), random.range(0.4, 0.95), 1);
+  if (random.chance(0.07)) {
+    color = hue(random.unit(), random.range(0.3, 0.85), 1);
   } else {  // from candles (-1) to a cloudy sky (0.5)
     const double warmth = random.range(-1, 0.5);
     color = warmth < 0 ? Rgb(1, float(1 + 0.45 * warmth), float(1 + 0.8 * warmth))
@@ -113,7 +113,14 @@ Piece makePendant(Draft& draft, float drop, double power) {
                 draft.random.chance(0.5) ? draft.materials.metal() : draft.materials.lacquer());
       break;
     }
-    default:  // a glass globe, or the bulb alone
+    default:  // a luminous globe, a glass globe, or the bulb alone
+      if (random.chance(0.6)) {
+        const float globe = std::min(radius * 0.7f, radius * 0.4f + 0.045f);
+        piece.balls.push_back(
+            {bulb, globe, kNoMaterial, radianceOf(random, power, 4 * M_PI * globe * globe)});
+        piece.size = {2 * radius, 2 * radius, drop + 2 * radius};
+        return piece;
+      }
       if (random.chance(0.4)) {
         draft.tag("bulb in glass");
         piece.balls.push_back(
@@ -232,11 +239,24 @@ void addGlowingBoard(Draft& draft, const Room& room, size_t wall, float s, const
   }
 }
 
+// A luminous panel on a wall, as a window of milky glass; below the ceiling where no wall has a place for it.
+static void addWallPanel(Draft& draft, Room& room, double power) {
+  Random& random = draft.random;
+  const auto wall = size_t(random.integer(0, int(room.corners.size()) - 1));
+  const auto width = float(random.logRange(0.3, 2)), bottom = float(random.range(0.5, 1.2));
+  const float top = std::min(room.height - 0.15f, bottom + float(random.logRange(0.3, 1.6)));
+  const std::optional<Opening> place = room.open(random, wall, width, bottom, top);
+  if (!place) return addCeilingPanel(draft, room, {room.middle().x, room.middle().y}, {0.3f, 0.3f}, power);
+  const Vec2 u = room.along(wall), n = room.inward(wall);
+  addLightPanel(draft, room.at(wall, place->left, 0.03f, bottom), Vec3(u.x, u.y, 0) * width,
+                {0, 0, top - bottom}, {n.x, n.y, 0}, power, true);
+}
+
 void lightRoom(Draft& draft, Room& room, double power) {
   Random& random = draft.random;
   const Box box = room.box();
   const Vec3 middle = room.middle();
-  switch (random.weighted({2, 2, 3, 2, 1.5})) {
+  switch (random.weighted({3, 2, 3, 1.5, 1.5, 2.5})) {
     case 0: {
       const Vec2 half(float(random.logRange(0.1, 0.8)), float(random.logRange(0.1, 0.8)));
       addCeilingPanel(draft, room, {middle.x, middle.y}, half, power);
@@ -268,7 +288,7 @@ void lightRoom(Draft& draft, Room& room, double power) {
       }
       break;
     }
-    default: {
+    case 4: {
       const Vec3 at = middle + Vec3(0, 0, room.height / 2 - 0.08f);
       const Vec3 half = random.chance(0.5) ? Vec3(0.6f, 0, 0) : Vec3(0, 0.6f, 0);
       for (const float side : {-0.06f, 0.06f}) {
@@ -277,6 +297,8 @@ void lightRoom(Draft& draft, Room& room, double power) {
       }
       break;
     }
+    default:
+      addWallPanel(draft, room, power);
   }
 }
 

@@ -43,7 +43,7 @@ Materials::Materials(Description& scene, const Assets& assets, Random random)
   m_gloss = m_random.pick({0.1, 0.3, 0.3, 0.5, 0.85});
   m_textured = m_random.pick({0.0, 0.35, 0.6, 0.9});
   m_saturation = m_random.pick({0.15, 0.4, 0.4, 0.7});
-  m_brightness = m_random.pick({0.6, 1.0, 1.0, 1.0});
+  m_brightness = m_random.pick({0.35, 0.6, 0.85, 1.0});
   m_hue = m_random.unit();
 }
 
@@ -100,15 +100,20 @@ Materials::Base Materials::patterned(Pattern pattern, const Rgb& first, const Rg
   return {Rgb(0.5f), addFile(texture.png), texture.tile};
 }
 
-Materials::Base Materials::photographed() {
-  const std::string& path = m_random.pick(std::span<const std::string>(m_assets.textures()));
-  return {Rgb(0.5f), addFile(m_assets.texture(path)), Vec2(float(m_random.logRange(0.5, 2.5)))};
+Materials::Base Materials::photographed(bool vivid) {
+  constexpr int kAttempts = 12;
+  const std::string* path = nullptr;
+  for (int attempt = 0; attempt < kAttempts; ++attempt) {
+    path = &m_random.pick(std::span<const std::string>(m_assets.textures()));
+    if (vivid || !m_assets.isVivid(*path)) break;
+  }
+  return {Rgb(0.5f), addFile(m_assets.texture(*path)), Vec2(float(m_random.logRange(0.5, 2.5)))};
 }
 
 Materials::Base Materials::colored(double probability, std::initializer_list<Pattern> patterns,
                                    const Rgb& first, const Rgb& second) {
   if (!m_random.chance(probability * m_textured)) return {second, "", {1, 1}};
-  if (!m_assets.textures().empty() && m_random.chance(0.5)) return photographed();
+  if (!m_assets.textures().empty() && m_random.chance(0.5)) return photographed(false);
   return patterned(m_random.pick(patterns), first, second);
 }
 
@@ -139,7 +144,9 @@ MaterialId Materials::wall() {
 
 MaterialId Materials::ceiling() {
   return shared(m_ceiling, [&] {
-    return m_random.chance(0.85) ? matt(hue(m_hue, 0.05, m_random.range(0.6, 0.9))) : wall();
+    return m_random.chance(0.85)
+               ? matt(hue(m_hue, 0.05, m_random.range(0.6, 0.9) * (0.4 + 0.6 * m_brightness)))
+               : wall();
   });
 }
 
@@ -181,7 +188,7 @@ MaterialId Materials::lacquer() {
   return shared(m_lacquer, [&] {
     const bool grey = m_random.chance(0.4);
     const double h = m_random.unit(), value = m_random.range(0.04, 0.85);
-    return finish({hue(h, grey ? 0.03 : m_random.range(0.3, 0.95), value), "", {1, 1}}, 0.3 + 0.7 * m_gloss);
+    return finish({hue(h, grey ? 0.03 : m_random.range(0.2, 0.85), value), "", {1, 1}}, 0.3 + 0.7 * m_gloss);
   });
 }
 
@@ -237,7 +244,7 @@ MaterialId Materials::picture() {
             second = hue(m_random.unit(), m_random.unit(), m_random.range(0.1, 0.9));
   Base base =
       !m_assets.textures().empty() && m_random.chance(0.4)
-          ? photographed()
+          ? photographed(true)
           : patterned(m_random.pick({Pattern::blocks, Pattern::blocks, Pattern::noise, Pattern::spots}),
                       first, second);
   return finish(base, 0.5 * m_gloss);

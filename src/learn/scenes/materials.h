@@ -55,7 +55,8 @@ class Materials {
   MaterialId addTwoSided(const std::string& bsdf);
   MaterialId finish(const Base& base, double gloss);
   Base patterned(Pattern pattern, const Rgb& first, const Rgb& second);
-  Base photographed();
+  // One of the user's images; walls and things avoid those that are `vivid`.
+  Base photographed(bool vivid);
   Base colored(double probability, std::initializer_list<Pattern> patterns, const Rgb& first,
                const Rgb& second);
   std::string addFile(const std::string& bytes);

@@ -47,6 +47,14 @@ std::string shrunkTexture(const std::string& path) {
   return render::encodePng(small.width, small.height, 3, bytes.data());
 }
 
+bool isVividTexture(const std::string& path) {
+  const Small small = shrunk(*Image::read(path, true, {path}), 32, 32);
+  Rgb mean(0.0f);
+  for (const Rgb& pixel : small.pixels) mean += pixel / float(small.pixels.size());
+  const auto [least, most] = std::minmax({mean.x, mean.y, mean.z});
+  return most - least > 0.3f && least < 0.1f * most;
+}
+
 std::string shrunkEnvironment(const std::string& path) {
   const Small small = shrunk(*Image::read(path, false, {path}), 512, 256);
   return encodeHdr(small.width, small.height, small.pixels);

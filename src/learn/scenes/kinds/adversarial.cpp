@@ -26,7 +26,7 @@ void addThings(Draft& draft, int count, bool metal) {
 
 void addPlane(Draft& draft, MaterialId material) {
   MeshData plane;
-  addQuad(plane, {-20, -20, 0}, {40, 0, 0}, {0, 40, 0}, {0, 0, 1});
+  addQuad(plane, {-300, -300, 0}, {600, 0, 0}, {0, 600, 0}, {0, 0, 1});
   draft.add(std::move(plane), material);
   draft.scene.standing.push_back({{{-6, -6}, {6, -6}, {6, 6}, {-6, 6}}, 0, 4});
   draft.scene.indoors = false;

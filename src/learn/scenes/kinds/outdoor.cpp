@@ -183,7 +183,7 @@ void buildOutdoor(Draft& draft) {
   Random& random = draft.random;
   draft.scene.indoors = false;
   const bool night = random.chance(0.3);
-  const float reach = 40;
+  const float reach = 300;  // the horizon
   MeshData ground;
   addQuad(ground, {-reach, -reach, 0}, {2 * reach, 0, 0}, {0, 2 * reach, 0}, {0, 0, 1});
   draft.add(std::move(ground), random.chance(0.6) ? draft.materials.floor() : draft.materials.foliage());

@@ -12,7 +12,8 @@ void buildRoom(Draft& draft) {
     door = room.open(random, size_t(random.integer(0, int(room.corners.size()) - 1)), 0.9f, 0, 2.05f);
   addShell(draft, room);
   if (door) addDoor(draft, room, *door, 0);
-  lightRoom(draft, room, random.logRange(20, 300));
+  // One system of lamps, or two that may be of very different power.
+  for (int i = random.chance(0.4) ? 2 : 1; i > 0; --i) lightRoom(draft, room, random.logRange(20, 300));
   const int lamps = random.chance(0.5) ? random.integer(1, 3) : 0;
   furnish(draft, room, anyTheme(random), random.range(0.2, 1), lamps, random.logRange(5, 200));
 }

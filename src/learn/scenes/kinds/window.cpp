@@ -30,7 +30,8 @@ void buildWindow(Draft& draft) {
                                          : skyDirection(random.range(0, 6.28), random.range(0.1, 1.4));
   addSky(draft, toSun);
   if (random.chance(0.85)) addSurroundings(draft, room.box(), float(random.pick({0.21, 0.3, 3.0, 9.0})));
-  furnish(draft, room, anyTheme(random), random.range(0.2, 1), random.chance(0.15) ? 1 : 0,
+  if (random.chance(0.25)) lightRoom(draft, room, random.logRange(1, 30));
+  furnish(draft, room, anyTheme(random), random.range(0.2, 1), random.chance(0.3) ? random.integer(1, 3) : 0,
           random.logRange(1, 50));
 }
 
