@@ -26,7 +26,7 @@ class ShardObserver {
   virtual bool cancelled() const { return false; }
 };
 
-// Makes all shards that are not there, `jobs` at a time, each by one thread. A scene that can't be used fails alone. Throws
+// Makes all shards that are not there, in any order, `jobs` at a time, each by one thread. A scene that can't be used fails alone. Throws
 // WriteError, after which nothing new begins.
 void makeShards(const std::vector<ShardSource>& sources, const DataSettings& settings, const Assets& assets,
                 const std::string& folder, int jobs, ShardObserver& observer);

@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <fstream>
 #include <mutex>
+#include <random>
 #include <thread>
 
 #include "learn/data/dataset.h"
@@ -49,6 +50,9 @@ std::vector<ShardSource> partOf(const std::vector<ShardSource>& sources, int fir
 
 void makeShards(const std::vector<ShardSource>& sources, const DataSettings& settings, const Assets& assets,
                 const std::string& folder, int jobs, ShardObserver& observer) {
+  // Begins anywhere and goes round: of several processes with the same task each makes a stretch of its own, up to where it
+  // meets what another one has made.
+  const size_t begin = sources.empty() ? 0 : std::random_device()() % sources.size();
   std::atomic<size_t> next{0};
   std::atomic<bool> full{false};
   std::mutex mutex;
@@ -57,17 +61,18 @@ void makeShards(const std::vector<ShardSource>& sources, const DataSettings& set
     // A scene is small: many threads on one would wait for each other more than they work.
     tbb::task_arena alone(1);
     for (size_t i = next++; i < sources.size() && !full && !observer.cancelled(); i = next++) {
+      const ShardSource& source = sources[(begin + i) % sources.size()];
       try {
-        const bool made = alone.execute([&] { return makeShard(sources[i], settings, assets, folder); });
+        const bool made = alone.execute([&] { return makeShard(source, settings, assets, folder); });
         const std::lock_guard lock(mutex);
-        observer.done(sources[i], made);
+        observer.done(source, made);
       } catch (const render::WriteError&) {
         const std::lock_guard lock(mutex);
         writeError = std::current_exception();
         full = true;
       } catch (const std::exception& e) {
         const std::lock_guard lock(mutex);
-        observer.failed(sources[i], e.what());
+        observer.failed(source, e.what());
       }
     }
   };
