@@ -21,18 +21,17 @@ namespace fs = std::filesystem;
 
 Layers parseLayers(const std::string& text) {
   Layers layers;
+  const std::pair<const char*, bool*> known[] = {{"albedo", &layers.albedo},       {"normal", &layers.normal},
+                                                 {"position", &layers.position},   {"depth", &layers.depth},
+                                                 {"roughness", &layers.roughness}, {"guide", &layers.guide}};
   std::istringstream stream(text);
   for (std::string name; std::getline(stream, name, ',');) {
-    const bool all = name == "all";
-    if (all || name == "albedo") layers.albedo = true;
-    if (all || name == "normal") layers.normal = true;
-    if (all || name == "position") layers.position = true;
-    if (all || name == "depth") layers.depth = true;
-    if (all || name == "roughness") layers.roughness = true;
-    if (!all && name != "albedo" && name != "normal" && name != "position" && name != "depth" &&
-        name != "roughness")
+    bool found = false;
+    for (const auto& [layer, wanted] : known)
+      if (name == "all" || name == layer) found = *wanted = true;
+    if (!found)
       throw UsageError(fmt::format(
-          "--aov: found \"{}\", expected albedo, normal, position, depth, roughness or all", name));
+          "--aov: found \"{}\", expected albedo, normal, position, depth, roughness, guide or all", name));
   }
   return layers;
 }
@@ -97,6 +96,12 @@ void writeLayers(const std::string& path, const Frame2D& frame, const FilmSettin
   if (layers.position) planes.add("P.", "XYZ", frame.position, false);
   if (layers.depth) planes.add("depth.Z", frame.depth, false);
   if (layers.roughness) planes.add("roughness.Y", frame.roughness, true);
+  if (layers.guide) {
+    planes.add("guide.alpha", frame.guideAlpha, true);
+    planes.add("guide.entropy", frame.guideEntropy, true);
+    planes.add("guide.survival", frame.guideSurvival, true);
+    planes.add("guide.cell", frame.guideCell, false);
+  }
   writeExr(path, {film.width, film.height, frame.x, frame.y, frame.width, frame.height}, planes.channels(),
            metadata);
 }

@@ -167,7 +167,7 @@ void RenderArguments::addTo(CLI::App& app) {
   app.add_option("--time-limit", timeLimit, "Stop after so many seconds; 0: no limit")
       ->check(numberBetween(0, 1e9))
       ->capture_default_str();
-  app.add_option("--aov", aov, "Further layers: albedo,normal,position,depth,roughness or all");
+  app.add_option("--aov", aov, "Further layers: albedo,normal,position,depth,roughness,guide or all");
   app.add_flag("--variance", variance, "Write each pixel's estimated variance as a layer");
   app.add_flag("--stats", stats, "Print what it cost");
   app.add_option("--stats-json", statsFile, "Write what it cost");

@@ -141,6 +141,9 @@ class Guide {
   // What is known about lights in a cell of this guide. The table lasts as long as the guide.
   LearnedLights lights(const Cell& cell) const;
 
+  // The number of a cell of this guide, below cellCount().
+  uint32_t indexOf(const Cell& cell) const;
+
   uint64_t cellCount() const;
   uint64_t bytes() const;
   // The variance that the pilot predicts of a guided sample, as a ratio to an unguided one; 1 before build().

@@ -57,8 +57,11 @@ void Guide::find(std::span<const Place> places, std::span<const Cell*> cells) co
 
 LearnedLights Guide::lights(const Cell& cell) const {
   if (!(cell.lightShare > 0)) return {};
-  const size_t index = size_t(&cell - m_data->cells.data());
-  return {&m_data->lights[index * (m_data->lightGroups + 1)], cell.lightShare};
+  return {&m_data->lights[indexOf(cell) * size_t(m_data->lightGroups + 1)], cell.lightShare};
+}
+
+uint32_t Guide::indexOf(const Cell& cell) const {
+  return uint32_t(&cell - m_data->cells.data());
 }
 
 uint64_t Guide::cellCount() const {

@@ -15,17 +15,6 @@ void flushDenormals() {
   _mm_setcsr(_mm_getcsr() | 0x8040u);
 }
 
-void accumulate(FeatureSums& sums, const FirstHit& first) {
-  if (!first.valid) return;
-  sums.albedo += first.albedo;
-  sums.normal += first.normal;
-  sums.geometricNormal += first.geometricNormal;
-  sums.position += first.position;
-  sums.depth += first.depth;
-  sums.roughness += first.roughness;
-  ++sums.hits;
-}
-
 // The pixels of a tile in blocks of 4 x 4, so that neighbours in the list are neighbours in the image.
 std::vector<uint32_t> pixelsOfTile(const Crop& crop, int x0, int y0) {
   constexpr int kBlock = 4;
@@ -46,7 +35,7 @@ void deliver(const Pass& pass, const Path& path, uint32_t pixel, float filterWei
   const Rgb value = isFinite(path.radiance) ? path.radiance * filterWeight : Rgb(0, 0, 0);
   if (pass.image) (*pass.image)[pixel].add(value);
   if (pass.emitted) (*pass.emitted)[pixel] += path.emitted * filterWeight;
-  if (pass.features) accumulate((*pass.features)[pixel], path.first);
+  if (pass.features) (*pass.features)[pixel].add(path.first);
 }
 
 // All samples of a tile, one of each pixel at a time; appends their vertices to `records` if it is given.

@@ -23,14 +23,6 @@ struct PixelSums {
   }
 };
 
-// Sums of features over the samples that met a surface. 60 bytes a pixel.
-struct FeatureSums {
-  Rgb albedo{0, 0, 0};
-  Vec3 normal{0, 0, 0}, geometricNormal{0, 0, 0}, position{0, 0, 0};
-  float depth = 0, roughness = 0;
-  uint32_t hits = 0;
-};
-
 // Pilot vertices, an array for each tile.
 using Records = std::vector<std::vector<PilotVertex>>;
 

@@ -72,7 +72,7 @@ class VertexGuide {
     m_active = !m_map.empty();
   }
 
-  bool active() const { return m_active; }
+  float bsdfShare() const { return m_active ? m_alpha : 1; }
   // The density of the mixture in a direction whose BSDF densities are these.
   float pdf(float bsdfPdf, float guidablePdf, const Vec3& wiWorld) const {
     if (!m_active) return bsdfPdf;
@@ -122,7 +122,22 @@ class VertexGuide {
 void describe(FirstHit& first, const SurfacePoint& at, const Vec3& wo, float distance) {
   const BsdfFeatures features = at.shape->bsdf().features(at, wo);
   const float side = wo.z < 0 ? -1.0f : 1.0f;
-  first = {true, at.p, at.shading.n * side, at.ng * side, features.albedo, distance, features.roughness};
+  first.valid = true;
+  first.position = at.p;
+  first.normal = at.shading.n * side;
+  first.geometricNormal = at.ng * side;
+  first.albedo = features.albedo;
+  first.depth = distance;
+  first.roughness = features.roughness;
+}
+
+// What the guide decides in the cell; `throughput` relative to the pixel's value.
+void describe(FirstHit& first, const PathSettings& settings, const Cell& cell, float bsdfShare,
+              float throughput) {
+  first.cell = &cell;
+  first.cellIndex = settings.guide->indexOf(cell);
+  first.bsdfShare = bsdfShare;
+  first.survival = settings.learnedRoulette ? survivalProbability(cell, throughput) : 1;
 }
 
 // A recorded vertex, with what it must remember until its path is complete.
@@ -314,8 +329,11 @@ bool extend(const PathSettings& settings, Path& path, uint32_t index, const Vert
   // Sample where the path goes on.
   BsdfSample next = guide.sample(at, wo, sampler);
   if (!isFinite(next.weight)) next = {};
-  if (settings.features && !path.first.valid && !isDiscrete(next.lobe))
+  if (settings.features && !path.first.valid && !isDiscrete(next.lobe)) {
     describe(path.first, at, wo, path.distance);
+    if (cell)
+      describe(path.first, settings, *cell, guide.bsdfShare(), luminance(path.throughput) / path.pixelValue);
+  }
 
   // Where nothing was learned: Russian roulette by throughput, as Mitsuba plays it.
   Rgb weight = next.weight;

@@ -9,6 +9,7 @@
 
 #include "render/emitter/light_sampler.h"
 #include "render/integrator/direction_guide.h"
+#include "render/integrator/features.h"
 #include "render/sampler/sampler.h"
 #include "render/scene/scene.h"
 
@@ -27,15 +28,6 @@ struct PathSettings {
   bool learnedRoulette = false;           // by what `guide` knows of where a path arrives
   bool learnedLights = false;             // next-event estimation chooses by what it knows
   bool features = false;                  // fill Path::first
-};
-
-// Features at the first vertex whose sampled lobe is not discrete.
-struct FirstHit {
-  bool valid = false;
-  Vec3 position, normal, geometricNormal;
-  Rgb albedo;
-  float depth = 0;  // distance from the camera along the path
-  float roughness = 0;
 };
 
 struct RayCounts {

@@ -419,7 +419,7 @@ class Renderer {
       m_stats.pilotSamples += m_pilot[pixel].count;
     }
     m_stats.spp = double(m_stats.samples) / double(std::max<size_t>(m_pixels, 1));
-    if (m_options.features) writeFeatures(frame);
+    if (m_options.features) writeFeatures(m_features, m_options.integrator == IntegratorKind::odis, frame);
     return frame;
   }
 
@@ -432,19 +432,6 @@ class Renderer {
       all += weight + m_guided[pixel].count;
     }
     return all > 0 ? pilot / all : 0;
-  }
-
-  void writeFeatures(Frame2D& frame) const {
-    for (const FeatureSums& sums : m_features) {
-      const float scale = sums.hits > 0 ? 1.0f / float(sums.hits) : 0.0f;
-      const auto unit = [](const Vec3& v) { return lengthSquared(v) > 0 ? normalize(v) : Vec3(0, 0, 0); };
-      frame.albedo.push_back(sums.albedo * scale);
-      frame.normal.push_back(unit(sums.normal));
-      frame.geometricNormal.push_back(unit(sums.geometricNormal));
-      frame.position.push_back(sums.position * scale);
-      frame.depth.push_back(sums.depth * scale);
-      frame.roughness.push_back(sums.roughness * scale);
-    }
   }
 
   const Scene& m_scene;
