@@ -46,6 +46,8 @@ using CountProgress = std::function<void(size_t done, size_t total)>;
 // ShardError if two of them have the same name and are not the same.
 void gatherShards(const std::vector<std::string>& folders, const std::string& into,
                   const CountProgress& progress);
+// Removes what killed processes left half-made of shards that are there.
+void removeLeftOvers(const std::string& folder);
 // Reads and unpacks all shards of a folder and describes them in a manifest. Shards that are damaged or were made with
 // other settings than the first are complained about, and left out.
 Inspection describeShards(const std::string& folder, const CountProgress& progress);

@@ -21,11 +21,24 @@ namespace {
 constexpr const char* kViewFiles[] = {"scene.xml", "scene-b.xml"};
 constexpr double kValidationShare = 0.1;
 
+// Removes what processes of this machine left in the folder that were killed: names of `prefix` and their number.
+void removeAbandoned(const fs::path& folder, const std::string& prefix) {
+  std::error_code ignored;
+  for (const auto& entry : fs::directory_iterator(folder, ignored)) {
+    const std::string name = entry.path().filename().string();
+    if (!name.starts_with(prefix)) continue;
+    const int process = std::atoi(name.c_str() + prefix.size());
+    if (process > 0 && kill(process, 0) != 0 && errno == ESRCH) fs::remove_all(entry.path(), ignored);
+  }
+}
+
 // A folder for what is generated only to be looked at, gone at the end.
 class ScratchFolder {
  public:
   ScratchFolder() {
-    std::string pattern = (fs::temp_directory_path() / "odis-scenes-XXXXXX").string();
+    const std::string prefix = "odis-scenes-" + render::hostName() + "-";
+    removeAbandoned(fs::temp_directory_path(), prefix);
+    std::string pattern = (fs::temp_directory_path() / fmt::format("{}{}-XXXXXX", prefix, getpid())).string();
     if (!mkdtemp(pattern.data()))
       throw render::WriteError(
           fmt::format("cannot make the folder \"{}\": {}", pattern, std::strerror(errno)));
@@ -106,18 +119,6 @@ nlohmann::ordered_json sceneJson(const std::string& folder) {
   return json.is_object() ? json : nlohmann::ordered_json::object();
 }
 
-// What a process of this machine left half-made that was killed is removed.
-void removeAbandoned(const std::string& file) {
-  const std::string mine = fs::path(file).filename().string() + ".part-" + render::hostName() + "-";
-  std::error_code ignored;
-  for (const auto& entry : fs::directory_iterator(fs::path(file).parent_path(), ignored)) {
-    const std::string name = entry.path().filename().string();
-    if (!name.starts_with(mine)) continue;
-    const int process = std::atoi(name.c_str() + mine.size());
-    if (process > 0 && kill(process, 0) != 0 && errno == ESRCH) fs::remove(entry.path(), ignored);
-  }
-}
-
 }  // namespace
 
 DataSettings DataSettings::quick() {
@@ -193,7 +194,7 @@ bool makeShard(const ShardSource& source, const DataSettings& settings, const As
                       file));
     return false;
   }
-  removeAbandoned(file);
+  removeAbandoned(folder, source.name + ".shard.part-" + render::hostName() + "-");
 
   std::optional<ScratchFolder> scratch;
   std::string sceneFolder = source.folder;

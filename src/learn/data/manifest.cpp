@@ -65,6 +65,11 @@ std::vector<std::string> halfMade(const std::string& folder) {
   return names;
 }
 
+// The shard that a half-made file would have become.
+std::string wholeOf(const std::string& half) {
+  return half.substr(0, half.rfind(".part-"));
+}
+
 std::string whatIsWrong(const std::string& path, const std::string& bytes) {
   try {
     ShardReader(path, bytes).verify();
@@ -104,6 +109,12 @@ void gatherShards(const std::vector<std::string>& folders, const std::string& in
     }
     progress(++done, files.size());
   }
+}
+
+void removeLeftOvers(const std::string& folder) {
+  std::error_code ignored;
+  for (const std::string& half : halfMade(folder))
+    if (fs::exists(wholeOf(half))) fs::remove(half, ignored);
 }
 
 Inspection describeShards(const std::string& folder, const CountProgress& progress) {

@@ -29,7 +29,7 @@ struct FeatureSums {
   float depth = 0, roughness = 0;
   uint32_t hits = 0;
   float bsdfShare = 0, entropy = 0, survival = 0;
-  uint32_t guided = 0;      // samples that found a cell
+  uint32_t guided = 0;       // samples that found a cell
   uint32_t cellIndex = ~0u;  // of the last of them
 
   void add(const FirstHit& first);
