@@ -190,6 +190,8 @@ Pilot readColumns(const ShardReader& reader, const std::string& prefix, const Vi
     pilot.image.push_back(render::Rgb(image[i], image[pixels + i], image[2 * pixels + i]) * frame.unit);
   }
 
+  // What lengths claim is believed, and memory asked for, when there are as many positions.
+  const auto positions = readColumn<int32_t>(reader, prefix + "position", count, 3);
   pilot.vertices.resize(count);
   std::vector<PilotVertex>& vertices = pilot.vertices;
   for (const DirectionColumn& c : kDirections) {
@@ -207,7 +209,6 @@ Pilot readColumns(const ShardReader& reader, const std::string& prefix, const Vi
     for (size_t i = 0; i < count; ++i)
       vertices[i].*c.field = float(values[i]) * (c.radiance ? frame.unit : 1.0f);
   }
-  const auto positions = readColumn<int32_t>(reader, prefix + "position", count, 3);
   const auto distances = readColumn<Half>(reader, prefix + "distance", count);
   const auto rays = readColumn<uint16_t>(reader, prefix + "raysAfter", count);
   const auto groups = readColumn<uint8_t>(reader, prefix + "lightGroup", count);

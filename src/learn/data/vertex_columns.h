@@ -43,7 +43,7 @@ Pilot readColumns(const ShardReader& reader, const std::string& prefix, const Vi
 
 // A number in 16 bits: as far as a half reaches, infinity and what is not a number as they are.
 Half toHalf(float value);
-// A unit direction as a point of the equal-area octahedral square, 16 bits either way: to 4e-5.
+// A unit direction as a point of the equal-area octahedral square, 16 bits either way: to 7e-5.
 struct PackedDirection {
   uint16_t x = 0, y = 0;
 };
