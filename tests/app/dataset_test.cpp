@@ -1,0 +1,158 @@
+// odis dataset: makes shards in parts, goes on, finds damage, and says what is wrong.
+#include <set>
+
+#include "command_runner.h"
+
+namespace {
+
+using odis::test::Odis;
+using odis::test::Outcome;
+
+class Dataset : public Odis {
+ protected:
+  // Scenes that are quick to make shards of: a ball under a grey sky, each as bright as its number.
+  void writeScenes(int count) const {
+    for (int i = 1; i <= count; ++i) {
+      const std::string folder = "scenes/scene" + std::to_string(i);
+      std::filesystem::create_directories(file(folder));
+      write(folder + "/scene.xml", R"(<scene version="3.0.0">
+  <sensor type="perspective"><film type="hdrfilm"/></sensor>
+  <shape type="sphere"><point name="center" x="0" y="0" z="4"/></shape>
+  <emitter type="constant"><float name="radiance" value=")" +
+                                       std::to_string(i) + R"("/></emitter>
+</scene>)");
+    }
+  }
+  std::set<std::string> filesIn(const std::string& folder) const {
+    std::set<std::string> names;
+    for (const auto& entry : std::filesystem::directory_iterator(file(folder)))
+      names.insert(entry.path().filename().string());
+    return names;
+  }
+  std::string bytesOf(const std::string& name) const {
+    std::ifstream stream(file(name), std::ios::binary);
+    return {std::istreambuf_iterator<char>(stream), {}};
+  }
+  void expectOk(const std::string& arguments, const std::string& message = "") const {
+    const Outcome outcome = run(arguments);
+    EXPECT_EQ(outcome.code, 0) << arguments << "\n" << outcome.text;
+    EXPECT_NE(outcome.text.find(message), std::string::npos) << arguments << "\n" << outcome.text;
+  }
+};
+
+const char* const kAll = "dataset generate --scenes scenes --quick ";
+
+TEST_F(Dataset, PartsMakeEveryShardOnce) {
+  writeScenes(5);
+  expectOk(std::string(kAll) + "-o whole --jobs 3", "train");
+  expectOk(std::string(kAll) + "-o one --shards 1 --of 3 --jobs 1", "odis dataset merge one");
+  expectOk(std::string(kAll) + "-o two --shards 2-3 --of 3");
+  std::set<std::string> both = filesIn("one");
+  both.merge(filesIn("two"));
+  EXPECT_EQ(both.size(), 5u);
+  both.insert("manifest.json");
+  EXPECT_EQ(both, filesIn("whole"));
+  expectOk("dataset merge one two -o all -q", "scenes");
+  expectOk("dataset check all", "5 shards are as the manifest says");
+  // Whoever made it, and beside which others.
+  for (const std::string& name : both) EXPECT_EQ(bytesOf("all/" + name), bytesOf("whole/" + name)) << name;
+  // Merged again nothing changes.
+  const std::string manifest = bytesOf("all/manifest.json");
+  expectOk("dataset merge one two -o all -q");
+  EXPECT_EQ(bytesOf("all/manifest.json"), manifest);
+  expectOk("dataset info all", "train");
+  expectOk("dataset info all --json", "\"crc32\"");
+  expectOk("dataset info all/scene1.shard", "scene.xml: 64 x 48 pixels, 4 pilots");
+  expectOk("dataset info all/scene1.shard --json", "view0/pilot0/radiance");
+}
+
+TEST_F(Dataset, GoesOnWhereItStopped) {
+  writeScenes(2);
+  expectOk(std::string(kAll) + "-o data --shards 1 --of 2");
+  const auto before = std::filesystem::last_write_time(file("data/scene1.shard"));
+  expectOk(std::string(kAll) + "-o data", "scene1: is there already");
+  expectOk(std::string(kAll) + "-o data", "scene2: is there already");
+  EXPECT_EQ(std::filesystem::last_write_time(file("data/scene1.shard")), before);
+  expectFailure("dataset generate --scenes scenes -o data", 3, "was made with other settings");
+  EXPECT_EQ(std::filesystem::last_write_time(file("data/scene1.shard")), before);
+  // A scene that can't be read fails alone.
+  write("scenes/scene2/scene.xml", "<scene");
+  expectFailure(std::string(kAll) + "-o other", 3, "scene2");
+  EXPECT_EQ(filesIn("other"), std::set<std::string>{"scene1.shard"});
+}
+
+TEST_F(Dataset, GeneratedScenesHaveTheirSeeds) {
+  expectOk("dataset generate --seeds 3 --quick -o data", "train");
+  expectOk("dataset merge data --seeds 3", "train");
+  expectOk("dataset info data --json", "\"seed\": 3");
+  expectFailure("dataset merge data --seeds 3-4", 3, ": is missing");
+  expectOk("dataset check data");
+}
+
+TEST_F(Dataset, CheckNamesEveryFault) {
+  writeScenes(5);
+  expectFailure("dataset check scenes", 3, "there is no manifest; \"odis dataset merge scenes\" makes it");
+  expectOk(std::string(kAll) + "-o data");
+  expectOk("dataset check data", "5 shards are as the manifest says");
+  // One bit, in the middle of the arrays.
+  {
+    std::string bytes = bytesOf("data/scene1.shard");
+    bytes[bytes.size() / 2] = char(bytes[bytes.size() / 2] ^ 8);
+    write("data/scene1.shard", bytes);
+  }
+  std::filesystem::remove(file("data/scene2.shard"));
+  std::filesystem::resize_file(file("data/scene3.shard"), 1000);
+  std::filesystem::copy_file(file("data/scene4.shard"), file("data/scene6.shard"));
+  // A whole shard, but another one.
+  std::filesystem::copy_file(file("data/scene4.shard"), file("data/scene5.shard"),
+                             std::filesystem::copy_options::overwrite_existing);
+  write("data/scene7.shard.part-machine-1-0", "ODISDATA");
+  const Outcome outcome = run("dataset check data");
+  EXPECT_EQ(outcome.code, 3);
+  for (const char* text :
+       {"data/scene1.shard: view0/", "is damaged", "data/scene2.shard: is missing",
+        "data/scene3.shard: found 1000 bytes, expected", "data/scene6.shard: is not in the manifest",
+        "data/scene5.shard: ", "data/scene7.shard.part-machine-1-0: was left half-made", "6 faults"})
+    EXPECT_NE(outcome.text.find(text), std::string::npos) << text << " in\n" << outcome.text;
+  EXPECT_EQ(outcome.text.find("scene4.shard"), std::string::npos) << outcome.text;
+  // Merging names what is damaged, and leaves the manifest as it is.
+  const std::string manifest = bytesOf("data/manifest.json");
+  expectFailure("dataset merge data", 3, "data/scene1.shard: view0/");
+  EXPECT_EQ(bytesOf("data/manifest.json"), manifest);
+}
+
+TEST_F(Dataset, MergeRefusesWhatDoesNotBelongTogether) {
+  writeScenes(2);
+  expectOk(std::string(kAll) + "-o data");
+  std::filesystem::create_directory(file("other"));
+  std::filesystem::copy_file(file("data/scene1.shard"), file("other/scene2.shard"));
+  expectFailure("dataset merge data other -o all", 3, "have the same name and are not the same");
+  expectFailure("dataset merge data other", 2, "expected -o");
+  EXPECT_FALSE(exists("all/manifest.json"));
+  write("data/manifest.json", "{}");
+  expectFailure("dataset check data", 3, "data/manifest.json: is no manifest of format 1");
+  expectFailure("dataset info data", 3, "is no manifest");
+}
+
+TEST_F(Dataset, SaysWhatIsWrong) {
+  expectFailure("dataset", 2, "subcommand");
+  expectFailure("dataset generate", 2, "--output");
+  expectFailure("dataset generate -o out", 2, "expected --seeds or --scenes");
+  expectFailure("dataset generate -o out --seeds 1 --scenes x", 2, "--seeds excludes --scenes");
+  expectFailure("dataset generate -o out --seeds 1 --quick --quality", 2, "--quick excludes --quality");
+  for (const char* seeds : {"x", "3-1", "1-", "1-2-3", "-1", "1.5"})
+    expectFailure(std::string("dataset generate -o out --seeds=") + seeds, 2, "expected FIRST-LAST");
+  expectFailure("dataset generate -o out --seeds 1-9 --shards 4 --of 3", 2, "expected parts from 1 to 3");
+  expectFailure("dataset generate -o out --seeds 1-9 --shards 0 --of 3", 2, "expected parts from 1 to 3");
+  expectFailure("dataset generate -o out --seeds 1-9 --of 0", 2, "--of");
+  expectFailure("dataset generate -o /proc/out --seeds 1", 4, "/proc/out");
+  std::filesystem::create_directory(file("empty"));
+  expectFailure("dataset generate -o out --scenes empty", 4, "holds no scenes");
+  EXPECT_FALSE(exists("out"));
+  expectFailure("dataset info nowhere", 3, "nowhere: cannot be opened");
+  expectFailure("dataset info room.xml", 3, "room.xml: is no shard of a data set");
+  expectFailure("dataset check nowhere", 3, "there is no manifest");
+  expectFailure("dataset merge nowhere", 4, "nowhere");
+}
+
+}  // namespace
