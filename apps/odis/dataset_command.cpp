@@ -1,4 +1,4 @@
-// odis dataset: generate, merge, check, info
+// odis dataset: generate, merge, check, info, preview
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>
 
@@ -9,6 +9,7 @@
 #include "console.h"
 #include "dataset_generate.h"
 #include "dataset_manifest.h"
+#include "dataset_preview.h"
 #include "dataset_range.h"
 #include "learn/data/dataset.h"
 #include "learn/data/dataset_info.h"
@@ -82,8 +83,10 @@ Command addDatasetCommand(CLI::App& parent) {
   asking->add_option("PATH", a->folder, "Folder of a data set, or a shard")->required();
   asking->add_flag("--json", a->json, "Print the manifest, or the shard's header");
 
+  const Command preview = addDatasetPreview(*app);
   return {app, [=] {
             if (generator.app->parsed()) return generator.run();
+            if (preview.app->parsed()) return preview.run();
             if (merging->parsed()) return merge(*a);
             return checking->parsed() ? check(*a) : info(*a);
           }};

@@ -77,7 +77,7 @@ int sheet(const Arguments& a) {
     if (!painter.add(a.folder, name, progress)) break;
     counter.done(name);
   }
-  const learn::Sheet& sheet = painter.sheet();
+  const learn::Canvas& sheet = painter.sheet();
   render::writePng(a.output, sheet.width, sheet.height, sheet.pixels.data(), a.exposure);
   return InterruptScope::exitCode();
 }

@@ -62,6 +62,9 @@ TEST_F(Dataset, PartsMakeEveryShardOnce) {
   EXPECT_EQ(bytesOf("all/manifest.json"), manifest);
   expectOk("dataset info all", "train");
   expectOk("dataset info all --json", "\"crc32\"");
+  expectOk("dataset preview all -o all.png --count 3");
+  expectOk("dataset preview all/scene1.shard -o one.png --count 2");
+  EXPECT_TRUE(exists("all.png") && exists("one.png"));
   expectOk("dataset info all/scene1.shard", "scene.xml: 64 x 48 pixels, 4 pilots");
   expectOk("dataset info all/scene1.shard --json", "view0/pilot0/radiance");
 }
@@ -151,6 +154,9 @@ TEST_F(Dataset, SaysWhatIsWrong) {
   EXPECT_FALSE(exists("out"));
   expectFailure("dataset info nowhere", 3, "nowhere: cannot be opened");
   expectFailure("dataset info room.xml", 3, "room.xml: is no shard of a data set");
+  expectFailure("dataset preview empty -o out.png", 2, "holds no shards");
+  expectFailure("dataset preview room.xml -o out.png", 3, "room.xml: is no shard of a data set");
+  expectFailure("dataset preview empty -o out.jpg", 2, ".png");
   expectFailure("dataset check nowhere", 3, "there is no manifest");
   expectFailure("dataset merge nowhere", 4, "nowhere");
 }

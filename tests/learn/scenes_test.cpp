@@ -191,7 +191,7 @@ TEST(Sheet, ShowsScenesInTheirOrder) {
   class Silent : public render::Progress {
   } silent;
   for (const std::string& name : names) EXPECT_TRUE(painter.add(folder.path(""), name, silent));
-  const Sheet& sheet = painter.sheet();
+  const Canvas& sheet = painter.sheet();
   EXPECT_EQ(sheet.width, 4 + 2 * 36);
   EXPECT_EQ(sheet.pixels.size(), size_t(sheet.width) * size_t(sheet.height));
   // Something is drawn in three of the four places, nothing in the last.

@@ -1,14 +1,5 @@
 #include "learn/scenes/sheet.h"
 
-#if defined(__GNUC__)
-#pragma GCC diagnostic push
-#pragma GCC diagnostic ignored "-Wunused-function"
-#endif
-#include <stb_easy_font.h>
-#if defined(__GNUC__)
-#pragma GCC diagnostic pop
-#endif
-
 #include <algorithm>
 #include <filesystem>
 
@@ -39,9 +30,7 @@ SheetPainter::SheetPainter(const SheetOptions& options, size_t count) : m_option
   const int columns = int(std::min(count, size_t(options.columns))),
             rows = int((count + size_t(columns) - 1) / size_t(columns));
   m_cellHeight = options.width * 3 / 4 + kTextHeight + kGap;
-  m_sheet.width = columns * (options.width + kGap) + kGap;
-  m_sheet.height = rows * m_cellHeight + kGap;
-  m_sheet.pixels.assign(size_t(m_sheet.width) * size_t(m_sheet.height), kBackground);
+  m_sheet = Canvas(columns * (options.width + kGap) + kGap, rows * m_cellHeight + kGap, kBackground);
 }
 
 bool SheetPainter::add(const std::string& folder, const std::string& name, render::Progress& progress) {
@@ -66,27 +55,10 @@ bool SheetPainter::add(const std::string& folder, const std::string& name, rende
   for (int y = 0; y < result.frame.height; ++y)
     std::copy_n(result.frame.color.begin() + std::ptrdiff_t(y) * result.frame.width, result.frame.width,
                 m_sheet.pixels.begin() + (std::ptrdiff_t(top) + y) * m_sheet.width + left);
-  drawText(kGap + column * (m_options.width + kGap), top + m_options.width * 3 / 4 + 2, m_options.width,
-           name);
+  m_sheet.write(kGap + column * (m_options.width + kGap), top + m_options.width * 3 / 4 + 2, m_options.width,
+                name, kInk);
   ++m_next;
   return true;
-}
-
-void SheetPainter::drawText(int x, int y, int width, const std::string& text) {
-  struct Corner {
-    float x, y, z;
-    uint8_t color[4];
-  };
-  std::vector<Corner> corners(4 * 400);
-  std::string shown = text;
-  const int quads = stb_easy_font_print(float(x), float(y), shown.data(), nullptr, corners.data(),
-                                        int(corners.size() * sizeof(Corner)));
-  for (int q = 0; q < quads; ++q) {
-    const Corner &from = corners[size_t(4 * q)], &to = corners[size_t(4 * q + 2)];
-    for (int py = int(from.y); py < int(to.y); ++py)
-      for (int px = int(from.x); px < std::min(int(to.x), x + width); ++px)
-        if (py < m_sheet.height) m_sheet.pixels[size_t(py) * size_t(m_sheet.width) + size_t(px)] = kInk;
-  }
 }
 
 }  // namespace odis::learn

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "learn/scenes/canvas.h"
 #include "render/integrator/render.h"
 
 namespace odis::learn {
@@ -17,11 +18,6 @@ struct SheetOptions {
 // The scenes of a folder: its sub-folders that hold a scene.xml, by name. Throws std::filesystem::filesystem_error.
 std::vector<std::string> scenesIn(const std::string& folder);
 
-struct Sheet {
-  int width = 0, height = 0;
-  std::vector<render::Rgb> pixels;  // linear
-};
-
 // Adds pictures one by one.
 class SheetPainter {
  public:
@@ -29,15 +25,13 @@ class SheetPainter {
   // Renders DIR/scene.xml by plain path tracing and puts it in the next place, with `name` below. False if the
   // rendering was stopped. Throws SceneError.
   bool add(const std::string& folder, const std::string& name, render::Progress& progress);
-  const Sheet& sheet() const { return m_sheet; }
+  const Canvas& sheet() const { return m_sheet; }
 
  private:
-  void drawText(int x, int y, int width, const std::string& text);
-
   SheetOptions m_options;
   int m_cellHeight;
   size_t m_next = 0;
-  Sheet m_sheet;
+  Canvas m_sheet;
 };
 
 }  // namespace odis::learn
