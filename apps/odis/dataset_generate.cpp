@@ -111,7 +111,7 @@ Generator addDatasetGenerate(CLI::App& parent) {
   CLI::Option* quick = app->add_flag("--quick", a->quick, "Small pilots, few targets: for a first look");
   app->add_flag("--quality", a->quality, "Pilots as large as images, more and smoother targets")
       ->excludes(quick);
-  app->add_flag("-q,--quiet", a->quiet, "Print errors only");
+  app->add_flag("-q,--quiet", a->quiet, "Print errors and the summary only");
   return {app, [a] {
             if (a->seeds.empty() == a->scenes.empty())
               throw UsageError("what to make shards of? expected --seeds or --scenes");
