@@ -39,11 +39,6 @@ struct View {
   }
 };
 
-Float3 texelDirection(int texel) {
-  return squareToDirection(
-      {(float(texel % kTargetSize) + 0.5f) / kTargetSize, (float(texel / kTargetSize) + 0.5f) / kTargetSize});
-}
-
 const std::string kGrey = "<bsdf type=\"diffuse\"><rgb name=\"reflectance\" value=\"0.4\"/></bsdf>";
 
 // A ball under a white sky sees the sky alone: radiance 1 from above its horizon, and scatters 0.4 of it.
@@ -60,7 +55,7 @@ TEST(Targets, OfABallUnderAWhiteSky) {
   ASSERT_EQ(targets.size(), 20u);
   for (const Target& t : targets) {
     for (int texel = 0; texel < kTargetTexels; ++texel) {
-      const float cosine = dot(texelDirection(texel), t.normal);
+      const float cosine = dot(directionInTexel(texel, {0.5f, 0.5f}), t.normal);
       const auto i = size_t(texel);
       EXPECT_EQ(t.indirect[i], 0);
       if (t.pixel && cosine > 0.2f) EXPECT_GE(t.samples[i], 2);
@@ -137,7 +132,7 @@ TEST(Targets, ShowALampWhereItIs) {
     Float3 sum{0, 0, 0};
     double total = 0;
     for (int texel = 0; texel < kTargetTexels; ++texel) {
-      sum = sum + texelDirection(texel) * t.emission[size_t(texel)];
+      sum = sum + directionInTexel(texel, {0.5f, 0.5f}) * t.emission[size_t(texel)];
       total += t.emission[size_t(texel)];
     }
     EXPECT_GT(dot(sum, offset) / distance / std::sqrt(dot(sum, sum)), 0.998f);
@@ -213,7 +208,8 @@ TEST(Targets, AgreeWithPilots) {
       double irradiance = 0, variance = sqr(0.1 * arriving.mean()) / t.starts + arriving.varianceOfMean();
       for (int texel = 0; texel < kTargetTexels; ++texel) {
         const auto i = size_t(texel);
-        const double weight = std::max(dot(texelDirection(texel), t.normal), 0.0f) * 4 * M_PI / kTargetTexels;
+        const double weight =
+            std::max(dot(directionInTexel(texel, {0.5f, 0.5f}), t.normal), 0.0f) * 4 * M_PI / kTargetTexels;
         irradiance += weight * t.indirect[i];
         variance += sqr(weight * t.indirectRms[i]) / std::max<int>(t.samples[i], 1);
       }

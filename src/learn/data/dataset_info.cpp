@@ -33,7 +33,7 @@ std::string datasetText(const nlohmann::ordered_json& manifest) {
   std::map<std::string, Totals> splits, kinds;
   for (const nlohmann::ordered_json& shard : manifest.at("shards")) {
     all.add(shard);
-    splits[shard.at("split")].add(shard);
+    splits[shard.at("split").get<std::string>()].add(shard);
     kinds[shard.at("kind").get<std::string>()].add(shard);
   }
   std::string text = fmt::format("{:<14}{:>8}{:>8}{:>14}{:>11}{:>12}{:>13}\n", "", "scenes", "views",

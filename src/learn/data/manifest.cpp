@@ -181,7 +181,7 @@ Inspection checkShards(const std::string& folder, const CountProgress& progress)
       const std::string bytes = shardBytes(path);
       if (bytes.size() != size)
         faults[i] = fmt::format("{}: found {} bytes, expected {}", path, bytes.size(), size);
-      else if (crcText(bytes) != shards[i].at("crc32"))
+      else if (crcText(bytes) != shards[i].at("crc32").get<std::string>())
         faults[i] = whatIsWrong(path, bytes);
     } catch (const ShardError& e) {
       faults[i] = e.what();
@@ -206,7 +206,8 @@ nlohmann::ordered_json readManifest(const std::string& folder) {
   Json manifest = Json::parse(stream, nullptr, false);
   const auto isShard = [](const Json& shard) {
     return shard.is_object() && shard.contains("name") && shard["name"].is_string() &&
-           shard.contains("bytes") && shard["bytes"].is_number_unsigned() && shard.contains("crc32");
+           shard.contains("bytes") && shard["bytes"].is_number_unsigned() && shard.contains("crc32") &&
+           shard["crc32"].is_string();
   };
   if (!manifest.is_object() || manifest.value("format", Json()) != kManifestFormat ||
       !manifest.contains("shards") || !manifest["shards"].is_array() ||

@@ -91,8 +91,7 @@ class Row {
     for (float& value : histogram)
       value *= float(kBins * kBins / (4 * M_PI)) / float(std::max<size_t>(count, 1));
     for (int texel = 0; texel < kTargetTexels; ++texel) {
-      const Float3 wi = squareToDirection({(float(texel % kTargetSize) + 0.5f) / kTargetSize,
-                                           (float(texel / kTargetSize) + 0.5f) / kTargetSize});
+      const Float3 wi = directionInTexel(texel, {0.5f, 0.5f});
       reference[size_t(texel)] = m_target.indirect[size_t(texel)] * std::abs(dot(wi, m_target.normal));
     }
     if (m_target.pixel) pixels = {middle.pixel};
@@ -118,11 +117,11 @@ class Row {
   // What one vertex says of the texel of its direction.
   static void addTo(Map& histogram, const PilotVertex& v) {
     const Float2 at = directionToSquare(v.wi);
-    const auto bin = [](float x) { return std::clamp(int(x * kBins), 0, kBins - 1); };
-    constexpr int kEach = kTargetSize / kBins;
-    for (int y = 0; y < kEach; ++y)
-      for (int x = 0; x < kEach; ++x)
-        histogram[size_t((bin(at.y) * kEach + y) * kTargetSize + bin(at.x) * kEach + x)] += sampleValue(v);
+    const auto bin = [](float x) { return size_t(std::clamp(int(x * kBins), 0, kBins - 1)); };
+    constexpr size_t kEach = kTargetSize / kBins;
+    for (size_t y = 0; y < kEach; ++y)
+      for (size_t x = 0; x < kEach; ++x)
+        histogram[(bin(at.y) * kEach + y) * kTargetSize + bin(at.x) * kEach + x] += sampleValue(v);
   }
   void caption(int columns, const std::string& text) { m_canvas.write(m_left, m_top, columns, text, kInk); }
 
@@ -153,7 +152,7 @@ class Row {
     constexpr int kEach = kSide / kTargetSize;
     for (int y = 0; y < kSide; ++y)
       for (int x = 0; x < kSide; ++x) {
-        const auto texel = size_t(y / kEach * kTargetSize + x / kEach);
+        const size_t texel = size_t(y / kEach) * kTargetSize + size_t(x / kEach);
         const bool sampled = !onlySampled || m_target.samples[texel] > 0;
         m_canvas.set(m_left + x, m_top + kText + y, sampled ? Rgb(values[texel] * scale) : kUnsampled);
       }

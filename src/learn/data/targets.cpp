@@ -1,7 +1,5 @@
 #include "learn/data/targets.h"
 
-#include <odis/octahedral.h>
-
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -113,8 +111,7 @@ class Tracer {
       Sampler numbers = sampler(arriving, uint32_t(texel), uint32_t(turn / kTargetTexels));
       const Start& start = pick(starts, numbers.get1D());
       const Vec2 u = numbers.get2D();
-      const Vec3 wi = render::fromOdis(squareToDirection({(float(texel % kTargetSize) + u.x) / kTargetSize,
-                                                          (float(texel / kTargetSize) + u.y) / kTargetSize}));
+      const Vec3 wi = render::fromOdis(directionInTexel(texel, {u.x, u.y}));
       if (!start.both && render::dot(wi, start.normal) <= 0) continue;
       Path& path = paths.emplace_back(render::Scene::spawn(start.at, wi), numbers);
       // Emission met directly counts whole, and tells how next-event estimation would have found it.
@@ -253,8 +250,8 @@ class Vertices {
  private:
   float fromCamera(const PilotVertex& v) const {
     const render::Crop& crop = m_scene.film().crop;
-    const Vec2 pixel(float(crop.x + int(v.pixel) % crop.width) + 0.5f,
-                     float(crop.y + int(v.pixel) / crop.width) + 0.5f);
+    const int x = crop.x + int(v.pixel) % crop.width, y = crop.y + int(v.pixel) / crop.width;
+    const Vec2 pixel(float(x) + 0.5f, float(y) + 0.5f);
     return render::length(render::fromOdis(v.position) -
                           m_scene.sensor().ray(pixel, Vec2(0.5f, 0.5f)).origin);
   }

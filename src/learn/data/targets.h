@@ -2,6 +2,8 @@
 // arrives, what is scattered back and what it costs, and what each group of lights gives.
 #pragma once
 
+#include <odis/octahedral.h>
+
 #include <span>
 #include <vector>
 
@@ -12,6 +14,12 @@ namespace odis::learn {
 // Maps are equal-area octahedral squares (odis/octahedral.h) of so many texels a side, row by row.
 inline constexpr int kTargetSize = 32;
 inline constexpr int kTargetTexels = kTargetSize * kTargetSize;
+
+// The direction of a point of a texel, its place within given from 0 to 1.
+inline Float3 directionInTexel(int texel, const Float2& within) {
+  const int x = texel % kTargetSize, y = texel / kTargetSize;
+  return squareToDirection({(float(x) + within.x) / kTargetSize, (float(y) + within.y) / kTargetSize});
+}
 
 struct TargetSettings {
   int cells = 192, pixels = 64;  // how many of each
