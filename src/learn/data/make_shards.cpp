@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <fstream>
 #include <mutex>
+#include <numeric>
 #include <random>
 #include <thread>
 
@@ -50,9 +51,10 @@ std::vector<ShardSource> partOf(const std::vector<ShardSource>& sources, int fir
 
 void makeShards(const std::vector<ShardSource>& sources, const DataSettings& settings, const Assets& assets,
                 const std::string& folder, int jobs, ShardObserver& observer) {
-  // Begins anywhere and goes round: of several processes with the same task each makes a stretch of its own, up to where it
-  // meets what another one has made.
-  const size_t begin = sources.empty() ? 0 : std::random_device()() % sources.size();
+  // In an order of its own: several processes with the same task hardly ever make the same shard at the same time.
+  std::vector<size_t> order(sources.size());
+  std::iota(order.begin(), order.end(), size_t(0));
+  std::shuffle(order.begin(), order.end(), std::mt19937_64(std::random_device()()));
   std::atomic<size_t> next{0};
   std::atomic<bool> full{false};
   std::mutex mutex;
@@ -61,7 +63,7 @@ void makeShards(const std::vector<ShardSource>& sources, const DataSettings& set
     // A scene is small: many threads on one would wait for each other more than they work.
     tbb::task_arena alone(1);
     for (size_t i = next++; i < sources.size() && !full && !observer.cancelled(); i = next++) {
-      const ShardSource& source = sources[(begin + i) % sources.size()];
+      const ShardSource& source = sources[order[i]];
       try {
         const bool made = alone.execute([&] { return makeShard(source, settings, assets, folder); });
         const std::lock_guard lock(mutex);
