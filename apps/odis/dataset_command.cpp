@@ -65,7 +65,7 @@ Command addDatasetCommand(CLI::App& parent) {
   CLI::App* app = parent.add_subcommand("dataset", "Make data to learn from: docs/dataset.md");
   app->require_subcommand(1);
   const auto a = std::make_shared<Arguments>();
-  const Generator generator = addDatasetGenerate(*app);
+  const Command generator = addDatasetGenerate(*app);
 
   CLI::App* merging =
       app->add_subcommand("merge", "Collect shards: unpack all, write the folder's manifest.json");

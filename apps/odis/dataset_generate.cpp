@@ -7,7 +7,6 @@
 #include <memory>
 #include <thread>
 
-#include "command.h"
 #include "console.h"
 #include "counter.h"
 #include "dataset_manifest.h"
@@ -87,7 +86,7 @@ int generate(const Arguments& a) {
 
 }  // namespace
 
-Generator addDatasetGenerate(CLI::App& parent) {
+Command addDatasetGenerate(CLI::App& parent) {
   CLI::App* app = parent.add_subcommand("generate", "Make shards: a scene each, with its pilots and targets");
   const auto a = std::make_shared<Arguments>();
   CLI::Option* seeds =

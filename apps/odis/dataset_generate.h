@@ -1,19 +1,10 @@
 // odis dataset generate
 #pragma once
 
-#include <functional>
-
-namespace CLI {
-class App;
-}
+#include "command.h"
 
 namespace odis::app {
 
-// Adds the sub-command; what is returned runs it.
-struct Generator {
-  CLI::App* app;
-  std::function<int()> run;
-};
-Generator addDatasetGenerate(CLI::App& parent);
+Command addDatasetGenerate(CLI::App& parent);
 
 }  // namespace odis::app

@@ -20,25 +20,14 @@ namespace {
 
 constexpr const char* kViewFiles[] = {"scene.xml", "scene-b.xml"};
 constexpr double kValidationShare = 0.1;
-
-// Removes what processes of this machine left in the folder that were killed: names of `prefix` and their number.
-void removeAbandoned(const fs::path& folder, const std::string& prefix) {
-  std::error_code ignored;
-  for (const auto& entry : fs::directory_iterator(folder, ignored)) {
-    const std::string name = entry.path().filename().string();
-    if (!name.starts_with(prefix)) continue;
-    const int process = std::atoi(name.c_str() + prefix.size());
-    if (process > 0 && kill(process, 0) != 0 && errno == ESRCH) fs::remove_all(entry.path(), ignored);
-  }
-}
+constexpr const char* kScratchPrefix = "odis-scenes-";
 
 // A folder for what is generated only to be looked at, gone at the end.
 class ScratchFolder {
  public:
   ScratchFolder() {
-    const std::string prefix = "odis-scenes-" + render::hostName() + "-";
-    removeAbandoned(fs::temp_directory_path(), prefix);
-    std::string pattern = (fs::temp_directory_path() / fmt::format("{}{}-XXXXXX", prefix, getpid())).string();
+    const std::string name = fmt::format("{}{}-{}-XXXXXX", kScratchPrefix, render::hostName(), getpid());
+    std::string pattern = (fs::temp_directory_path() / name).string();
     if (!mkdtemp(pattern.data()))
       throw render::WriteError(
           fmt::format("cannot make the folder \"{}\": {}", pattern, std::strerror(errno)));
@@ -181,6 +170,22 @@ ViewFrame viewFrame(const ShardReader& shard, size_t view) {
   return {{origin.at(0), origin.at(1), origin.at(2)}, json.at("edge"), json.at("unit")};
 }
 
+void removeAbandoned(const std::string& folder) {
+  const auto clear = [](const fs::path& from, const std::string& before) {
+    const std::string mine = before + render::hostName() + "-";
+    std::error_code ignored;
+    for (const auto& entry : fs::directory_iterator(from, ignored)) {
+      const std::string name = entry.path().filename().string();
+      const size_t at = name.find(mine);
+      if (at == std::string::npos) continue;
+      const int process = std::atoi(name.c_str() + at + mine.size());
+      if (process > 0 && kill(process, 0) != 0 && errno == ESRCH) fs::remove_all(entry.path(), ignored);
+    }
+  };
+  clear(folder, ".shard.part-");
+  clear(fs::temp_directory_path(), kScratchPrefix);
+}
+
 bool makeShard(const ShardSource& source, const DataSettings& settings, const Assets& assets,
                const std::string& folder) {
   const std::string file = shardFile(folder, source.name);
@@ -194,8 +199,6 @@ bool makeShard(const ShardSource& source, const DataSettings& settings, const As
                       file));
     return false;
   }
-  removeAbandoned(folder, source.name + ".shard.part-" + render::hostName() + "-");
-
   std::optional<ScratchFolder> scratch;
   std::string sceneFolder = source.folder;
   if (source.kind) {

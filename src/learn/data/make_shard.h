@@ -41,6 +41,9 @@ std::string shardFile(const std::string& folder, const std::string& name);
 bool makeShard(const ShardSource& source, const DataSettings& settings, const Assets& assets,
                const std::string& folder);
 
+// Removes what processes of this machine left half-made that were killed: in the folder, and among temporary files.
+void removeAbandoned(const std::string& folder);
+
 // The frame of a view of a shard, by its header. Throws ShardError.
 ViewFrame viewFrame(const ShardReader& shard, size_t view);
 // What the names of a view's arrays begin with, and those of one of its pilots or its targets.

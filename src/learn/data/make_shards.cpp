@@ -51,6 +51,7 @@ std::vector<ShardSource> partOf(const std::vector<ShardSource>& sources, int fir
 
 void makeShards(const std::vector<ShardSource>& sources, const DataSettings& settings, const Assets& assets,
                 const std::string& folder, int jobs, ShardObserver& observer) {
+  removeAbandoned(folder);
   // In an order of its own: several processes with the same task hardly ever make the same shard at the same time.
   std::vector<size_t> order(sources.size());
   std::iota(order.begin(), order.end(), size_t(0));

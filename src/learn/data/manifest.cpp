@@ -10,6 +10,7 @@
 #include <set>
 
 #include "learn/data/dataset.h"
+#include "render/image/checked_stream.h"
 #include "render/image/replace_file.h"
 
 namespace odis::learn {
@@ -232,10 +233,9 @@ void writeManifest(const std::string& folder, const nlohmann::ordered_json& mani
   }
   text += "\n ]\n}\n";
   render::replaceFile((fs::path(folder) / kManifestName).string(), [&](const std::string& temporary) {
-    std::ofstream stream(temporary);
-    stream << text;
+    render::CheckedStream stream(temporary);
+    stream.write(text.data(), std::streamsize(text.size()));
     stream.close();
-    if (!stream) throw std::runtime_error(std::strerror(errno));
   });
 }
 

@@ -12,9 +12,6 @@ namespace odis::learn {
 
 namespace {
 
-// As GuideOptions has it.
-constexpr int kCellsPerDiagonal = 32;
-
 // Puts vertices that lie tile by tile in the order of the pixels.
 void sortByPixel(const render::Records& tiles, Pilot& pilot) {
   std::vector<const PilotVertex*> paths(pilot.lengths.size(), nullptr);
@@ -65,7 +62,7 @@ ViewFrame frameOf(std::span<const Pilot> pilots) {
     pixels += pilot.image.size();
   }
   CellStore cells(INFINITY);
-  cells.add(parts, kCellsPerDiagonal);
+  cells.add(parts, GuideOptions().cellsPerDiagonal);
   ViewFrame frame{cells.grid().origin(), cells.grid().finestEdge(), 1};
   const double mean = sum / double(std::max<size_t>(pixels, 1));
   if (mean > 0 && std::isfinite(mean)) frame.unit = float(mean);

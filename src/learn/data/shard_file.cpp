@@ -10,6 +10,7 @@
 #include <fstream>
 #include <memory>
 
+#include "render/image/checked_stream.h"
 #include "render/image/replace_file.h"
 
 namespace odis::learn {
@@ -87,12 +88,12 @@ void ShardWriter::write(const std::string& path, nlohmann::ordered_json header) 
   const std::string text = header.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
   const uint32_t words[3] = {kFormat, uint32_t(text.size()), crc32(text)};
   render::replaceFile(path, [&](const std::string& temporary) {
-    std::ofstream stream(temporary, std::ios::binary);
-    stream.write(kMagic.data(), kMagic.size());
+    render::CheckedStream stream(temporary);
+    stream.write(kMagic.data(), std::streamsize(kMagic.size()));
     stream.write(reinterpret_cast<const char*>(words), sizeof(words));
-    stream << text << m_frames;
+    stream.write(text.data(), std::streamsize(text.size()));
+    stream.write(m_frames.data(), std::streamsize(m_frames.size()));
     stream.close();
-    if (!stream) throw std::runtime_error(std::strerror(errno));
   });
 }
 

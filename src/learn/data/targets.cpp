@@ -26,9 +26,8 @@ constexpr size_t kMostStarts = 256;
 // A vertex found again as a point on its surface, and a ray that ends there as its path's did.
 struct Start {
   render::SurfacePoint at;
-  Vec3 wo;      // in the shading frame
-  Vec3 normal;  // shading normal on the side of wo
-  bool both = false;
+  Vec3 wo;  // in the shading frame
+  render::LightReference reference;
   Ray towards;
 };
 
@@ -40,8 +39,7 @@ std::optional<Start> findAgain(const render::Scene& scene, const PilotVertex& v,
   if (!scene.intersect(start.towards, start.at)) return std::nullopt;
   if (render::length(start.at.p - position) > 1e-3f * fromPrevious) return std::nullopt;
   start.wo = start.at.shading.toLocal(wo);
-  start.normal = start.wo.z < 0 ? -start.at.shading.n : start.at.shading.n;
-  start.both = start.at.shape->bsdf().traits().transmissive;
+  start.reference = render::lightReference(start.at, start.wo);
   return start;
 }
 
@@ -76,11 +74,11 @@ class Tracer {
     Vec3 position(0, 0, 0), normal(0, 0, 0);
     for (const Start& start : starts) {
       position += start.at.p;
-      normal += start.normal;
+      normal += start.reference.n;
     }
     target.position = render::toOdis(position / float(starts.size()));
     const float length = render::length(normal);
-    target.normal = render::toOdis(length > 0 ? normal / length : starts.front().normal);
+    target.normal = render::toOdis(length > 0 ? normal / length : starts.front().reference.n);
     traceArriving(starts, target);
     traceOutgoing(starts, target);
     traceLights(starts, target);
@@ -112,12 +110,12 @@ class Tracer {
       const Start& start = pick(starts, numbers.get1D());
       const Vec2 u = numbers.get2D();
       const Vec3 wi = render::fromOdis(directionInTexel(texel, {u.x, u.y}));
-      if (!start.both && render::dot(wi, start.normal) <= 0) continue;
+      if (!start.reference.both && render::dot(wi, start.reference.n) <= 0) continue;
       Path& path = paths.emplace_back(render::Scene::spawn(start.at, wi), numbers);
       // Emission met directly counts whole, and tells how next-event estimation would have found it.
       path.bySampling = true;
       path.directionPdf = INFINITY;
-      path.previous = render::lightReference(start.at, start.wo);
+      path.previous = start.reference;
       texels.push_back(texel);
     }
     render::tracePaths(m_path, paths);
@@ -187,11 +185,10 @@ class Tracer {
         const Start& start = pick(starts, numbers.get1D());
         const float uChoice = numbers.get1D();
         const Vec2 u = numbers.get2D();
-        const render::LightReference reference = render::lightReference(start.at, start.wo);
-        const float ofGroup = m_lights.groupProbability(reference, group);
+        const float ofGroup = m_lights.groupProbability(start.reference, group);
         target.lights[group].probability += ofGroup / float(each);
         if (!start.at.shape->bsdf().traits().evaluable) continue;
-        const auto choice = m_lights.sampleGroup(reference, group, uChoice, u);
+        const auto choice = m_lights.sampleGroup(start.reference, group, uChoice, u);
         if (!choice.emitter) continue;
         const render::EmitterSample light = choice.emitter->sample(choice.part, start.at.p, choice.u);
         if (!(light.pdf > 0)) continue;

@@ -22,7 +22,7 @@ struct FirstHit {
   float survival = 1;   // that learned roulette would give a path with this throughput
 };
 
-// Sums of features over the samples that met a surface. 84 bytes a pixel.
+// Sums of features over the samples that met a surface. 80 bytes a pixel.
 struct FeatureSums {
   Rgb albedo{0, 0, 0};
   Vec3 normal{0, 0, 0}, geometricNormal{0, 0, 0}, position{0, 0, 0};
