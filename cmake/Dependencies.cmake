@@ -23,6 +23,35 @@ add_library(zstd INTERFACE)
 target_include_directories(zstd SYSTEM INTERFACE ${ZSTD_INCLUDE_DIR})
 target_link_libraries(zstd INTERFACE ${ZSTD_LIBRARY})
 
+# Optional, for training. Debian's package for CMake asks for CUDA's and Python's where there is none, so its libraries
+# are looked for one by one; of PyTorch's own (-DTorch_DIR=...) the package is used.
+option(ODIS_TRAIN "Build `odis train`, where libtorch is found" ON)
+if(ODIS_TRAIN AND Torch_DIR)
+  find_package(Torch REQUIRED)
+  add_library(torch_learn INTERFACE)
+  target_link_libraries(torch_learn INTERFACE torch)
+elseif(ODIS_TRAIN)
+  find_path(TORCH_INCLUDE_DIR torch/csrc/api/include/torch/torch.h)
+  find_library(TORCH_CPU_LIBRARY torch_cpu)
+  find_library(TORCH_LIBRARY torch)
+  find_library(C10_LIBRARY c10)
+  mark_as_advanced(TORCH_INCLUDE_DIR TORCH_CPU_LIBRARY TORCH_LIBRARY C10_LIBRARY)
+  if(TORCH_INCLUDE_DIR AND TORCH_CPU_LIBRARY AND TORCH_LIBRARY AND C10_LIBRARY)
+    add_library(torch_learn INTERFACE)
+    target_include_directories(torch_learn SYSTEM INTERFACE
+      ${TORCH_INCLUDE_DIR} ${TORCH_INCLUDE_DIR}/torch/csrc/api/include)
+    target_link_libraries(torch_learn INTERFACE ${TORCH_LIBRARY} ${TORCH_CPU_LIBRARY} ${C10_LIBRARY})
+  endif()
+endif()
+if(TARGET torch_learn)
+  find_path(GLOO_INCLUDE_DIR gloo/rendezvous/store.h)
+  mark_as_advanced(GLOO_INCLUDE_DIR)
+  if(GLOO_INCLUDE_DIR)
+    target_include_directories(torch_learn SYSTEM INTERFACE ${GLOO_INCLUDE_DIR})
+    target_compile_definitions(torch_learn INTERFACE ODIS_GLOO USE_C10D_GLOO)
+  endif()
+endif()
+
 # Optional, packaged by neither: docs/rivals.md.
 find_package(openpgl 0.6 QUIET)
 

@@ -14,6 +14,7 @@
 #include "eval/image_file.h"
 #include "learn/data/shard_file.h"
 #include "learn/scenes/generate.h"
+#include "learn/train/learner.h"
 #include "odis_version.h"
 #include "render/scene/error.h"
 #include "suggest.h"
@@ -64,6 +65,7 @@ int runCommandLine(int argc, char** argv) {
   const std::vector<Command> commands{addRenderCommand(app, commandLine),
                                       addCompareCommand(app, commandLine),
                                       addAnalyzeCommand(app),
+                                      addTrainCommand(app),
                                       addAgreementCommand(app),
                                       addBenchCommand(app),
                                       addMetricsCommand(app),
@@ -87,11 +89,17 @@ int runCommandLine(int argc, char** argv) {
     return fail(kUsageError, error.what());
   } catch (const learn::AssetError& error) {
     return fail(kUsageError, error.what());
+  } catch (const learn::ConfigError& error) {
+    return fail(kUsageError, error.what());
+  } catch (const learn::TrainError& error) {
+    return fail(kUsageError, error.what());
   } catch (const learn::GenerateError& error) {
     return fail(kWriteError, error.what());
   } catch (const render::SceneError& error) {
     return fail(kSceneError, error.what());
   } catch (const learn::ShardError& error) {
+    return fail(kSceneError, error.what());
+  } catch (const WeightsError& error) {
     return fail(kSceneError, error.what());
   } catch (const eval::ImageError& error) {
     return fail(kSceneError, error.what());

@@ -23,9 +23,14 @@ void MethodArguments::addTo(CLI::App& app) {
       ->capture_default_str()
       ->group(group);
   app.add_option("--guide", guide,
-                 "What the pilot is turned into: histogram, or the oracle of many more samples")
-      ->check(CLI::IsMember({"histogram", "oracle"}))
+                 "How the pilot is turned into maps: by the network, by the histogram formula, or by the "
+                 "formula from "
+                 "the many more samples of an oracle")
+      ->check(CLI::IsMember({"network", "histogram", "oracle"}))
       ->capture_default_str()
+      ->group(group);
+  app.add_option("--weights", weights, "File of weights for the networks, in place of those built in")
+      ->check(CLI::ExistingFile)
       ->group(group);
   app.add_option("--guide-bounces", guideBounces, "How many vertices of a path are guided; -1: all")
       ->check(CLI::Range(-1, 1 << 20))
@@ -113,7 +118,10 @@ void MethodArguments::apply(RenderOptions& options) const {
                        : integrator == "restir"  ? IntegratorKind::restir
                                                  : IntegratorKind::odis;
   options.sampler = sampler == "sobol" ? SamplerKind::sobol : SamplerKind::independent;
-  options.guide = guide == "oracle" ? GuideKind::oracle : GuideKind::histogram;
+  options.guide = guide == "oracle"      ? GuideKind::oracle
+                  : guide == "histogram" ? GuideKind::histogram
+                                         : GuideKind::network;
+  if (!weights.empty()) options.networks = std::make_shared<Networks>(loadNetworks(weights));
   options.roulette = roulette == "learned" ? RouletteKind::learned : RouletteKind::throughput;
   options.guideBounces = guideBounces;
   options.pilotSpp = pilotSpp;

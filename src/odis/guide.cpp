@@ -157,16 +157,16 @@ Guide GuideBuilder::buildMaps(const std::vector<CellStatistics>& cells,
   guide.m_data->cells.resize(cells.size());
   distributions.resize(cells.size());
   for (int level = kCellLevels - 1; level >= 0; --level)
-    tbb::parallel_for(
-        tbb::blocked_range<size_t>(0, cells.size(), 16), [&](const tbb::blocked_range<size_t>& range) {
-          for (size_t c = range.begin(); c < range.end(); ++c) {
-            if (cells[c].level != level) continue;
-            const uint32_t parent = cells[c].parent;
-            distributions[c] =
-                options.model->predict(cells[c], parent == kNoCell ? nullptr : &distributions[parent]);
-            guide.m_data->cells[c].map = pack(distributions[c], options.floor);
-          }
-        });
+    tbb::parallel_for(tbb::blocked_range<size_t>(0, cells.size(), 16),
+                      [&](const tbb::blocked_range<size_t>& range) {
+                        for (size_t c = range.begin(); c < range.end(); ++c) {
+                          if (cells[c].level != level) continue;
+                          const uint32_t parent = cells[c].parent;
+                          distributions[c] = options.model->predict(
+                              chainOf(cells, c), parent == kNoCell ? nullptr : &distributions[parent]);
+                          guide.m_data->cells[c].map = pack(distributions[c], options.floor);
+                        }
+                      });
   return guide;
 }
 

@@ -62,7 +62,8 @@ std::string openRoom(int size) {
 // Tables for no reason, and values that are none.
 class AdversarialLights : public LightModel {
  public:
-  LightSquares predict(const CellStatistics& cell, const LightSquares*) const override {
+  LightSquares predict(const CellChain& chain, const LightSquares*) const override {
+    const CellStatistics& cell = *chain[0];
     LightSquares result{};
     std::mt19937 engine(uint32_t(cell.count) * 7919u + uint32_t(cell.level));
     const uint32_t kind = engine() % 4;
@@ -79,7 +80,7 @@ class AdversarialLights : public LightModel {
 // All the same: the first group and no other.
 class StubbornLights : public LightModel {
  public:
-  LightSquares predict(const CellStatistics&, const LightSquares*) const override { return {1}; }
+  LightSquares predict(const CellChain&, const LightSquares*) const override { return {1}; }
 };
 
 struct LampRoom {

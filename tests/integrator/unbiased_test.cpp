@@ -18,7 +18,8 @@ class AdversarialModel : public DirectionModel {
  public:
   enum class Kind { random, oneHot, zero, notANumber, inverted };
   explicit AdversarialModel(Kind kind) : m_kind(kind) {}
-  DirectionDistribution predict(const CellStatistics& cell, const DirectionDistribution*) const override {
+  DirectionDistribution predict(const CellChain& chain, const DirectionDistribution*) const override {
+    const CellStatistics& cell = *chain[0];
     DirectionDistribution result;
     std::mt19937 engine(uint32_t(cell.count) * 7919u + uint32_t(cell.level));
     const float most = *std::max_element(cell.histogram.begin(), cell.histogram.end());
@@ -53,7 +54,8 @@ class AdversarialModel : public DirectionModel {
 // Roulette that ends and keeps paths for no reason, and values that are none.
 class AdversarialContinuations : public ContinuationModel {
  public:
-  Continuation predict(const CellStatistics& cell, const Continuation*) const override {
+  Continuation predict(const CellChain& chain, const Continuation*) const override {
+    const CellStatistics& cell = *chain[0];
     std::mt19937 engine(uint32_t(cell.count) * 7919u + uint32_t(cell.level));
     switch (engine() % 8) {
       case 0:

@@ -393,16 +393,17 @@ TEST(Roulette, WhatTheMeanExplainsIsWorthNoRays) {
 
 TEST(Roulette, CellsWithFewSamplesFollowTheirParents) {
   CellStatistics cell;
+  const CellStatistics nothing;
   const Continuation parent{{1, 2, 3}, 4, 3};
-  EXPECT_EQ(ShrunkMoments().predict(cell, &parent).square, 4);
+  EXPECT_EQ(ShrunkMoments().predict({&cell}, &parent).square, 4);
   cell.count = 1e6;
   cell.outgoing = {2e6, 1e6, 0};
   cell.outgoingSquares = 1e6;
   cell.rays = 7e6;
-  EXPECT_NEAR(ShrunkMoments().predict(cell, &parent).square, 1, 0.01);
-  EXPECT_NEAR(ShrunkMoments().predict(cell, &parent).rays, 7, 0.01);
-  EXPECT_NEAR(ShrunkMoments().predict(cell, &parent).mean[0], 2, 0.01);
-  EXPECT_EQ(ShrunkMoments().predict({}, nullptr).square, 0);
+  EXPECT_NEAR(ShrunkMoments().predict({&cell}, &parent).square, 1, 0.01);
+  EXPECT_NEAR(ShrunkMoments().predict({&cell}, &parent).rays, 7, 0.01);
+  EXPECT_NEAR(ShrunkMoments().predict({&cell}, &parent).mean[0], 2, 0.01);
+  EXPECT_EQ(ShrunkMoments().predict({&nothing}, nullptr).square, 0);
 }
 
 TEST(Lights, TablesFollowTheRootOfWhatGroupsGive) {

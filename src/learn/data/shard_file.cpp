@@ -36,7 +36,7 @@ uint32_t wordAt(const std::string& bytes, size_t at) {
 size_t sizeOfElement(const std::string& type) {
   if (type == "|u1") return 1;
   if (type == "<u2" || type == "<f2") return 2;
-  return type == "<u4" || type == "<i4" ? 4 : 0;
+  return type == "<u4" || type == "<i4" || type == "<f4" ? 4 : 0;
 }
 
 uint64_t countOf(const Shape& shape) {

@@ -34,6 +34,8 @@ template <>
 inline constexpr const char* kElementName<int32_t> = "<i4";
 template <>
 inline constexpr const char* kElementName<Half> = "<f2";
+template <>
+inline constexpr const char* kElementName<float> = "<f4";
 
 using Shape = std::vector<uint64_t>;
 

@@ -8,10 +8,6 @@
 
 namespace odis {
 
-namespace {
-
-// The texel at (x, y), which may lie one step outside: the octahedral map continues across an edge mirrored
-// about the edge's middle.
 int wrappedTexel(int x, int y) {
   if (x < 0 || x >= kMapSize) {
     x = x < 0 ? 0 : kMapSize - 1;
@@ -23,8 +19,6 @@ int wrappedTexel(int x, int y) {
   }
   return texelAt(x, y);
 }
-
-}  // namespace
 
 Splat splat(const Float3& wi) {
   const Float2 square = directionToSquare(wi);
@@ -73,7 +67,11 @@ void CellStore::place(PilotParts parts, int cellsPerDiagonal) {
   const float edge = diagonal > 0 ? diagonal / float(cellsPerDiagonal) : 1.0f;
   // An odd offset keeps walls at the ends of the extent off the cells' faces.
   const float offset = 0.37f * edge;
-  m_grid = CellGrid({low[0] - offset, low[1] - offset, low[2] - offset}, edge);
+  place(CellGrid({low[0] - offset, low[1] - offset, low[2] - offset}, edge));
+}
+
+void CellStore::place(const CellGrid& grid) {
+  m_grid = grid;
   m_placed = true;
 }
 
@@ -95,7 +93,7 @@ uint32_t CellStore::insert(uint64_t key) {
 namespace {
 
 // Adds a batch's samples to their cell, values clamped.
-void accumulate(CellStatistics& cell, float limit, std::span<const CellSample* const> samples) {
+void accumulate(CellStatistics& cell, float limit, float edge, std::span<const CellSample* const> samples) {
   if (cell.count == 0) {
     forEachItem(samples, [&](const CellSample& s) { cell.centroid = cell.centroid + s.position; });
     cell.centroid = cell.centroid * (1.0f / float(samples.size()));
@@ -112,6 +110,7 @@ void accumulate(CellStatistics& cell, float limit, std::span<const CellSample* c
     const double brightness = luminance(outgoing);
     cell.outgoingSquares += brightness * brightness;
     cell.rays += sample.rays;
+    cell.nearness += edge / (edge + sample.distance);
     if (sample.lightSquare > 0) cell.lightSquares[sample.lightGroup] += sample.lightSquare;
     cell.normal = cell.normal + sample.normal;
     if (value <= 0) return;
@@ -157,14 +156,15 @@ void CellStore::add(std::span<const BatchSamples* const> batches) {
       sortByCell<CellSample>(cells, uint32_t(m_cells.size()),
                              [&](size_t b, size_t i) -> const CellSample& { return batches[b]->samples[i]; });
   m_transientBytes += order.bytes();
-  tbb::parallel_for(
-      tbb::blocked_range<size_t>(0, m_cells.size(), 16), [&](const tbb::blocked_range<size_t>& range) {
-        for (size_t c = range.begin(); c < range.end(); ++c) {
-          if (order.of(c).empty()) continue;
-          const uint32_t parent = m_cells[c].parent;
-          accumulate(m_cells[c], m_clamp * float(parentSum[parent] / parentCount[parent]), order.of(c));
-        }
-      });
+  tbb::parallel_for(tbb::blocked_range<size_t>(0, m_cells.size(), 16),
+                    [&](const tbb::blocked_range<size_t>& range) {
+                      for (size_t c = range.begin(); c < range.end(); ++c) {
+                        if (order.of(c).empty()) continue;
+                        const uint32_t parent = m_cells[c].parent;
+                        accumulate(m_cells[c], m_clamp * float(parentSum[parent] / parentCount[parent]),
+                                   m_grid.finestEdge(), order.of(c));
+                      }
+                    });
 }
 
 std::vector<CellStatistics> CellStore::rollUp() const {
@@ -180,6 +180,7 @@ std::vector<CellStatistics> CellStore::rollUp() const {
       for (size_t i = 0; i < 3; ++i) parent.outgoing[i] += child.outgoing[i];
       parent.outgoingSquares += child.outgoingSquares;
       parent.rays += child.rays;
+      parent.nearness += child.nearness;
       for (size_t g = 0; g < parent.lightSquares.size(); ++g) parent.lightSquares[g] += child.lightSquares[g];
       parent.normal = parent.normal + child.normal;
       for (int t = 0; t < kMapTexels; ++t) parent.histogram[t] += child.histogram[t];

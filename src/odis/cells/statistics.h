@@ -13,6 +13,10 @@ namespace odis {
 
 using Histogram = std::array<float, kMapTexels>;
 
+// The texel in column x and row y, which may lie one step outside: the octahedral map continues across an edge
+// mirrored about the edge's middle.
+int wrappedTexel(int x, int y);
+
 // The four texels among which a direction is spread, bilinearly, across the seams of the octahedral map.
 struct Splat {
   int texel[4];
@@ -29,11 +33,22 @@ struct CellStatistics {
   std::array<double, 3> outgoing{};  // sum of what the vertices scatter back, in red, green and blue
   double outgoingSquares = 0;        // sum of its squares, as luminance
   double rays = 0;                   // traced at the vertices and beyond
+  double nearness = 0;               // sum of e / (e + distance to what was seen), e the finest cells' edge
   Float3 centroid;                   // of the first batch's positions; directions are re-aimed from here
   Float3 normal;                     // sum of unit normals
   std::array<double, kMostLightGroups> lightSquares{};  // sums of CellSample::lightSquare, for each group
   Histogram histogram{};                                // of values by direction
 };
+
+// A cell and its ancestors, finest first; null beyond the coarsest.
+using CellChain = std::array<const CellStatistics*, kCellLevels>;
+inline CellChain chainOf(std::span<const CellStatistics> cells, size_t cell) {
+  CellChain chain{};
+  size_t length = 0;
+  for (size_t next = cell; next != kNoCell && length < chain.size(); next = cells[next].parent)
+    chain[length++] = &cells[next];
+  return chain;
+}
 
 // Calls `body` with the index of each cell, parents before their children.
 template <class Body>
@@ -48,7 +63,9 @@ class CellStore {
  public:
   explicit CellStore(float clamp) : m_clamp(clamp) {}
 
-  // Sorts the vertices into cells and adds them up. The first call places the grid.
+  // Places the grid; otherwise the first call of `add` does.
+  void place(const CellGrid& grid);
+  // Sorts the vertices into cells and adds them up.
   void add(PilotParts parts, int cellsPerDiagonal);
   // The same in two steps, once there is a grid: many threads take samples, one call adds them up.
   BatchSamples take(const PilotBatch& batch) const { return takeSamples(batch, m_grid); }

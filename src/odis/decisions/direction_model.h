@@ -18,9 +18,9 @@ struct DirectionDistribution {
 class DirectionModel {
  public:
   virtual ~DirectionModel() = default;
-  // The distribution of a cell, given its statistics and its ancestors' distribution (null for the coarsest
-  // level). Called for parents before their children; thread-safe.
-  virtual DirectionDistribution predict(const CellStatistics& cell,
+  // The distribution of a cell, given its statistics and its ancestors', and its parent's distribution (null for the
+  // coarsest level). Called for parents before their children; thread-safe.
+  virtual DirectionDistribution predict(const CellChain& chain,
                                         const DirectionDistribution* parent) const = 0;
 };
 
@@ -29,8 +29,7 @@ class DirectionModel {
 class HistogramModel : public DirectionModel {
  public:
   explicit HistogramModel(const GuideOptions& options) : m_options(options) {}
-  DirectionDistribution predict(const CellStatistics& cell,
-                                const DirectionDistribution* parent) const override;
+  DirectionDistribution predict(const CellChain& chain, const DirectionDistribution* parent) const override;
 
  private:
   GuideOptions m_options;

@@ -3,8 +3,9 @@
 
 namespace odis {
 
-DirectionDistribution HistogramModel::predict(const CellStatistics& cell,
+DirectionDistribution HistogramModel::predict(const CellChain& chain,
                                               const DirectionDistribution* parent) const {
+  const CellStatistics& cell = *chain[0];
   DirectionDistribution result;
   const float length = std::sqrt(dot(cell.normal, cell.normal));
   const Float3 normal = length > 0 ? cell.normal * (1 / length) : Float3{0, 0, 1};

@@ -41,7 +41,8 @@ void evenOut(std::span<double> weights) {
 
 }  // namespace
 
-LightSquares ShrunkLightSquares::predict(const CellStatistics& cell, const LightSquares* parent) const {
+LightSquares ShrunkLightSquares::predict(const CellChain& chain, const LightSquares* parent) const {
+  const CellStatistics& cell = *chain[0];
   LightSquares result{};
   const double prior = parent ? kPriorSamples : 0, count = cell.count + prior;
   if (!(count > 0)) return result;
@@ -57,7 +58,7 @@ std::vector<float> tabulateLights(std::vector<Cell>& result, std::span<const Cel
   std::vector<float> table(cells.size() * (groups + 1));
   forEachFromCoarse(cells, [&](size_t c) {
     const uint32_t parent = cells[c].parent;
-    squares[c] = model.predict(cells[c], parent == kNoCell ? nullptr : &squares[parent]);
+    squares[c] = model.predict(chainOf(cells, c), parent == kNoCell ? nullptr : &squares[parent]);
     std::array<double, kMostLightGroups> weights{};
     for (uint32_t g = 0; g < groups; ++g) {
       const double weight = std::sqrt(squares[c][g]);

@@ -18,15 +18,15 @@ using LightSquares = std::array<double, kMostLightGroups>;
 class LightModel {
  public:
   virtual ~LightModel() = default;
-  // Given the cell's statistics and its parent's result (null for the coarsest level). Called for parents before their
-  // children; thread-safe.
-  virtual LightSquares predict(const CellStatistics& cell, const LightSquares* parent) const = 0;
+  // Given the statistics of the cell and its ancestors, and its parent's result (null for the coarsest level). Called for
+  // parents before their children; thread-safe.
+  virtual LightSquares predict(const CellChain& chain, const LightSquares* parent) const = 0;
 };
 
 // The cell's means, shrunk towards its parent's by how many samples the cell has.
 class ShrunkLightSquares : public LightModel {
  public:
-  LightSquares predict(const CellStatistics& cell, const LightSquares* parent) const override;
+  LightSquares predict(const CellChain& chain, const LightSquares* parent) const override;
 };
 
 // Tables of `groups` + 1 entries for each cell, one after the other, and the cells' shares (Cell::lightShare). The best

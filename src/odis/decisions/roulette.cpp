@@ -32,7 +32,8 @@ Float3 usable(const std::array<double, 3>& mean) {
 
 }  // namespace
 
-Continuation ShrunkMoments::predict(const CellStatistics& cell, const Continuation* parent) const {
+Continuation ShrunkMoments::predict(const CellChain& chain, const Continuation* parent) const {
+  const CellStatistics& cell = *chain[0];
   const double prior = parent ? kPriorSamples : 0, count = cell.count + prior;
   if (!(count > 0)) return {};
   const Continuation behind = parent ? *parent : Continuation{};
@@ -51,7 +52,7 @@ void weighContinuations(std::vector<Cell>& result, std::span<const CellStatistic
   forEachFromCoarse(cells, [&](size_t c) {
     const uint32_t parent = cells[c].parent;
     const Continuation& next = continuations[c] =
-        model.predict(cells[c], parent == kNoCell ? nullptr : &continuations[parent]);
+        model.predict(chainOf(cells, c), parent == kNoCell ? nullptr : &continuations[parent]);
     const Float3 mean = controlVariate ? usable(next.mean) : Float3{0, 0, 0};
     const double known = double(luminance(mean)) * luminance(mean);
     const double ratio = next.square > 0 ? std::min(known / next.square, 1.0) : 0;

@@ -22,15 +22,15 @@ struct Continuation {
 class ContinuationModel {
  public:
   virtual ~ContinuationModel() = default;
-  // Given the cell's statistics and its parent's continuation (null for the coarsest level). Called for parents
-  // before their children; thread-safe.
-  virtual Continuation predict(const CellStatistics& cell, const Continuation* parent) const = 0;
+  // Given the statistics of the cell and its ancestors, and its parent's continuation (null for the coarsest level). Called for
+  // parents before their children; thread-safe.
+  virtual Continuation predict(const CellChain& chain, const Continuation* parent) const = 0;
 };
 
 // The cell's means, shrunk towards its parent's by how many samples the cell has.
 class ShrunkMoments : public ContinuationModel {
  public:
-  Continuation predict(const CellStatistics& cell, const Continuation* parent) const override;
+  Continuation predict(const CellChain& chain, const Continuation* parent) const override;
 };
 
 // Fills in what going on is worth in each cell (Cell::worth) and what stands in for paths that don't (Cell::expected;

@@ -226,6 +226,9 @@ class Renderer {
       guideOptions.lightGroups = m_lights.groupCount();
       guideOptions.lightParts = m_lights.dividedLights();
     }
+    const Networks& networks = m_options.networks ? *m_options.networks : builtInNetworks();
+    if (m_options.guide == GuideKind::network && !guideOptions.model)
+      guideOptions.model = networks.directions;
     m_builder = std::make_unique<GuideBuilder>(guideOptions);
     if (m_options.guide == GuideKind::oracle) {
       m_progress.begin("oracle", m_pixels * uint64_t(m_options.oracleSpp));

@@ -3,11 +3,13 @@
 
 #include <atomic>
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include <odis/guide.h>
+#include <odis/networks.h>
 
 #include "render/rivals/ppg_options.h"
 #include "render/rivals/restir_options.h"
@@ -17,7 +19,7 @@ namespace odis::render {
 
 enum class IntegratorKind { path, odis, ppg, openpgl, restir };
 enum class SamplerKind { sobol, independent };
-enum class GuideKind { histogram, oracle };
+enum class GuideKind { network, histogram, oracle };
 enum class RouletteKind { throughput, learned };
 enum class LightChoiceKind { hierarchy, learned };
 enum class ShadowRayKind { all, roulette };
@@ -39,7 +41,8 @@ struct RenderOptions {
   RestirOptions restir;   // restir only
 
   // odis only
-  GuideKind guide = GuideKind::histogram;
+  GuideKind guide = GuideKind::network;
+  std::shared_ptr<const Networks> networks;            // null: those that come with the library
   RouletteKind roulette = RouletteKind::learned;       // of the guided samples
   LightChoiceKind lights = LightChoiceKind::learned;   // likewise
   ShadowRayKind shadowRays = ShadowRayKind::roulette;  // likewise

@@ -1,0 +1,89 @@
+// odis train
+#include <fmt/format.h>
+#include <CLI/CLI.hpp>
+
+#include <chrono>
+#include <memory>
+
+#include "command.h"
+#include "console.h"
+#include "learn/train/train.h"
+
+namespace odis::app {
+
+namespace {
+
+struct Arguments {
+  std::string config, output;
+  bool quiet = false;
+};
+
+// A line now and then.
+class Observer : public learn::TrainObserver {
+ public:
+  explicit Observer(bool quiet) : m_quiet(quiet) {}
+  void waiting(size_t shards, int expected) override {
+    if (shards == m_shards) return;
+    m_shards = shards;
+    print(fmt::format("waiting for shards: {} of {}\n", shards, expected));
+  }
+  void loaded(size_t shards, size_t examples) override {
+    print(fmt::format("{} shards, {} examples\n", shards, examples));
+  }
+  void step(int step, int of, double loss) override {
+    const Clock::time_point now = Clock::now();
+    if (m_first == 0) {
+      m_first = step;
+      m_start = now;
+    }
+    if (step < of && now - m_last < std::chrono::seconds(5)) return;
+    m_last = now;
+    const double seconds = std::chrono::duration<double>(now - m_start).count();
+    const std::string left =
+        step > m_first && step < of
+            ? ", " + durationText(seconds * (of - step) / (step - m_first)) + " left"
+            : "";
+    print(fmt::format("step {} of {}: loss {:.4f}{}\n", step, of, loss, left));
+  }
+  void validated(const learn::ValidationRow& row) override {
+    print(fmt::format("step {}: predicted variance {:.4f}, of the formula {:.4f}\n", row.step, row.variance,
+                      row.formula));
+  }
+  bool cancelled() const override { return InterruptScope::interrupted(); }
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  void print(const std::string& line) const {
+    if (!m_quiet) say(line);
+  }
+  bool m_quiet;
+  size_t m_shards = ~size_t(0);
+  int m_first = 0;
+  Clock::time_point m_start, m_last;
+};
+
+int run(const Arguments& a) {
+  const learn::TrainConfig config = learn::readConfig(a.config);
+  const learn::Processes processes = learn::processesOfEnvironment();
+  InterruptScope interrupt;
+  Observer observer(a.quiet || processes.rank > 0);
+  if (!learn::train(config, a.output, processes, observer)) return InterruptScope::exitCode();
+  if (!a.quiet && processes.rank == 0) say(fmt::format("{}/odis.weights\n", a.output));
+  return kOk;
+}
+
+}  // namespace
+
+Command addTrainCommand(CLI::App& parent) {
+  CLI::App* app = parent.add_subcommand("train", "Train the networks on a data set: docs/network.md");
+  const auto a = std::make_shared<Arguments>();
+  app->add_option("CONFIG", a->config, "What to do: a JSON file")->required()->check(CLI::ExistingFile);
+  app->add_option("-o,--output", a->output,
+                  "Folder for weights, curves and checkpoints; where it has a checkpoint, training goes on from there")
+      ->required();
+  app->add_flag("-q,--quiet", a->quiet, "Print errors only");
+  app->footer("Several processes share the work where RANK, WORLD_SIZE, MASTER_ADDR and MASTER_PORT are set, as torchrun does.");
+  return {app, [=] { return run(*a); }};
+}
+
+}  // namespace odis::app

@@ -1,0 +1,247 @@
+// The learner on libtorch, a library of its own that `odis train` loads: nobody else waits for libtorch to be loaded, and
+// no other source for its headers.
+#include <torch/torch.h>
+#ifdef ODIS_GLOO
+#include <torch/csrc/distributed/c10d/ProcessGroupGloo.hpp>
+#include <torch/csrc/distributed/c10d/TCPStore.hpp>
+#endif
+
+#include <cstdlib>
+#include <sstream>
+#include <thread>
+
+#include "learn/train/learner.h"
+
+namespace odis::learn {
+
+namespace {
+
+constexpr int64_t kTexels = kMapTexels;
+// Every map has so much of the uniform distribution in it (GuideOptions::floor), and the share of the BSDF's draws that
+// the variance is computed for.
+constexpr double kFloor = 0.03, kAlpha = 0.4;
+// Gradients longer than this are shortened.
+constexpr double kLongestGradient = 1;
+
+// The same as DirectionNetwork (odis/network).
+struct DirectionModuleImpl : torch::nn::Module {
+  explicit DirectionModuleImpl(int64_t hidden)
+      : cell0(register_module("cell0", torch::nn::Linear(kCellScalars, hidden))),
+        cell1(register_module("cell1", torch::nn::Linear(hidden, hidden))),
+        blend(register_module("blend", torch::nn::Linear(hidden, kBasisMaps))),
+        mean(register_buffer("mean", torch::zeros({kCellScalars}))),
+        scale(register_buffer("scale", torch::ones({kCellScalars}))) {}
+
+  torch::Tensor forward(const torch::Tensor& scalars, const torch::Tensor& basis,
+                        const torch::Tensor& there) {
+    torch::Tensor x = torch::relu(cell0((scalars - mean) * scale));
+    x = torch::relu(cell1(x));
+    const torch::Tensor shares = blend(x).masked_fill(there < 0.5, -INFINITY).softmax(-1);
+    return torch::bmm(shares.unsqueeze(1), basis).squeeze(1);
+  }
+
+  torch::nn::Linear cell0, cell1, blend;
+  torch::Tensor mean, scale;
+};
+TORCH_MODULE(DirectionModule);
+
+// A batch as tensors.
+struct Rows {
+  torch::Tensor scalars, basis, there, perCosine, diffuse, mass, square;
+
+  Rows(const DirectionBatch& b, const torch::Device& device) {
+    const auto count = int64_t(b.count);
+    const auto take = [&](const std::vector<float>& values, at::IntArrayRef shape) {
+      return torch::from_blob(const_cast<float*>(values.data()), shape, torch::kFloat32).to(device);
+    };
+    scalars = take(b.scalars, {count, kCellScalars});
+    basis = take(b.basis, {count, kBasisMaps, kTexels});
+    there = take(b.there, {count, kBasisMaps});
+    perCosine = take(b.perCosine, {count, kTexels});
+    diffuse = take(b.diffuse, {count, kTexels});
+    mass = take(b.mass, {count, kTexels});
+    square = take(b.square, {count, kTexels});
+  }
+};
+
+// The second moment of a sample from the mixture of a diffuse BSDF and the map, over that from the BSDF alone.
+torch::Tensor secondMoment(const torch::Tensor& map, const Rows& rows) {
+  torch::Tensor radiance = map * rows.perCosine;
+  radiance = (1 - kFloor) * radiance / radiance.sum(-1, true) + kFloor / double(kTexels);
+  torch::Tensor drawn = radiance * rows.diffuse;
+  drawn = drawn / drawn.sum(-1, true);
+  return (rows.square / (kAlpha + (1 - kAlpha) * drawn / rows.diffuse)).sum(-1);
+}
+
+torch::Tensor lossOf(Loss loss, const torch::Tensor& map, const Rows& rows) {
+  switch (loss) {
+    case Loss::crossEntropy:
+      return -(rows.mass * torch::log((1 - kFloor) * map + kFloor / double(kTexels))).sum(-1).mean();
+    case Loss::logVariance:
+      return torch::log(secondMoment(map, rows).clamp_min(1e-3)).mean();
+    case Loss::l1:
+      return (map - rows.mass).abs().sum(-1).mean();
+    case Loss::l2:
+      return double(kTexels) * (map - rows.mass).square().sum(-1).mean();
+  }
+  return {};
+}
+
+torch::Device chooseDevice(const std::string& name) {
+  const bool cuda = torch::cuda::is_available();
+  if (name == "cuda" && !cuda) throw TrainError("there is no CUDA device that libtorch can use, expected \"cpu\"");
+  return cuda && name != "cpu" ? torch::kCUDA : torch::kCPU;
+}
+
+Tensor toTensor(const std::string& name, const torch::Tensor& tensor) {
+  const torch::Tensor values = tensor.detach().to(torch::kCPU, torch::kFloat32).contiguous();
+  Tensor result{name, {}, {values.data_ptr<float>(), values.data_ptr<float>() + values.numel()}};
+  for (const int64_t size : values.sizes()) result.shape.push_back(uint32_t(size));
+  return result;
+}
+
+class TorchLearner : public Learner {
+ public:
+  TorchLearner(const TrainConfig& config, const Processes& processes)
+      : m_device(chooseDevice(config.device)), m_processes(processes), m_module(make(config)) {
+    m_module->to(m_device);
+    m_adam = std::make_unique<torch::optim::Adam>(m_module->parameters(), torch::optim::AdamOptions(1e-3));
+    if (processes.count > 1) join();
+  }
+
+  std::string device() const override { return m_device.is_cuda() ? "cuda" : "cpu"; }
+
+  void standardize(const DirectionBatch& batch) override {
+    const torch::NoGradGuard guard;
+    const Rows rows(batch, m_device);
+    m_module->mean.copy_(rows.scalars.mean(0));
+    m_module->scale.copy_(1 / rows.scalars.std(0).clamp_min(0.1));
+  }
+
+  double step(const DirectionBatch& batch, Loss loss, double learningRate) override {
+    const Rows rows(batch, m_device);
+    const torch::Tensor value = lossOf(loss, m_module(rows.scalars, rows.basis, rows.there), rows);
+    m_adam->zero_grad();
+    value.backward();
+    double mean = value.item<double>();
+    if (m_processes.count > 1) average(mean);
+    torch::nn::utils::clip_grad_norm_(m_module->parameters(), kLongestGradient);
+    for (auto& group : m_adam->param_groups())
+      static_cast<torch::optim::AdamOptions&>(group.options()).lr(learningRate);
+    m_adam->step();
+    return mean;
+  }
+
+  std::vector<float> predict(const DirectionBatch& batch) override {
+    const torch::NoGradGuard guard;
+    const Rows rows(batch, m_device);
+    return toTensor("", m_module(rows.scalars, rows.basis, rows.there)).values;
+  }
+
+  std::vector<Tensor> tensors() const override {
+    return {toTensor("directions.cell.mean", m_module->mean),
+            toTensor("directions.cell.scale", m_module->scale),
+            toTensor("directions.cell.0.weight", m_module->cell0->weight),
+            toTensor("directions.cell.0.bias", m_module->cell0->bias),
+            toTensor("directions.cell.1.weight", m_module->cell1->weight),
+            toTensor("directions.cell.1.bias", m_module->cell1->bias),
+            toTensor("directions.blend.weight", m_module->blend->weight),
+            toTensor("directions.blend.bias", m_module->blend->bias)};
+  }
+
+  std::string state() const override {
+    torch::serialize::OutputArchive archive, module, adam;
+    m_module->save(module);
+    m_adam->save(adam);
+    archive.write("module", module);
+    archive.write("adam", adam);
+    std::ostringstream stream;
+    archive.save_to(stream);
+    return stream.str();
+  }
+
+  void restore(const std::string& state) override {
+    std::istringstream stream(state);
+    torch::serialize::InputArchive archive, module, adam;
+    archive.load_from(stream, m_device);
+    archive.read("module", module);
+    archive.read("adam", adam);
+    m_module->load(module);
+    m_adam->load(adam);
+  }
+
+  std::string agree(const std::string& text) override {
+    if (m_processes.count == 1) return text;
+    std::vector<torch::Tensor> length{torch::tensor({int64_t(text.size())})};
+    broadcast(length);
+    torch::Tensor bytes = torch::zeros({length[0].item<int64_t>()}, torch::kUInt8);
+    if (m_processes.rank == 0) std::memcpy(bytes.data_ptr(), text.data(), text.size());
+    std::vector<torch::Tensor> all{bytes};
+    if (bytes.numel() > 0) broadcast(all);
+    return {static_cast<const char*>(bytes.data_ptr()), size_t(bytes.numel())};
+  }
+
+ private:
+  static DirectionModule make(const TrainConfig& config) {
+    // The same in every process, whatever it drew before.
+    torch::manual_seed(uint64_t(config.seed));
+    // Small layers: more threads than these would mostly wait for each other.
+    at::set_num_threads(int(std::clamp(std::thread::hardware_concurrency() / 2, 1u, 4u)));
+    return DirectionModule(config.hidden);
+  }
+
+#ifdef ODIS_GLOO
+  void join() {
+    const char* address = std::getenv("MASTER_ADDR");
+    const char* port = std::getenv("MASTER_PORT");
+    if (!address || !port)
+      throw TrainError("several processes need MASTER_ADDR and MASTER_PORT, as torchrun sets them");
+    try {
+      c10d::TCPStoreOptions options;
+      options.port = uint16_t(std::atoi(port));
+      options.isServer = m_processes.rank == 0;
+      options.numWorkers = size_t(m_processes.count);
+      const auto store = c10::make_intrusive<c10d::TCPStore>(address, options);
+      const auto gloo = c10d::ProcessGroupGloo::Options::create();
+      gloo->devices.push_back(c10d::ProcessGroupGloo::createDefaultDevice());
+      m_group = c10::make_intrusive<c10d::ProcessGroupGloo>(store, m_processes.rank, m_processes.count, gloo);
+    } catch (const c10::Error& e) {
+      throw TrainError(std::string("the processes don't find each other: ") + e.what_without_backtrace());
+    }
+  }
+  void broadcast(std::vector<torch::Tensor>& tensors) { m_group->broadcast(tensors)->wait(); }
+  // Of all gradients at once, and the loss.
+  void average(double& loss) {
+    std::vector<torch::Tensor> parts;
+    for (const torch::Tensor& p : m_module->parameters()) parts.push_back(p.grad().reshape({-1}).to(torch::kCPU));
+    parts.push_back(torch::full({1}, loss, torch::kFloat32));
+    std::vector<torch::Tensor> all{torch::cat(parts)};
+    m_group->allreduce(all)->wait();
+    const torch::Tensor mean = all[0] / double(m_processes.count);
+    int64_t at = 0;
+    for (torch::Tensor& p : m_module->parameters()) {
+      p.mutable_grad().copy_(mean.slice(0, at, at + p.numel()).reshape(p.sizes()));
+      at += p.numel();
+    }
+    loss = mean[at].item<double>();
+  }
+  c10::intrusive_ptr<c10d::ProcessGroupGloo> m_group;
+#else
+  void join() { throw TrainError("this odis was built without Gloo: install libgloo-dev and build again"); }
+  void broadcast(std::vector<torch::Tensor>&) {}
+  void average(double&) {}
+#endif
+
+  torch::Device m_device;
+  Processes m_processes;
+  DirectionModule m_module;
+  std::unique_ptr<torch::optim::Adam> m_adam;
+};
+
+}  // namespace
+
+extern "C" Learner* odisMakeLearner(const TrainConfig& config, const Processes& processes) {
+  return new TorchLearner(config, processes);
+}
+
+}  // namespace odis::learn

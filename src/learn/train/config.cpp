@@ -1,0 +1,128 @@
+#include "learn/train/config.h"
+
+#include <fmt/format.h>
+
+#include <filesystem>
+#include <fstream>
+
+namespace odis::learn {
+
+namespace {
+
+constexpr std::pair<Loss, const char*> kLosses[] = {
+    {Loss::crossEntropy, "cross-entropy"}, {Loss::logVariance, "log-variance"}, {Loss::l1, "l1"}, {Loss::l2, "l2"}};
+
+// Takes values out of a JSON object and knows which keys it has been asked for.
+class Keys {
+ public:
+  Keys(const std::string& path, const nlohmann::json& json) : m_path(path), m_left(json) {}
+
+  void take(const char* key, std::string& value) {
+    if (const auto found = m_left.find(key); found != m_left.end()) {
+      if (!found->is_string()) fail(key, "expected a text");
+      value = found->get<std::string>();
+      m_left.erase(found);
+    }
+  }
+  template <class T>
+  void take(const char* key, T& value, T least, T most) {
+    if (const auto found = m_left.find(key); found != m_left.end()) {
+      if (!found->is_number() || (std::is_integral_v<T> && !found->is_number_integer()))
+        fail(key, std::is_integral_v<T> ? "expected a whole number" : "expected a number");
+      const double number = found->get<double>();
+      if (!(number >= double(least) && number <= double(most)))
+        fail(key, fmt::format("found {}, expected {} to {}", number, least, most));
+      value = T(number);
+      m_left.erase(found);
+    }
+  }
+  [[noreturn]] void fail(const std::string& key, const std::string& why) const {
+    throw ConfigError(fmt::format("{}: {}: {}", m_path, key, why));
+  }
+  void expectNoneLeft() const {
+    if (!m_left.empty()) fail(m_left.begin().key(), "is no key of a training, see docs/network.md");
+  }
+
+ private:
+  const std::string& m_path;
+  nlohmann::json m_left;
+};
+
+const char* nameOf(Loss loss) {
+  for (const auto& [which, name] : kLosses)
+    if (which == loss) return name;
+  return "";
+}
+
+}  // namespace
+
+TrainConfig readConfig(const std::string& path) {
+  std::ifstream stream(path);
+  if (!stream) throw ConfigError(path + ": cannot be read");
+  nlohmann::json json;
+  try {
+    json = nlohmann::json::parse(stream);
+  } catch (const nlohmann::json::exception& e) {
+    throw ConfigError(path + ": is not JSON: " + e.what());
+  }
+  if (!json.is_object()) throw ConfigError(path + ": expected an object");
+  constexpr int kMany = 1 << 30;
+  TrainConfig c;
+  Keys keys(path, json);
+  keys.take("data", c.data);
+  keys.take("examples", c.examples);
+  keys.take("shards", c.shards, 1, kMany);
+  keys.take("steps", c.steps, 1, kMany);
+  keys.take("batch", c.batch, 1, 1 << 20);
+  keys.take("hidden", c.hidden, 1, 256);
+  std::string loss = nameOf(c.loss);
+  keys.take("loss", loss);
+  bool known = false;
+  for (const auto& [which, name] : kLosses)
+    if (loss == name) {
+      c.loss = which;
+      known = true;
+    }
+  if (!known) keys.fail("loss", "found " + loss + ", expected cross-entropy, log-variance, l1 or l2");
+  keys.take("fineTuneSteps", c.fineTuneSteps, 0, kMany);
+  keys.take("learningRate", c.learningRate, 0.0, 1.0);
+  keys.take("finalLearningRate", c.finalLearningRate, 0.0, 1.0);
+  keys.take("warmUpSteps", c.warmUpSteps, 0, kMany);
+  keys.take("shiftProbability", c.shiftProbability, 0.0, 1.0);
+  keys.take("roundSteps", c.roundSteps, 1, kMany);
+  keys.take("validateSteps", c.validateSteps, 1, kMany);
+  keys.take("validationScenes", c.validationScenes, 0, kMany);
+  keys.take("seed", c.seed, 0, kMany);
+  keys.take("device", c.device);
+  if (c.device != "auto" && c.device != "cpu" && c.device != "cuda")
+    keys.fail("device", "found " + c.device + ", expected auto, cpu or cuda");
+  keys.expectNoneLeft();
+  if (c.data.empty()) keys.fail("data", "is missing, expected a folder of shards");
+  // Folders are relative to the file that names them.
+  const std::filesystem::path base = std::filesystem::path(path).parent_path();
+  c.data = (base / c.data).lexically_normal().string();
+  if (!c.examples.empty()) c.examples = (base / c.examples).lexically_normal().string();
+  return c;
+}
+
+nlohmann::ordered_json toJson(const TrainConfig& c) {
+  return {{"data", c.data},
+          {"examples", c.examples},
+          {"shards", c.shards},
+          {"steps", c.steps},
+          {"batch", c.batch},
+          {"hidden", c.hidden},
+          {"loss", nameOf(c.loss)},
+          {"fineTuneSteps", c.fineTuneSteps},
+          {"learningRate", c.learningRate},
+          {"finalLearningRate", c.finalLearningRate},
+          {"warmUpSteps", c.warmUpSteps},
+          {"shiftProbability", c.shiftProbability},
+          {"roundSteps", c.roundSteps},
+          {"validateSteps", c.validateSteps},
+          {"validationScenes", c.validationScenes},
+          {"seed", c.seed},
+          {"device", c.device}};
+}
+
+}  // namespace odis::learn

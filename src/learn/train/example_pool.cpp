@@ -1,0 +1,103 @@
+#include "learn/train/example_pool.h"
+
+#include <fmt/format.h>
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <utility>
+
+#include "learn/scenes/random.h"
+
+namespace odis::learn {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+std::string viewPrefix(size_t view) {
+  return fmt::format("view{}/", view);
+}
+
+}  // namespace
+
+std::vector<ViewExamples> ExamplePool::load(const std::string& shardFile, std::string& originText) const {
+  const fs::path source(shardFile), kept = fs::path(m_folder) / (source.stem().string() + ".examples");
+  // What was kept is of use if it was made of this very shard.
+  const nlohmann::ordered_json origin = {{"bytes", fs::file_size(source)}, {"crc32", crc32(shardBytes(shardFile))}};
+  originText = origin.dump();
+  std::vector<ViewExamples> views;
+  if (fs::exists(kept)) {
+    const ShardReader reader(kept.string());
+    if (reader.header().value("origin", nlohmann::json()) == nlohmann::json(origin) &&
+        reader.header().value("features", 0u) == kFeatureVersion) {
+      for (size_t v = 0; v < reader.header().at("views").get<size_t>(); ++v)
+        views.push_back(readExamples(reader, viewPrefix(v)));
+      return views;
+    }
+  }
+  views = makeExamples(ShardReader(shardFile));
+  ShardWriter writer;
+  for (size_t v = 0; v < views.size(); ++v) addColumns(writer, viewPrefix(v), views[v]);
+  writer.write(kept.string(), {{"origin", origin}, {"features", kFeatureVersion}, {"views", views.size()}});
+  return views;
+}
+
+void ExamplePool::add(const std::vector<std::string>& shardFiles) {
+  fs::create_directories(m_folder);
+  std::vector<std::vector<ViewExamples>> added(shardFiles.size());
+  std::vector<std::string> origins(shardFiles.size());
+  tbb::parallel_for(size_t(0), shardFiles.size(), [&](size_t i) { added[i] = load(shardFiles[i], origins[i]); });
+  for (const std::string& origin : origins) m_origins += origin;
+  for (std::vector<ViewExamples>& views : added)
+    for (ViewExamples& view : views) {
+      for (size_t i = 0; i < view.count; ++i) {
+        float mass = 0;
+        for (size_t t = 0; t < kMapTexels; ++t) mass += float(view.mass[i * kMapTexels + t]);
+        // The smallest pilot knows something of a place, and some light arrives there.
+        if (mass > 0.5f && view.statistics[i * kCellLevels].count > 0)
+          m_usable.emplace_back(uint32_t(m_views.size()), uint32_t(i));
+      }
+      m_views.push_back(std::move(view));
+    }
+}
+
+void ExamplePool::draw(uint64_t seed, uint64_t step, size_t count, double shiftProbability,
+                       DirectionBatch& batch) const {
+  batch.count = count;
+  batch.scalars.resize(count * kCellScalars);
+  batch.basis.resize(count * kBasisMaps * kMapTexels);
+  batch.there.resize(count * kBasisMaps);
+  for (std::vector<float>* maps : {&batch.perCosine, &batch.diffuse, &batch.mass, &batch.square})
+    maps->resize(count * kMapTexels);
+  const Random stream = Random(seed).fork(fmt::format("step {}", step));
+  tbb::parallel_for(size_t(0), count, [&](size_t row) {
+    Random random = stream.fork(fmt::format("{}", row));
+    const auto [viewIndex, example] =
+        m_usable[std::min(size_t(random.unit() * double(m_usable.size())), m_usable.size() - 1)];
+    const ViewExamples& view = m_views[viewIndex];
+    const int variant = std::min(int(random.unit() * kInputVariants), kInputVariants - 1);
+    const bool shift = random.unit() < shiftProbability;
+    std::array<CellStatistics, kCellLevels> storage;
+    CellFeatures features;
+    computeFeatures(view.chain(variant, example, shift, storage), features);
+    std::copy(features.scalars.begin(), features.scalars.end(), &batch.scalars[row * kCellScalars]);
+    for (size_t m = 0; m < kBasisMaps; ++m) {
+      std::copy(features.basis[m].begin(), features.basis[m].end(),
+                &batch.basis[(row * kBasisMaps + m) * kMapTexels]);
+      batch.there[row * kBasisMaps + m] = features.there[m];
+    }
+    float cosines = 0;
+    for (const float cosine : features.cosines) cosines += std::max(cosine, 0.0f) + 1e-4f;
+    for (size_t t = 0; t < kMapTexels; ++t) {
+      const size_t at = row * kMapTexels + t;
+      batch.perCosine[at] = 1 / std::max(std::abs(features.cosines[t]), 0.1f);
+      batch.diffuse[at] = (std::max(features.cosines[t], 0.0f) + 1e-4f) / cosines;
+      batch.mass[at] = view.mass[example * kMapTexels + t];
+      batch.square[at] = view.square[example * kMapTexels + t];
+    }
+  });
+}
+
+}  // namespace odis::learn

@@ -1,0 +1,51 @@
+// A network that learns, on libtorch. Everything else of a training knows nothing of libtorch.
+#pragma once
+
+#include <memory>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "learn/train/config.h"
+#include "learn/train/example_pool.h"
+#include "odis/weights/weights.h"
+
+namespace odis::learn {
+
+// A training that cannot go on: no libtorch, no such device, processes that don't find each other.
+class TrainError : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+// Which of several processes this is. Each takes examples of its own; gradients are averaged over all.
+struct Processes {
+  int rank = 0, count = 1;
+};
+// By the environment, as torchrun sets it: RANK, WORLD_SIZE. Throws TrainError.
+Processes processesOfEnvironment();
+
+class Learner {
+ public:
+  virtual ~Learner() = default;
+  // Where it computes: "cpu" or "cuda".
+  virtual std::string device() const = 0;
+  // Takes from a batch what the cells' numbers are standardized by. To be called once, before anything is learned.
+  virtual void standardize(const DirectionBatch& batch) = 0;
+  // A step of Adam; returns the mean loss of the batch before it, over all processes.
+  virtual double step(const DirectionBatch& batch, Loss loss, double learningRate) = 0;
+  // The distributions that the network gives for a batch: [count][texel].
+  virtual std::vector<float> predict(const DirectionBatch& batch) = 0;
+  // What the run time needs.
+  virtual std::vector<Tensor> tensors() const = 0;
+  // Everything that the next step depends on, as bytes.
+  virtual std::string state() const = 0;
+  virtual void restore(const std::string& state) = 0;
+  // The text that the first process gives, for all. Every process must call it.
+  virtual std::string agree(const std::string& text) = 0;
+};
+
+// Throws TrainError.
+std::unique_ptr<Learner> makeLearner(const TrainConfig& config, const Processes& processes);
+
+}  // namespace odis::learn

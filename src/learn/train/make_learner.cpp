@@ -1,0 +1,43 @@
+#include <dlfcn.h>
+
+#include <cstdlib>
+
+#include "learn/train/learner.h"
+
+namespace odis::learn {
+
+namespace {
+
+int numberOfEnvironment(const char* name, int missing) {
+  const char* text = std::getenv(name);
+  if (!text || !*text) return missing;
+  char* end = nullptr;
+  const long value = std::strtol(text, &end, 10);
+  if (*end || value < 0 || value > 1 << 20)
+    throw TrainError(std::string(name) + " is \"" + text + "\", expected a number");
+  return int(value);
+}
+
+}  // namespace
+
+Processes processesOfEnvironment() {
+  const Processes processes{numberOfEnvironment("RANK", 0), numberOfEnvironment("WORLD_SIZE", 1)};
+  if (processes.count < 1 || processes.rank >= processes.count)
+    throw TrainError("RANK is " + std::to_string(processes.rank) + ", expected less than WORLD_SIZE, " +
+                     std::to_string(processes.count));
+  return processes;
+}
+
+std::unique_ptr<Learner> makeLearner(const TrainConfig& config, const Processes& processes) {
+  // Stays loaded: libtorch does not like to be let go.
+  void* library = dlopen("libodis_learner.so", RTLD_NOW | RTLD_LOCAL);
+  if (!library)
+    throw TrainError(std::string("training needs libtorch: install libtorch-dev and libgloo-dev, and build again (") +
+                     dlerror() + ")");
+  using Make = Learner* (*)(const TrainConfig&, const Processes&);
+  const auto make = reinterpret_cast<Make>(dlsym(library, "odisMakeLearner"));
+  if (!make) throw TrainError("libodis_learner.so is of another version");
+  return std::unique_ptr<Learner>(make(config, processes));
+}
+
+}  // namespace odis::learn

@@ -1,0 +1,271 @@
+#include "learn/train/train.h"
+
+#include <fmt/format.h>
+
+#include <chrono>
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <thread>
+
+#include "learn/data/dataset.h"
+#include "learn/train/validation.h"
+#include "odis/network/direction_network.h"
+#include "odis_version.h"
+#include "render/image/checked_stream.h"
+#include "render/image/replace_file.h"
+
+namespace odis::learn {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+constexpr size_t kStandardizedBy = 4096;  // examples
+constexpr int kStepsPerRow = 50;          // of losses.csv
+
+void writeFile(const std::string& path, const std::string& bytes) {
+  render::replaceFile(path, [&](const std::string& temporary) {
+    render::CheckedStream stream(temporary);
+    stream.write(bytes.data(), std::streamsize(bytes.size()));
+    stream.close();
+  });
+}
+
+double learningRateAt(const TrainConfig& c, int step) {
+  const double warm = c.warmUpSteps > 0 ? std::min(1.0, (step + 1.0) / c.warmUpSteps) : 1.0;
+  const double cosine = 0.5 * (1 + std::cos(3.14159265358979 * step / c.steps));
+  return warm * (c.finalLearningRate + (c.learningRate - c.finalLearningRate) * cosine);
+}
+
+class Training {
+ public:
+  Training(const TrainConfig& config, const std::string& folder, const Processes& processes,
+           TrainObserver& observer)
+      : m_config(config),
+        m_folder(folder),
+        m_processes(processes),
+        m_observer(observer),
+        m_learner(makeLearner(config, processes)),
+        m_pool(config.examples.empty() ? folder + "/examples" : config.examples) {}
+
+  bool run() {
+    if (first()) claimFolder();
+    if (!restore()) {
+      if (!takeUpShards(true)) return false;
+      DirectionBatch batch;
+      m_pool.draw(uint64_t(m_config.seed), ~uint64_t(0), kStandardizedBy, m_config.shiftProbability, batch);
+      m_learner->standardize(batch);
+    }
+    while (m_step < m_config.steps) {
+      if (stopAgreed()) return false;
+      if (!takeUpShards(false)) return false;
+      round();
+    }
+    return true;
+  }
+
+ private:
+  bool first() const { return m_processes.rank == 0; }
+  std::string checkpointPath() const { return m_folder + "/checkpoint"; }
+
+  // The folder is this training's, or nobody's yet.
+  void claimFolder() {
+    fs::create_directories(m_folder);
+    const std::string path = m_folder + "/config.json";
+    const nlohmann::ordered_json mine = toJson(m_config);
+    std::ifstream stream(path);
+    if (stream) {
+      const nlohmann::json theirs = nlohmann::json::parse(stream, nullptr, false);
+      if (!theirs.is_object() || theirs.value("config", nlohmann::json()) != nlohmann::json(mine))
+        throw TrainError(fmt::format("\"{}\" is of a training with another configuration; expected an empty folder or the "
+                                     "same configuration",
+                                     path));
+    }
+    writeFile(path, nlohmann::ordered_json{{"software", "ODIS " ODIS_VERSION_STRING},
+                                           {"processes", m_processes.count},
+                                           {"device", m_learner->device()},
+                                           {"config", mine}}
+                            .dump(1) +
+                        "\n");
+  }
+
+  // The data's shards of one side of the split, by name.
+  std::vector<std::string> shardsOf(Split split) const {
+    std::vector<std::string> names;
+    for (const std::string& name : shardsIn(m_config.data))
+      if (ShardReader(shardFile(m_config.data, name)).header().value("split", "") == splitName(split))
+        names.push_back(name);
+    return names;
+  }
+
+  // Adds shards that arrived since; at the beginning waits until there are enough.
+  bool takeUpShards(bool wait) {
+    std::string list;
+    if (first()) {
+      size_t there = countShards();
+      for (; wait && int(there) < m_config.shards; there = countShards()) {
+        m_observer.waiting(there, m_config.shards);
+        if (m_observer.cancelled()) break;
+        std::this_thread::sleep_for(std::chrono::seconds(1));
+      }
+      if (!wait || int(there) >= m_config.shards)
+        for (const std::string& name : newShards()) list += name + "\n";
+    }
+    list = m_learner->agree(list);
+    std::vector<std::string> names;
+    for (size_t at = 0, end; (end = list.find('\n', at)) != std::string::npos; at = end + 1)
+      names.push_back(list.substr(at, end - at));
+    load(names);
+    if (m_pool.size() > 0) return true;
+    if (wait && first() && !m_observer.cancelled())
+      throw TrainError(fmt::format("no shard in \"{}\" has anything to learn from", m_config.data));
+    return false;
+  }
+
+  size_t countShards() const { return fs::exists(m_config.data) ? shardsIn(m_config.data).size() : 0; }
+
+  std::vector<std::string> newShards() {
+    // Headers are read only where there are more files than before.
+    const size_t there = countShards();
+    if (there == m_filesSeen) return {};
+    m_filesSeen = there;
+    std::vector<std::string> names;
+    for (const std::string& name : shardsOf(Split::train))
+      if (std::find(m_shards.begin(), m_shards.end(), name) == m_shards.end()) names.push_back(name);
+    return names;
+  }
+
+  void load(const std::vector<std::string>& names) {
+    if (names.empty()) return;
+    std::vector<std::string> files;
+    for (const std::string& name : names) files.push_back(shardFile(m_config.data, name));
+    m_pool.add(files);
+    m_shards.insert(m_shards.end(), names.begin(), names.end());
+    m_observer.loaded(m_shards.size(), m_pool.size());
+  }
+
+  // The first process decides for all.
+  bool stopAgreed() { return m_learner->agree(m_observer.cancelled() ? "stop" : "go on") == "stop"; }
+
+  // Steps until the next checkpoint.
+  void round() {
+    const Clock::time_point start = Clock::now();
+    const double before = m_seconds;
+    const int end = std::min(m_config.steps, (m_step / m_config.roundSteps + 1) * m_config.roundSteps);
+    DirectionBatch batch;
+    while (m_step < end) {
+      const bool tuning = m_step >= m_config.steps - m_config.fineTuneSteps;
+      const uint64_t draw = uint64_t(m_step) * uint64_t(m_processes.count) + uint64_t(m_processes.rank);
+      m_pool.draw(uint64_t(m_config.seed), draw, size_t(m_config.batch), m_config.shiftProbability, batch);
+      const double rate = learningRateAt(m_config, m_step);
+      m_sum += m_learner->step(batch, tuning ? Loss::logVariance : m_config.loss, rate);
+      ++m_inSum;
+      ++m_step;
+      m_seconds = before + std::chrono::duration<double>(Clock::now() - start).count();
+      if (m_step % kStepsPerRow == 0 || m_step == m_config.steps) {
+        m_history.losses.push_back({m_step, m_sum / m_inSum, rate, m_seconds});
+        m_observer.step(m_step, m_config.steps, m_sum / m_inSum);
+        m_sum = m_inSum = 0;
+      }
+      if (first() && (m_step % m_config.validateSteps == 0 || m_step == m_config.steps)) validate();
+    }
+    if (first()) save();
+  }
+
+  void validate() {
+    std::vector<std::string> files;
+    for (const std::string& name : shardsOf(Split::validation))
+      if (int(files.size()) < m_config.validationScenes) files.push_back(shardFile(m_config.data, name));
+    if (files.empty()) return;
+    if (files != m_formulaOf) {
+      m_formula = predictedVariance(files, std::make_shared<HistogramModel>(GuideOptions()));
+      m_formulaOf = files;
+    }
+    const auto network = std::make_shared<DirectionNetwork>(Weights("", m_learner->tensors()));
+    m_history.validations.push_back({m_step, predictedVariance(files, network), m_formula});
+    m_observer.validated(m_history.validations.back());
+  }
+
+  nlohmann::ordered_json about() const {
+    nlohmann::ordered_json json = {
+        {"software", "ODIS " ODIS_VERSION_STRING},
+        {"network", "blend of maps: docs/network.md"},
+        {"config", toJson(m_config)},
+        {"data", {{"shards", m_shards.size()}, {"examples", m_pool.size()}, {"crc32", m_pool.fingerprint()}}},
+        {"steps", m_step}};
+    if (!m_history.validations.empty()) {
+      const ValidationRow& last = m_history.validations.back();
+      json["validation"] = {{"predictedVariance", last.variance}, {"formula", last.formula}};
+    }
+    return json;
+  }
+
+  // First what others read, last the checkpoint: whatever is killed in between is made again.
+  void save() {
+    writeHistory(m_folder, m_history);
+    writeFile(m_folder + "/odis.weights", Weights(about().dump(), m_learner->tensors()).bytes());
+    nlohmann::ordered_json losses = nlohmann::ordered_json::array(), validations = nlohmann::ordered_json::array();
+    for (const LossRow& r : m_history.losses) losses.push_back({r.step, r.loss, r.learningRate, r.seconds});
+    for (const ValidationRow& r : m_history.validations) validations.push_back({r.step, r.variance, r.formula});
+    const std::string state = m_learner->state();
+    ShardWriter writer;
+    writer.add("learner", {state.size()},
+               std::span(reinterpret_cast<const uint8_t*>(state.data()), state.size()));
+    writer.write(checkpointPath(), {{"step", m_step},
+                                    {"sum", m_sum},
+                                    {"inSum", m_inSum},
+                                    {"seconds", m_seconds},
+                                    {"shards", m_shards},
+                                    {"losses", losses},
+                                    {"validations", validations}});
+  }
+
+  // Goes on where the last checkpoint was. Returns false if there is none.
+  bool restore() {
+    std::string bytes;
+    if (first() && fs::exists(checkpointPath())) bytes = shardBytes(checkpointPath());
+    bytes = m_learner->agree(bytes);
+    if (bytes.empty()) return false;
+    const ShardReader reader(checkpointPath(), bytes);
+    const nlohmann::json& h = reader.header();
+    m_step = h.at("step");
+    m_sum = h.at("sum");
+    m_inSum = h.at("inSum");
+    m_seconds = h.at("seconds");
+    for (const nlohmann::json& r : h.at("losses"))
+      m_history.losses.push_back({r.at(0), r.at(1), r.at(2), r.at(3)});
+    for (const nlohmann::json& r : h.at("validations"))
+      m_history.validations.push_back({r.at(0), r.at(1), r.at(2)});
+    const std::vector<uint8_t> state = reader.read<uint8_t>("learner");
+    m_learner->restore({reinterpret_cast<const char*>(state.data()), state.size()});
+    load(h.at("shards").get<std::vector<std::string>>());
+    return true;
+  }
+
+  const TrainConfig& m_config;
+  const std::string m_folder;
+  const Processes m_processes;
+  TrainObserver& m_observer;
+  std::unique_ptr<Learner> m_learner;
+  ExamplePool m_pool;
+  std::vector<std::string> m_shards;  // taken up, in this order
+  size_t m_filesSeen = 0;
+  int m_step = 0;
+  double m_sum = 0, m_inSum = 0;  // of losses since the last row
+  double m_seconds = 0;
+  History m_history;
+  std::vector<std::string> m_formulaOf;
+  double m_formula = 1;
+};
+
+}  // namespace
+
+bool train(const TrainConfig& config, const std::string& folder, const Processes& processes,
+           TrainObserver& observer) {
+  return Training(config, folder, processes, observer).run();
+}
+
+}  // namespace odis::learn

@@ -1,0 +1,28 @@
+// A training from configuration to weights: docs/network.md.
+#pragma once
+
+#include <string>
+
+#include "learn/train/history.h"
+#include "learn/train/learner.h"
+
+namespace odis::learn {
+
+// Told how it goes, from one thread.
+class TrainObserver {
+ public:
+  virtual ~TrainObserver() = default;
+  virtual void waiting(size_t /*shards*/, int /*expected*/) {}
+  virtual void loaded(size_t /*shards*/, size_t /*examples*/) {}
+  virtual void step(int /*step*/, int /*of*/, double /*loss*/) {}
+  virtual void validated(const ValidationRow& /*row*/) {}
+  virtual bool cancelled() const { return false; }
+};
+
+// Trains in the folder, which afterwards holds config.json (with what it was run with), losses.csv, validation.csv,
+// curves.png, an event file for TensorBoard, checkpoint and odis.weights. Where there is a checkpoint it goes on from there:
+// the same weights to the bit as without the pause, unless shards arrived meanwhile. Returns false if cancelled, after a
+// checkpoint. Throws TrainError (the folder holds another training), ConfigError, ShardError, WriteError.
+bool train(const TrainConfig& config, const std::string& folder, const Processes& processes, TrainObserver& observer);
+
+}  // namespace odis::learn

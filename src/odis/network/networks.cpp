@@ -1,0 +1,27 @@
+#include "odis/networks.h"
+
+#include "odis/network/direction_network.h"
+
+namespace odis {
+
+namespace {
+
+Networks make(const Weights& weights) {
+  Networks networks;
+  if (weights.contains("directions.blend.weight"))
+    networks.directions = std::make_shared<DirectionNetwork>(weights);
+  return networks;
+}
+
+}  // namespace
+
+Networks loadNetworks(const std::string& path) {
+  return make(Weights::load(path));
+}
+
+const Networks& builtInNetworks() {
+  static const Networks networks = make(Weights::builtIn());
+  return networks;
+}
+
+}  // namespace odis
