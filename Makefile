@@ -37,7 +37,7 @@ agreement: build     ## Test `path` against other renderers' images: SCENES=DIR 
 
 fuzz:                ## Feed damaged input to all readers, SECONDS=60 each; needs `scripts/setup --dev`
 	@cmake --preset fuzz $(CMAKE_FLAGS) > /dev/null
-	@cmake --build build/fuzz --parallel $(JOBS)
+	@cmake --build build/fuzz --parallel $(JOBS) --target fuzz
 	@scripts/fuzz build/fuzz $(SECONDS)
 
 format:              ## Format the C++ sources in place

@@ -45,7 +45,7 @@ void renderScene(const std::string& path) {
   options.spp = 2;
   options.maxDepth = 6;
   options.threads = 1;
-  options.variance = options.features = true;
+  options.variance = options.features = options.guideFeatures = true;
   Progress quiet;
   const RenderResult result = render(*scene, options, quiet);
   if (result.frame.color.size() != 16) std::abort();

@@ -53,7 +53,7 @@ int info(const Arguments& a) {
     const nlohmann::ordered_json manifest = learn::readManifest(a.folder);
     fmt::print("{}", a.json ? manifest.dump(1) + "\n" : learn::datasetText(manifest));
   } else {
-    const learn::ShardReader shard(a.folder);
+    const learn::ShardHeader shard(a.folder);
     fmt::print("{}", a.json ? shard.header().dump(1) + "\n" : learn::shardText(shard));
   }
   return kOk;

@@ -31,6 +31,7 @@ static RenderOptions renderOptions(const RenderArguments& a, const Scene& scene,
   options.timeLimit = a.timeLimit;
   options.variance = a.variance;
   options.features = layers.any();
+  options.guideFeatures = layers.guide;
   options.records = !a.recordsFile.empty();
   return options;
 }

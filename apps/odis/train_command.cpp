@@ -39,10 +39,9 @@ class Observer : public learn::TrainObserver {
     if (step < of && now - m_last < std::chrono::seconds(5)) return;
     m_last = now;
     const double seconds = std::chrono::duration<double>(now - m_start).count();
-    const std::string left =
-        step > m_first && step < of
-            ? ", " + durationText(seconds * (of - step) / (step - m_first)) + " left"
-            : "";
+    const std::string left = step > m_first && step < of
+                                 ? ", " + durationText(seconds * (of - step) / (step - m_first)) + " left"
+                                 : "";
     print(fmt::format("step {} of {}: loss {:.4f}{}\n", step, of, loss, left));
   }
   void validated(const learn::ValidationRow& row) override {
@@ -78,11 +77,14 @@ Command addTrainCommand(CLI::App& parent) {
   CLI::App* app = parent.add_subcommand("train", "Train the networks on a data set: docs/network.md");
   const auto a = std::make_shared<Arguments>();
   app->add_option("CONFIG", a->config, "What to do: a JSON file")->required()->check(CLI::ExistingFile);
-  app->add_option("-o,--output", a->output,
-                  "Folder for weights, curves and checkpoints; where it has a checkpoint, training goes on from there")
+  app->add_option(
+         "-o,--output", a->output,
+         "Folder for weights, curves and checkpoints; where it has a checkpoint, training goes on from there")
       ->required();
   app->add_flag("-q,--quiet", a->quiet, "Print errors only");
-  app->footer("Several processes share the work where RANK, WORLD_SIZE, MASTER_ADDR and MASTER_PORT are set, as torchrun does.");
+  app->footer(
+      "Several processes share the work where RANK, WORLD_SIZE, MASTER_ADDR and MASTER_PORT are set, as "
+      "torchrun does.");
   return {app, [=] { return run(*a); }};
 }
 

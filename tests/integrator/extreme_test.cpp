@@ -35,7 +35,7 @@ class Extreme : public testing::TestWithParam<IntegratorKind> {
     options.integrator = GetParam();
     options.spp = spp;
     options.seed = seed;
-    options.variance = options.features = true;
+    options.variance = options.features = options.guideFeatures = true;
     return test::renderScene(scene, options);
   }
   // All pixels are finite; returns their mean luminance.

@@ -15,7 +15,7 @@ namespace {
 RenderOptions withFeatures() {
   RenderOptions options;
   options.spp = 4;
-  options.features = true;
+  options.features = options.guideFeatures = true;
   return options;
 }
 
@@ -58,6 +58,20 @@ TEST(GuideFeatures, DifferWhereLightDoes) {
   EXPECT_LT(*least, *most - 0.5f);
   EXPECT_LE(*most, 8);
   EXPECT_LT(*std::min_element(frame.guideAlpha.begin(), frame.guideAlpha.end()), 0.9f);
+}
+
+// What is made only when asked for changes nothing else.
+TEST(GuideFeatures, AreMissingUnlessAskedFor) {
+  const auto scene = test::loadScene(test::indirectRoom(16));
+  RenderOptions options = withFeatures();
+  const Frame2D with = test::renderScene(*scene, options).frame;
+  options.guideFeatures = false;
+  const Frame2D without = test::renderScene(*scene, options).frame;
+  EXPECT_FALSE(with.guideAlpha.empty());
+  EXPECT_TRUE(without.guideAlpha.empty() && without.guideEntropy.empty());
+  EXPECT_TRUE(without.guideSurvival.empty() && without.guideCell.empty());
+  EXPECT_EQ(with.color, without.color);
+  EXPECT_EQ(with.depth, without.depth);
 }
 
 TEST(GuideFeatures, AreMissingWithoutAGuide) {

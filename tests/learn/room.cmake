@@ -1,4 +1,5 @@
 target_link_libraries(test_learn PRIVATE odis_learn nlohmann_json::nlohmann_json pugixml::pugixml)
+odis_finds_learner(test_learn)
 if(ODIS_PYTHON)
   set(reader_test ${PROJECT_SOURCE_DIR}/python/test_odis_dataset.py)
   target_compile_definitions(test_learn PRIVATE ODIS_PYTHON="${ODIS_PYTHON}" ODIS_PYTHON_TEST="${reader_test}")

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <cstring>
+#include <filesystem>
 #include <fstream>
 #include <limits>
 
@@ -146,6 +147,60 @@ TEST(Shard, EveryTruncationIsFound) {
     EXPECT_THROW(ShardReader("x", bytes.substr(0, size)), ShardError) << size;
   EXPECT_THROW(ShardReader("x", bytes + '\0'), ShardError);
   EXPECT_THROW(ShardReader("/nowhere/x.shard"), ShardError);
+}
+
+// What opening a file as a shard says, whole or its header alone; empty if there was no error.
+template <class Reader>
+std::string openingErrorOf(const std::string& path) {
+  try {
+    const Reader reader(path);
+  } catch (const ShardError& e) {
+    return e.what();
+  }
+  return "";
+}
+
+TEST(ShardHeader, SaysWhatTheWholeFileSays) {
+  const TemporaryFolder folder;
+  const std::string bytes = smallShard(), path = folder.path("a.shard");
+  const auto write = [&](const std::string& content) { std::ofstream(path, std::ios::binary) << content; };
+  write(bytes);
+  const ShardHeader header(path);
+  const ShardReader whole(path);
+  EXPECT_EQ(header.header(), whole.header());
+  EXPECT_EQ(header.arrays(), whole.arrays());
+  EXPECT_EQ(header.shape("words"), (Shape{2, 3, 2}));
+  EXPECT_THROW(header.shape("word"), ShardError);
+  // And finds the same faults.
+  const auto expectSame = [&](const std::string& content) {
+    write(content);
+    const std::string error = openingErrorOf<ShardHeader>(path);
+    ASSERT_NE(error, "");
+    ASSERT_EQ(error, openingErrorOf<ShardReader>(path));
+  };
+  for (size_t size = 0; size < bytes.size(); ++size) expectSame(bytes.substr(0, size));
+  expectSame(bytes + '\0');
+  for (size_t i = 0; i < headerEnd(bytes); ++i) {
+    std::string damaged = bytes;
+    damaged[i] = char(damaged[i] ^ (1 << i % 8));
+    expectSame(damaged);
+  }
+  EXPECT_NE(openingErrorOf<ShardHeader>(folder.path("none")).find("cannot be opened"), std::string::npos);
+  EXPECT_NE(openingErrorOf<ShardHeader>(folder.path("")), "");
+}
+
+// The arrays are a hole larger than most machines' memory.
+TEST(ShardHeader, IsReadAlone) {
+  constexpr uint64_t kHole = 1ull << 42;
+  const TemporaryFolder folder;
+  const std::string path = folder.path("a.shard");
+  const json array = {{"type", "|u1"}, {"shape", {7}}, {"offset", 0}, {"bytes", kHole}};
+  const std::string bytes = withHeader(smallShard(), json{{"arrays", {{"a", array}}}}.dump());
+  std::ofstream(path, std::ios::binary) << bytes.substr(0, headerEnd(bytes));
+  std::error_code error;
+  std::filesystem::resize_file(path, headerEnd(bytes) + kHole, error);
+  if (error) GTEST_SKIP() << "no file of 4 TiB here: " << error.message();
+  EXPECT_EQ(ShardHeader(path).arrays().at(0).second, kHole);
 }
 
 TEST(Shard, HeadersThatLieAreErrors) {

@@ -45,7 +45,7 @@ std::string datasetText(const nlohmann::ordered_json& manifest) {
   return text;
 }
 
-std::string shardText(const ShardReader& shard) {
+std::string shardText(const ShardHeader& shard) {
   const nlohmann::json& header = shard.header();
   std::string text;
   try {

@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "learn/data/shard_file.h"
+#include "learn/data/shard_header.h"
 
 namespace odis::learn {
 
@@ -11,6 +11,6 @@ namespace odis::learn {
 // manifest.
 std::string datasetText(const nlohmann::ordered_json& manifest);
 // The scene of a shard, its views, and how many bytes each group of arrays takes. Throws ShardError.
-std::string shardText(const ShardReader& shard);
+std::string shardText(const ShardHeader& shard);
 
 }  // namespace odis::learn

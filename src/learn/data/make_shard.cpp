@@ -192,7 +192,7 @@ bool makeShard(const ShardSource& source, const DataSettings& settings, const As
   nlohmann::ordered_json made = toJson(settings);
   if (source.kind) made["assets"] = assets.fingerprint();
   if (fs::exists(file)) {
-    if (ShardReader(file).header().value("settings", nlohmann::json()) != nlohmann::json(made))
+    if (ShardHeader(file).header().value("settings", nlohmann::json()) != nlohmann::json(made))
       throw GenerateError(
           fmt::format("\"{}\" was made with other settings; expected an empty folder or "
                       "shards made the same way",

@@ -89,7 +89,8 @@ torch::Tensor lossOf(Loss loss, const torch::Tensor& map, const Rows& rows) {
 
 torch::Device chooseDevice(const std::string& name) {
   const bool cuda = torch::cuda::is_available();
-  if (name == "cuda" && !cuda) throw TrainError("there is no CUDA device that libtorch can use, expected \"cpu\"");
+  if (name == "cuda" && !cuda)
+    throw TrainError("there is no CUDA device that libtorch can use, expected \"cpu\"");
   return cuda && name != "cpu" ? torch::kCUDA : torch::kCPU;
 }
 
@@ -209,11 +210,14 @@ class TorchLearner : public Learner {
       throw TrainError(std::string("the processes don't find each other: ") + e.what_without_backtrace());
     }
   }
-  void broadcast(std::vector<torch::Tensor>& tensors) { m_group->broadcast(tensors)->wait(); }
+  void broadcast(std::vector<torch::Tensor>& tensors) {
+    m_group->broadcast(tensors)->wait();
+  }
   // Of all gradients at once, and the loss.
   void average(double& loss) {
     std::vector<torch::Tensor> parts;
-    for (const torch::Tensor& p : m_module->parameters()) parts.push_back(p.grad().reshape({-1}).to(torch::kCPU));
+    for (const torch::Tensor& p : m_module->parameters())
+      parts.push_back(p.grad().reshape({-1}).to(torch::kCPU));
     parts.push_back(torch::full({1}, loss, torch::kFloat32));
     std::vector<torch::Tensor> all{torch::cat(parts)};
     m_group->allreduce(all)->wait();
@@ -227,7 +231,9 @@ class TorchLearner : public Learner {
   }
   c10::intrusive_ptr<c10d::ProcessGroupGloo> m_group;
 #else
-  void join() { throw TrainError("this odis was built without Gloo: install libgloo-dev and build again"); }
+  void join() {
+    throw TrainError("this odis was built without Gloo: install libgloo-dev and build again");
+  }
   void broadcast(std::vector<torch::Tensor>&) {}
   void average(double&) {}
 #endif

@@ -9,8 +9,10 @@ namespace odis::learn {
 
 namespace {
 
-constexpr std::pair<Loss, const char*> kLosses[] = {
-    {Loss::crossEntropy, "cross-entropy"}, {Loss::logVariance, "log-variance"}, {Loss::l1, "l1"}, {Loss::l2, "l2"}};
+constexpr std::pair<Loss, const char*> kLosses[] = {{Loss::crossEntropy, "cross-entropy"},
+                                                    {Loss::logVariance, "log-variance"},
+                                                    {Loss::l1, "l1"},
+                                                    {Loss::l2, "l2"}};
 
 // Takes values out of a JSON object and knows which keys it has been asked for.
 class Keys {

@@ -20,18 +20,19 @@ struct TrainConfig {
   std::string examples;  // folder for what is made of shards, to be used again; empty: in the run's folder
   int shards = 1;        // that must be there before it begins; those that arrive later are taken up
   int steps = 6000;
-  int batch = 512;                  // examples a step and process
-  int hidden = 32;                  // width of the layers
+  int batch = 512;  // examples a step and process
+  int hidden = 32;  // width of the layers
   Loss loss = Loss::crossEntropy;
-  int fineTuneSteps = 0;            // the last so many steps minimise the logarithm of the variance instead
+  int fineTuneSteps = 0;  // the last so many steps minimise the logarithm of the variance instead
   double learningRate = 2e-3, finalLearningRate = 4e-5;  // a cosine from one to the other, after a warm-up
   int warmUpSteps = 100;
-  double shiftProbability = 0.1;    // with which a chain begins at the parent, so that coarse cells are learned, too
-  int roundSteps = 500;             // how often new shards are looked for and a checkpoint is written
-  int validateSteps = 1000;         // how often held-out scenes are looked at
+  double shiftProbability =
+      0.1;                   // with which a chain begins at the parent, so that coarse cells are learned, too
+  int roundSteps = 500;      // how often new shards are looked for and a checkpoint is written
+  int validateSteps = 1000;  // how often held-out scenes are looked at
   int validationScenes = 24;
   int seed = 1;
-  std::string device = "auto";      // cpu, cuda, or auto: cuda where there is one
+  std::string device = "auto";  // cpu, cuda, or auto: cuda where there is one
 };
 
 // Throws ConfigError: not JSON, an unknown key, a value of the wrong type or range.

@@ -25,7 +25,8 @@ std::string viewPrefix(size_t view) {
 std::vector<ViewExamples> ExamplePool::load(const std::string& shardFile, std::string& originText) const {
   const fs::path source(shardFile), kept = fs::path(m_folder) / (source.stem().string() + ".examples");
   // What was kept is of use if it was made of this very shard.
-  const nlohmann::ordered_json origin = {{"bytes", fs::file_size(source)}, {"crc32", crc32(shardBytes(shardFile))}};
+  const nlohmann::ordered_json origin = {{"bytes", fs::file_size(source)},
+                                         {"crc32", crc32(shardBytes(shardFile))}};
   originText = origin.dump();
   std::vector<ViewExamples> views;
   if (fs::exists(kept)) {
@@ -48,7 +49,8 @@ void ExamplePool::add(const std::vector<std::string>& shardFiles) {
   fs::create_directories(m_folder);
   std::vector<std::vector<ViewExamples>> added(shardFiles.size());
   std::vector<std::string> origins(shardFiles.size());
-  tbb::parallel_for(size_t(0), shardFiles.size(), [&](size_t i) { added[i] = load(shardFiles[i], origins[i]); });
+  tbb::parallel_for(size_t(0), shardFiles.size(),
+                    [&](size_t i) { added[i] = load(shardFiles[i], origins[i]); });
   for (const std::string& origin : origins) m_origins += origin;
   for (std::vector<ViewExamples>& views : added)
     for (ViewExamples& view : views) {

@@ -84,7 +84,8 @@ void addInput(const CellStore& store, std::span<const CellStatistics> cells, con
     float sum = 0;
     for (const float value : s.histogram) sum += value;
     for (const float value : s.histogram) examples.histograms.push_back(toHalf(sum > 0 ? value / sum : 0));
-    for (size_t g = 0; g < examples.groups; ++g) examples.lightSquares.push_back(scaled(s.lightSquares[g], 2));
+    for (size_t g = 0; g < examples.groups; ++g)
+      examples.lightSquares.push_back(scaled(s.lightSquares[g], 2));
   }
 }
 
@@ -92,8 +93,7 @@ ViewExamples examplesOf(const ShardReader& shard, size_t view, size_t pilotCount
   const ViewFrame frame = viewFrame(shard, view);
   const std::vector<Target> targets = readTargets(shard, targetPrefix(view), frame);
   std::vector<Pilot> pilots;
-  for (size_t i = 0; i < pilotCount; ++i)
-    pilots.push_back(readColumns(shard, pilotPrefix(view, i), frame));
+  for (size_t i = 0; i < pilotCount; ++i) pilots.push_back(readColumns(shard, pilotPrefix(view, i), frame));
 
   ViewExamples examples;
   examples.count = targets.size();
@@ -101,13 +101,14 @@ ViewExamples examplesOf(const ShardReader& shard, size_t view, size_t pilotCount
   std::vector<const PilotVertex*> vertices;  // of the targets
   for (const Target& target : targets) {
     size_t at = target.vertex, pilot = 0;
-    while (pilot < pilots.size() && at >= pilots[pilot].vertices.size()) at -= pilots[pilot++].vertices.size();
+    while (pilot < pilots.size() && at >= pilots[pilot].vertices.size())
+      at -= pilots[pilot++].vertices.size();
     if (pilot == pilots.size()) throw ShardError(targetPrefix(view) + "vertex: there is no such vertex");
     vertices.push_back(&pilots[pilot].vertices[at]);
     addMaps(target, examples);
     const Float3& back = target.outgoing;
-    examples.outgoing.insert(examples.outgoing.end(),
-                             {luminance(back) / frame.unit, target.outgoingRms / frame.unit, target.outgoingRays});
+    examples.outgoing.insert(examples.outgoing.end(), {luminance(back) / frame.unit,
+                                                       target.outgoingRms / frame.unit, target.outgoingRays});
     for (size_t g = 0; g < examples.groups; ++g) {
       examples.lightRms.push_back(target.lights[g].misRms / frame.unit);
       examples.lightProbability.push_back(target.lights[g].probability);
@@ -117,7 +118,8 @@ ViewExamples examplesOf(const ShardReader& shard, size_t view, size_t pilotCount
     CellStore store(GuideOptions().clamp);
     store.place(CellGrid(frame.origin, frame.edge));
     std::vector<std::span<const PilotVertex>> parts;
-    for (const size_t pilot : pilotsOf(variant, view, pilots.size())) parts.emplace_back(pilots[pilot].vertices);
+    for (const size_t pilot : pilotsOf(variant, view, pilots.size()))
+      parts.emplace_back(pilots[pilot].vertices);
     store.add(parts, 0);
     const std::vector<CellStatistics> cells = store.rollUp();
     for (const PilotVertex* vertex : vertices) addInput(store, cells, *vertex, frame.unit, examples);
@@ -164,8 +166,8 @@ void addColumns(ShardWriter& writer, const std::string& prefix, const ViewExampl
   const auto add = [&]<class T>(const char* name, const Shape& shape, const std::vector<T>& values) {
     writer.add(prefix + name, shape, std::span<const T>(values));
   };
-  const auto floats = std::span(reinterpret_cast<const float*>(e.statistics.data()),
-                                e.statistics.size() * kKeptNumbers);
+  const auto floats =
+      std::span(reinterpret_cast<const float*>(e.statistics.data()), e.statistics.size() * kKeptNumbers);
   writer.add(prefix + "statistics", {kInputVariants, e.count, kCellLevels, kKeptNumbers}, floats);
   add("histograms", {kInputVariants, e.count, kCellLevels, kTexels}, e.histograms);
   add("lightSquares", {kInputVariants, e.count, kCellLevels, e.groups}, e.lightSquares);

@@ -13,8 +13,8 @@ namespace odis::learn {
 
 // Statistics as they are kept: what CellStatistics has beside its arrays.
 struct KeptStatistics {
-  float level = 0, count = 0, sum = 0, sumSquares = 0, outgoing[3] = {}, outgoingSquares = 0, rays = 0, nearness = 0,
-        normal[3] = {};
+  float level = 0, count = 0, sum = 0, sumSquares = 0, outgoing[3] = {}, outgoingSquares = 0, rays = 0,
+        nearness = 0, normal[3] = {};
 };
 inline constexpr size_t kKeptNumbers = sizeof(KeptStatistics) / sizeof(float);
 
@@ -41,7 +41,8 @@ struct ViewExamples {
   std::vector<float> lightRms, lightProbability;  // [example][group]
 
   // The chain of an example, `storage` holding what it points to. With `shift` it begins at the parent.
-  CellChain chain(int variant, size_t example, bool shift, std::array<CellStatistics, kCellLevels>& storage) const;
+  CellChain chain(int variant, size_t example, bool shift,
+                  std::array<CellStatistics, kCellLevels>& storage) const;
 };
 
 // The examples of each view of a shard. Throws ShardError.

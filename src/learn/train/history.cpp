@@ -99,8 +99,8 @@ void putRecord(std::string& file, const std::string& event) {
 }
 
 // Keys of a protocol buffer: number of the field times 8, and 0 for integers, 1 and 5 for 64 and 32 bits, 2 for texts.
-constexpr char kWallTime = 1 * 8 + 1, kStep = 2 * 8, kFileVersion = 3 * 8 + 2, kSummary = 5 * 8 + 2, kValue = 1 * 8 + 2,
-               kTag = 1 * 8 + 2, kSimpleValue = 2 * 8 + 5;
+constexpr char kWallTime = 1 * 8 + 1, kStep = 2 * 8, kFileVersion = 3 * 8 + 2, kSummary = 5 * 8 + 2,
+               kValue = 1 * 8 + 2, kTag = 1 * 8 + 2, kSimpleValue = 2 * 8 + 5;
 
 void putScalar(std::string& file, double seconds, int step, const std::string& tag, double value) {
   std::string inner, summary, event;

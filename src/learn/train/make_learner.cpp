@@ -32,8 +32,9 @@ std::unique_ptr<Learner> makeLearner(const TrainConfig& config, const Processes&
   // Stays loaded: libtorch does not like to be let go.
   void* library = dlopen("libodis_learner.so", RTLD_NOW | RTLD_LOCAL);
   if (!library)
-    throw TrainError(std::string("training needs libtorch: install libtorch-dev and libgloo-dev, and build again (") +
-                     dlerror() + ")");
+    throw TrainError(
+        std::string("training needs libtorch: install libtorch-dev and libgloo-dev, and build again (") +
+        dlerror() + ")");
   using Make = Learner* (*)(const TrainConfig&, const Processes&);
   const auto make = reinterpret_cast<Make>(dlsym(library, "odisMakeLearner"));
   if (!make) throw TrainError("libodis_learner.so is of another version");

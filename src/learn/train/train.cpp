@@ -25,6 +25,7 @@ using Clock = std::chrono::steady_clock;
 
 constexpr size_t kStandardizedBy = 4096;  // examples
 constexpr int kStepsPerRow = 50;          // of losses.csv
+constexpr size_t kShardsAtOnce = 100;
 
 void writeFile(const std::string& path, const std::string& bytes) {
   render::replaceFile(path, [&](const std::string& temporary) {
@@ -80,9 +81,10 @@ class Training {
     if (stream) {
       const nlohmann::json theirs = nlohmann::json::parse(stream, nullptr, false);
       if (!theirs.is_object() || theirs.value("config", nlohmann::json()) != nlohmann::json(mine))
-        throw TrainError(fmt::format("\"{}\" is of a training with another configuration; expected an empty folder or the "
-                                     "same configuration",
-                                     path));
+        throw TrainError(
+            fmt::format("\"{}\" is of a training with another configuration; expected an empty folder or the "
+                        "same configuration",
+                        path));
     }
     writeFile(path, nlohmann::ordered_json{{"software", "ODIS " ODIS_VERSION_STRING},
                                            {"processes", m_processes.count},
@@ -96,7 +98,7 @@ class Training {
   std::vector<std::string> shardsOf(Split split) const {
     std::vector<std::string> names;
     for (const std::string& name : shardsIn(m_config.data))
-      if (ShardReader(shardFile(m_config.data, name)).header().value("split", "") == splitName(split))
+      if (ShardHeader(shardFile(m_config.data, name)).header().value("split", "") == splitName(split))
         names.push_back(name);
     return names;
   }
@@ -138,13 +140,17 @@ class Training {
     return names;
   }
 
+  // Some at a time, so that there is something to tell.
   void load(const std::vector<std::string>& names) {
-    if (names.empty()) return;
-    std::vector<std::string> files;
-    for (const std::string& name : names) files.push_back(shardFile(m_config.data, name));
-    m_pool.add(files);
-    m_shards.insert(m_shards.end(), names.begin(), names.end());
-    m_observer.loaded(m_shards.size(), m_pool.size());
+    for (size_t done = 0; done < names.size(); done += kShardsAtOnce) {
+      std::vector<std::string> files;
+      for (size_t i = done; i < std::min(done + kShardsAtOnce, names.size()); ++i) {
+        files.push_back(shardFile(m_config.data, names[i]));
+        m_shards.push_back(names[i]);
+      }
+      m_pool.add(files);
+      m_observer.loaded(m_shards.size(), m_pool.size());
+    }
   }
 
   // The first process decides for all.
@@ -207,9 +213,11 @@ class Training {
   void save() {
     writeHistory(m_folder, m_history);
     writeFile(m_folder + "/odis.weights", Weights(about().dump(), m_learner->tensors()).bytes());
-    nlohmann::ordered_json losses = nlohmann::ordered_json::array(), validations = nlohmann::ordered_json::array();
+    nlohmann::ordered_json losses = nlohmann::ordered_json::array(),
+                           validations = nlohmann::ordered_json::array();
     for (const LossRow& r : m_history.losses) losses.push_back({r.step, r.loss, r.learningRate, r.seconds});
-    for (const ValidationRow& r : m_history.validations) validations.push_back({r.step, r.variance, r.formula});
+    for (const ValidationRow& r : m_history.validations)
+      validations.push_back({r.step, r.variance, r.formula});
     const std::string state = m_learner->state();
     ShardWriter writer;
     writer.add("learner", {state.size()},

@@ -62,7 +62,8 @@ Histogram blurred(const Histogram& map) {
     Kernel() {
       for (int y = 0; y < kMapSize; ++y)
         for (int x = 0; x < kMapSize; ++x)
-          for (int k = 0; k < 9; ++k) texel[k][texelAt(x, y)] = uint8_t(wrappedTexel(x + k % 3 - 1, y + k / 3 - 1));
+          for (int k = 0; k < 9; ++k)
+            texel[k][texelAt(x, y)] = uint8_t(wrappedTexel(x + k % 3 - 1, y + k / 3 - 1));
     }
   };
   static const Kernel kernel;

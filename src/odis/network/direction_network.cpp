@@ -29,7 +29,8 @@ std::array<float, kBasisMaps> DirectionNetwork::blend(const CellFeatures& featur
   float most = -INFINITY, total = 0;
   for (int m = 0; m < kBasisMaps; ++m)
     if (features.there[m]) most = std::max(most, shares[m]);
-  for (int m = 0; m < kBasisMaps; ++m) total += shares[m] = features.there[m] ? std::exp(shares[m] - most) : 0;
+  for (int m = 0; m < kBasisMaps; ++m)
+    total += shares[m] = features.there[m] ? std::exp(shares[m] - most) : 0;
   for (float& share : shares) share /= total;
   return shares;
 }
@@ -42,7 +43,8 @@ DirectionDistribution DirectionNetwork::predict(const CellChain& chain, const Di
   result.probability.fill(0);
   for (int m = 0; m < kBasisMaps; ++m)
     for (int t = 0; t < kMapTexels; ++t) result.probability[t] += shares[m] * features.basis[m][t];
-  for (int t = 0; t < kMapTexels; ++t) result.perCosine[t] = 1 / std::max(std::abs(features.cosines[t]), 0.1f);
+  for (int t = 0; t < kMapTexels; ++t)
+    result.perCosine[t] = 1 / std::max(std::abs(features.cosines[t]), 0.1f);
 
   // A sample stands in the histograms of its cell and of the ancestors, and in those that are blurred.
   for (int level = 0; level < kCellLevels; ++level)

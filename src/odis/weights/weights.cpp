@@ -68,8 +68,8 @@ Tensor readTensor(Reader& reader) {
   tensor.name = reader.take(reader.word());
   const uint32_t dimensions = reader.word();
   if (dimensions > kMostDimensions)
-    reader.fail("tensor " + tensor.name + " has " + std::to_string(dimensions) + " dimensions, expected at most " +
-                std::to_string(kMostDimensions));
+    reader.fail("tensor " + tensor.name + " has " + std::to_string(dimensions) +
+                " dimensions, expected at most " + std::to_string(kMostDimensions));
   uint64_t elements = 1;
   for (uint32_t i = 0; i < dimensions; ++i) {
     tensor.shape.push_back(reader.word());
@@ -159,16 +159,16 @@ const Tensor& Weights::need(std::string_view name) const {
 const std::vector<float>& Weights::get(std::string_view name, const std::vector<uint32_t>& shape) const {
   const Tensor& tensor = need(name);
   if (tensor.shape != shape)
-    throw WeightsError(m_path + ": tensor " + tensor.name + " has the shape " + shapeText(tensor.shape) + ", expected " +
-                       shapeText(shape));
+    throw WeightsError(m_path + ": tensor " + tensor.name + " has the shape " + shapeText(tensor.shape) +
+                       ", expected " + shapeText(shape));
   return tensor.values;
 }
 
 uint32_t Weights::rows(std::string_view name, size_t dimensions) const {
   const Tensor& tensor = need(name);
   if (tensor.shape.size() != dimensions || tensor.shape[0] == 0)
-    throw WeightsError(m_path + ": tensor " + tensor.name + " has the shape " + shapeText(tensor.shape) + ", expected " +
-                       std::to_string(dimensions) + " dimensions");
+    throw WeightsError(m_path + ": tensor " + tensor.name + " has the shape " + shapeText(tensor.shape) +
+                       ", expected " + std::to_string(dimensions) + " dimensions");
   return tensor.shape[0];
 }
 

@@ -15,7 +15,7 @@ struct FirstHit {
   float depth = 0;  // distance from the camera along the path
   float roughness = 0;
 
-  // What the guide has decided there; no cell: nothing.
+  // What the guide has decided there, if asked for; no cell: nothing.
   const Cell* cell = nullptr;
   uint32_t cellIndex = 0;
   float bsdfShare = 1;  // of the draws that may be guided: alpha, 1 where nothing is guided

@@ -331,7 +331,7 @@ bool extend(const PathSettings& settings, Path& path, uint32_t index, const Vert
   if (!isFinite(next.weight)) next = {};
   if (settings.features && !path.first.valid && !isDiscrete(next.lobe)) {
     describe(path.first, at, wo, path.distance);
-    if (cell)
+    if (cell && settings.guideFeatures)
       describe(path.first, settings, *cell, guide.bsdfShare(), luminance(path.throughput) / path.pixelValue);
   }
 

@@ -28,6 +28,7 @@ struct PathSettings {
   bool learnedRoulette = false;           // by what `guide` knows of where a path arrives
   bool learnedLights = false;             // next-event estimation chooses by what it knows
   bool features = false;                  // fill Path::first
+  bool guideFeatures = false;             // with what `guide` has decided, too
 };
 
 struct RayCounts {

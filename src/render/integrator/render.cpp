@@ -142,6 +142,7 @@ class Renderer {
     settings.maxDepth = m_options.maxDepth;
     settings.rrDepth = m_options.rrDepth;
     settings.guideBounces = m_options.guideBounces;
+    settings.guideFeatures = m_options.guideFeatures;
     return settings;
   }
   Pass basicPass() {
@@ -422,7 +423,8 @@ class Renderer {
       m_stats.pilotSamples += m_pilot[pixel].count;
     }
     m_stats.spp = double(m_stats.samples) / double(std::max<size_t>(m_pixels, 1));
-    if (m_options.features) writeFeatures(m_features, m_options.integrator == IntegratorKind::odis, frame);
+    const bool guide = m_options.guideFeatures && m_options.integrator == IntegratorKind::odis;
+    if (m_options.features) writeFeatures(m_features, guide, frame);
     return frame;
   }
 

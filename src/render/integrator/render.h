@@ -34,7 +34,7 @@ struct RenderOptions {
   int rrDepth = 5;        // Russian roulette from this depth on
   double timeLimit = 0;   // seconds; 0: none. The image then has as many whole passes as fitted in.
   bool variance = false;  // also estimate the variance of each pixel
-  bool features = false;  // also write albedo, normals, position, depth, roughness, guide
+  bool features = false;  // also write albedo, normals, position, depth, roughness
 
   int guideBounces = -1;  // how many vertices of a path are guided; -1: all, 1: the first
   PpgOptions ppg;         // ppg only
@@ -55,6 +55,7 @@ struct RenderOptions {
   GuideOptions guideOptions;
   double pilotWeight = -1;  // of a pilot sample relative to a guided one; -1: by predicted variance
   bool records = false;     // keep the pilot's vertices in the result, for those who want to learn from them
+  bool guideFeatures = false;  // with `features`, also what the guide decided
 };
 
 // Told of progress from the rendering threads; asked whether to stop. Stopping ends after the current pass of
@@ -76,7 +77,8 @@ struct Frame2D {
   std::vector<Rgb> albedo;    // features at the first non-delta vertex; empty unless asked for
   std::vector<Vec3> normal, geometricNormal, position;
   std::vector<float> depth, roughness;
-  // What the guide has decided at that vertex, odis only: share of the BSDF, entropy of the map in bits, survival, cell.
+  // What the guide has decided at that vertex: share of the BSDF, entropy of the map in bits, survival, cell. Empty unless
+  // asked for.
   std::vector<float> guideAlpha, guideEntropy, guideSurvival, guideCell;
 };
 
