@@ -2,6 +2,7 @@
 #include <cstring>
 
 #include "odis/network/direction_network.h"
+#include "odis/network/light_network.h"
 
 namespace {
 
@@ -13,6 +14,7 @@ void readAll(std::string_view bytes) {
     const DirectionNetwork network(weights);
     const CellStatistics cell;
     network.predict({&cell}, nullptr);
+    LightNetwork(weights).predict({&cell}, nullptr, kMostLightGroups);
   } catch (const WeightsError&) {
   }
 }

@@ -64,10 +64,11 @@ void MethodArguments::addTo(CLI::App& app) {
       ->check(CLI::Range(0, 1 << 20))
       ->capture_default_str()
       ->group(group);
-  app.add_option(
-         "--lights", lights,
-         "How guided vertices choose a light: by the hierarchy of lights, or learned from what the pilot saw")
-      ->check(CLI::IsMember({"hierarchy", "learned"}))
+  app.add_option("--lights", lights,
+                 "How guided vertices choose a light: by the hierarchy of lights, or from what the pilot "
+                 "saw, by formula "
+                 "or by the network")
+      ->check(CLI::IsMember({"hierarchy", "formula", "network"}))
       ->capture_default_str()
       ->group(group);
   app.add_option("--oracle-spp", oracleSpp, "Samples per pixel that the oracle is made from")
@@ -125,7 +126,9 @@ void MethodArguments::apply(RenderOptions& options) const {
   options.roulette = roulette == "learned" ? RouletteKind::learned : RouletteKind::throughput;
   options.guideBounces = guideBounces;
   options.pilotSpp = pilotSpp;
-  options.lights = lights == "learned" ? LightChoiceKind::learned : LightChoiceKind::hierarchy;
+  options.lights = lights == "hierarchy" ? LightChoiceKind::hierarchy
+                   : lights == "formula" ? LightChoiceKind::formula
+                                         : LightChoiceKind::network;
   options.shadowRays = shadowRays == "all" ? ShadowRayKind::all : ShadowRayKind::roulette;
   options.refineSpp = refineSpp;
   options.oracleSpp = oracleSpp;

@@ -62,7 +62,8 @@ std::string openRoom(int size) {
 // Tables for no reason, and values that are none.
 class AdversarialLights : public LightModel {
  public:
-  LightSquares predict(const CellChain& chain, const LightSquares*) const override {
+  double trust(const CellStatistics&) const override { return 1; }
+  LightSquares predict(const CellChain& chain, const LightSquares*, uint32_t) const override {
     const CellStatistics& cell = *chain[0];
     LightSquares result{};
     std::mt19937 engine(uint32_t(cell.count) * 7919u + uint32_t(cell.level));
@@ -80,7 +81,8 @@ class AdversarialLights : public LightModel {
 // All the same: the first group and no other.
 class StubbornLights : public LightModel {
  public:
-  LightSquares predict(const CellChain&, const LightSquares*) const override { return {1}; }
+  double trust(const CellStatistics&) const override { return 1; }
+  LightSquares predict(const CellChain&, const LightSquares*, uint32_t) const override { return {1}; }
 };
 
 struct LampRoom {

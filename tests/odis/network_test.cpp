@@ -5,6 +5,7 @@
 #include <fstream>
 
 #include "odis/network/direction_network.h"
+#include "odis/network/light_network.h"
 
 namespace odis {
 namespace {
@@ -58,14 +59,16 @@ std::string errorOf(const std::string& bytes) {
 TEST(Weights, DamagedFilesAreRefused) {
   const std::string bytes = constantBlend(std::vector<float>(kBasisMaps)).bytes();
   EXPECT_EQ(errorOf(bytes), "");
-  for (const size_t length : {size_t(0), size_t(7), size_t(11), size_t(30), bytes.size() / 2, bytes.size() - 1})
+  for (const size_t length :
+       {size_t(0), size_t(7), size_t(11), size_t(30), bytes.size() / 2, bytes.size() - 1})
     EXPECT_NE(errorOf(bytes.substr(0, length)), "") << length;
   for (size_t at = 0; at < bytes.size(); at += 37) {
     std::string damaged = bytes;
     damaged[at] = char(damaged[at] ^ 16);
     EXPECT_NE(errorOf(damaged), "") << at;
   }
-  EXPECT_NE(errorOf("P6 640 360 255 and so on").find("expected it to begin with ODISNETW"), std::string::npos);
+  EXPECT_NE(errorOf("P6 640 360 255 and so on").find("expected it to begin with ODISNETW"),
+            std::string::npos);
 }
 
 TEST(Weights, OfOtherShapesAreRefused) {
@@ -83,6 +86,7 @@ TEST(Weights, OfOtherShapesAreRefused) {
 
 TEST(Weights, BuiltInOnesHoldANetwork) {
   EXPECT_TRUE(builtInNetworks().directions != nullptr);
+  EXPECT_TRUE(builtInNetworks().lights != nullptr);
   EXPECT_NE(Weights::builtIn().about().find("\"config\""), std::string::npos);
   EXPECT_THROW(loadNetworks("no/such/file.weights"), std::runtime_error);
 }
@@ -113,6 +117,51 @@ TEST(DirectionNetwork, BlendsTheMapsThatAreThere) {
   computeFeatures({&nothing}, features);
   EXPECT_EQ(own.predict({&nothing}, nullptr).probability, features.basis[6]);
   EXPECT_EQ(own.predict({&nothing}, nullptr).sensitivity, 0);
+}
+
+// A network for lights that adds the same to every group.
+Weights indifferentLights() {
+  const uint32_t inputs = kPairFeatures;
+  return Weights("{}", {{"lights.0.weight", {2, inputs}, std::vector<float>(2 * inputs, 0.5f)},
+                        {"lights.0.bias", {2}, {0, 0}},
+                        {"lights.1.weight", {2, 2}, {1, 0, 0, 1}},
+                        {"lights.1.bias", {2}, {0, 0}},
+                        {"lights.2.weight", {1, 2}, {0, 0}},
+                        {"lights.2.bias", {1}, {0.5f}}});
+}
+
+TEST(LightNetwork, WithoutAnOpinionIsTheFormula) {
+  CellStatistics cell, parent;
+  parent.level = 1;
+  cell.count = 12;
+  cell.lightSquares = {12, 0, 48};
+  parent.count = 90;
+  parent.lightSquares = {90, 90, 90};
+  const LightNetwork network(indifferentLights());
+  const LightSquares coarse = ShrunkLightSquares().predict({&parent}, nullptr, 3),
+                     formula = ShrunkLightSquares().predict({&cell}, &coarse, 3),
+                     learned = network.predict({&cell, &parent}, nullptr, 3);
+  for (size_t g = 1; g < 3; ++g)
+    EXPECT_NEAR(std::sqrt(learned[g] / learned[0]), std::sqrt(formula[g] / formula[0]), 1e-4);
+  EXPECT_EQ(learned[3], 0);  // there is no fourth
+  // Where no light gave anything there is nothing to learn.
+  const CellStatistics dark;
+  EXPECT_EQ(network.predict({&dark}, nullptr, 3), LightSquares{});
+}
+
+TEST(LightNetwork, FeaturesAreSharesCountsAndTheFormula) {
+  CellStatistics cell;
+  cell.count = 7;
+  cell.lightSquares = {9, 1};
+  LightFeatures features;
+  computeFeatures({&cell}, 2, features);
+  EXPECT_NEAR(features.formula[0], 0.75f, 1e-6f);
+  EXPECT_NEAR(features.pairs[0][0], std::log2(0.75f + 1.0f / 1024) / 4, 1e-4f);
+  EXPECT_NEAR(features.pairs[0][1], std::log2(0.25f + 1.0f / 1024) / 4, 1e-4f);
+  EXPECT_NEAR(features.pairs[1][0], -2.5f, 1e-4f);  // no coarser level
+  EXPECT_NEAR(features.pairs[kCellLevels][0], 3.0f / 8, 1e-6f);
+  EXPECT_NEAR(features.pairs[kPairFeatures - 1][1], 0.25f, 1e-6f);
+  EXPECT_EQ(features.pairs[0][2], 0);
 }
 
 TEST(DirectionNetwork, SensitivityIsWhatASampleAdds) {

@@ -22,6 +22,9 @@ constexpr int64_t kTexels = kMapTexels;
 constexpr double kFloor = 0.03, kAlpha = 0.4;
 // Gradients longer than this are shortened.
 constexpr double kLongestGradient = 1;
+// Width of the lights' layers, and the share of choices that follows the network (odis/decisions/lights.cpp).
+constexpr int64_t kPairWidth = 16;
+constexpr double kLearnedShare = 0.9;
 
 // The same as DirectionNetwork (odis/network).
 struct DirectionModuleImpl : torch::nn::Module {
@@ -45,22 +48,52 @@ struct DirectionModuleImpl : torch::nn::Module {
 };
 TORCH_MODULE(DirectionModule);
 
-// A batch as tensors.
+// The same as LightNetwork.
+struct LightModuleImpl : torch::nn::Module {
+  LightModuleImpl()
+      : layer0(register_module("layer0", torch::nn::Linear(kPairFeatures, kPairWidth))),
+        layer1(register_module("layer1", torch::nn::Linear(kPairWidth, kPairWidth))),
+        layer2(register_module("layer2", torch::nn::Linear(kPairWidth, 1))) {}
+
+  torch::Tensor forward(const torch::Tensor& pairs, const torch::Tensor& formula) {
+    torch::Tensor x = torch::relu(layer0(pairs));
+    x = layer2(torch::relu(layer1(x))).squeeze(-1);
+    // Groups that are not there have no share: the logarithm of zero is minus infinity.
+    return (x + torch::log(formula)).softmax(-1);
+  }
+
+  torch::nn::Linear layer0, layer1, layer2;
+};
+TORCH_MODULE(LightModule);
+
+torch::Tensor toDevice(const std::vector<float>& values, at::IntArrayRef shape, const torch::Device& device) {
+  return torch::from_blob(const_cast<float*>(values.data()), shape, torch::kFloat32).to(device);
+}
+
+// A batch of each kind as tensors.
+struct LightRows {
+  torch::Tensor pairs, formula, rms, probability;
+
+  LightRows(const LightBatch& b, const torch::Device& device) {
+    const auto count = int64_t(b.count), groups = int64_t(kMostLightGroups);
+    pairs = toDevice(b.pairs, {count, groups, kPairFeatures}, device);
+    formula = toDevice(b.formula, {count, groups}, device);
+    rms = toDevice(b.rms, {count, groups}, device);
+    probability = toDevice(b.probability, {count, groups}, device);
+  }
+};
 struct Rows {
   torch::Tensor scalars, basis, there, perCosine, diffuse, mass, square;
 
   Rows(const DirectionBatch& b, const torch::Device& device) {
     const auto count = int64_t(b.count);
-    const auto take = [&](const std::vector<float>& values, at::IntArrayRef shape) {
-      return torch::from_blob(const_cast<float*>(values.data()), shape, torch::kFloat32).to(device);
-    };
-    scalars = take(b.scalars, {count, kCellScalars});
-    basis = take(b.basis, {count, kBasisMaps, kTexels});
-    there = take(b.there, {count, kBasisMaps});
-    perCosine = take(b.perCosine, {count, kTexels});
-    diffuse = take(b.diffuse, {count, kTexels});
-    mass = take(b.mass, {count, kTexels});
-    square = take(b.square, {count, kTexels});
+    scalars = toDevice(b.scalars, {count, kCellScalars}, device);
+    basis = toDevice(b.basis, {count, kBasisMaps, kTexels}, device);
+    there = toDevice(b.there, {count, kBasisMaps}, device);
+    perCosine = toDevice(b.perCosine, {count, kTexels}, device);
+    diffuse = toDevice(b.diffuse, {count, kTexels}, device);
+    mass = toDevice(b.mass, {count, kTexels}, device);
+    square = toDevice(b.square, {count, kTexels}, device);
   }
 };
 
@@ -106,7 +139,10 @@ class TorchLearner : public Learner {
   TorchLearner(const TrainConfig& config, const Processes& processes)
       : m_device(chooseDevice(config.device)), m_processes(processes), m_module(make(config)) {
     m_module->to(m_device);
+    m_lights->to(m_device);
     m_adam = std::make_unique<torch::optim::Adam>(m_module->parameters(), torch::optim::AdamOptions(1e-3));
+    m_lightAdam =
+        std::make_unique<torch::optim::Adam>(m_lights->parameters(), torch::optim::AdamOptions(1e-3));
     if (processes.count > 1) join();
   }
 
@@ -121,22 +157,28 @@ class TorchLearner : public Learner {
 
   double step(const DirectionBatch& batch, Loss loss, double learningRate) override {
     const Rows rows(batch, m_device);
-    const torch::Tensor value = lossOf(loss, m_module(rows.scalars, rows.basis, rows.there), rows);
-    m_adam->zero_grad();
-    value.backward();
-    double mean = value.item<double>();
-    if (m_processes.count > 1) average(mean);
-    torch::nn::utils::clip_grad_norm_(m_module->parameters(), kLongestGradient);
-    for (auto& group : m_adam->param_groups())
-      static_cast<torch::optim::AdamOptions&>(group.options()).lr(learningRate);
-    m_adam->step();
-    return mean;
+    return descend(*m_module, *m_adam, lossOf(loss, m_module(rows.scalars, rows.basis, rows.there), rows),
+                   learningRate);
+  }
+
+  double step(const LightBatch& batch, double learningRate) override {
+    const LightRows rows(batch, m_device);
+    const torch::Tensor mixture =
+        kLearnedShare * m_lights(rows.pairs, rows.formula) + (1 - kLearnedShare) * rows.probability;
+    const torch::Tensor moment = (rows.rms.square() / mixture.clamp_min(1e-9)).sum(-1);
+    return descend(*m_lights, *m_lightAdam, torch::log(moment).mean(), learningRate);
   }
 
   std::vector<float> predict(const DirectionBatch& batch) override {
     const torch::NoGradGuard guard;
     const Rows rows(batch, m_device);
     return toTensor("", m_module(rows.scalars, rows.basis, rows.there)).values;
+  }
+
+  std::vector<float> predict(const LightBatch& batch) override {
+    const torch::NoGradGuard guard;
+    const LightRows rows(batch, m_device);
+    return toTensor("", m_lights(rows.pairs, rows.formula)).values;
   }
 
   std::vector<Tensor> tensors() const override {
@@ -147,15 +189,25 @@ class TorchLearner : public Learner {
             toTensor("directions.cell.1.weight", m_module->cell1->weight),
             toTensor("directions.cell.1.bias", m_module->cell1->bias),
             toTensor("directions.blend.weight", m_module->blend->weight),
-            toTensor("directions.blend.bias", m_module->blend->bias)};
+            toTensor("directions.blend.bias", m_module->blend->bias),
+            toTensor("lights.0.weight", m_lights->layer0->weight),
+            toTensor("lights.0.bias", m_lights->layer0->bias),
+            toTensor("lights.1.weight", m_lights->layer1->weight),
+            toTensor("lights.1.bias", m_lights->layer1->bias),
+            toTensor("lights.2.weight", m_lights->layer2->weight),
+            toTensor("lights.2.bias", m_lights->layer2->bias)};
   }
 
   std::string state() const override {
-    torch::serialize::OutputArchive archive, module, adam;
+    torch::serialize::OutputArchive archive, module, adam, lights, lightAdam;
     m_module->save(module);
     m_adam->save(adam);
+    m_lights->save(lights);
+    m_lightAdam->save(lightAdam);
     archive.write("module", module);
     archive.write("adam", adam);
+    archive.write("lights", lights);
+    archive.write("lightAdam", lightAdam);
     std::ostringstream stream;
     archive.save_to(stream);
     return stream.str();
@@ -163,12 +215,16 @@ class TorchLearner : public Learner {
 
   void restore(const std::string& state) override {
     std::istringstream stream(state);
-    torch::serialize::InputArchive archive, module, adam;
+    torch::serialize::InputArchive archive, module, adam, lights, lightAdam;
     archive.load_from(stream, m_device);
     archive.read("module", module);
     archive.read("adam", adam);
+    archive.read("lights", lights);
+    archive.read("lightAdam", lightAdam);
     m_module->load(module);
     m_adam->load(adam);
+    m_lights->load(lights);
+    m_lightAdam->load(lightAdam);
   }
 
   std::string agree(const std::string& text) override {
@@ -183,6 +239,20 @@ class TorchLearner : public Learner {
   }
 
  private:
+  // A step of the optimizer along the gradient of the loss, averaged over all processes; returns the loss.
+  double descend(torch::nn::Module& module, torch::optim::Adam& adam, const torch::Tensor& loss,
+                 double learningRate) {
+    adam.zero_grad();
+    loss.backward();
+    double mean = loss.item<double>();
+    if (m_processes.count > 1) average(module, mean);
+    torch::nn::utils::clip_grad_norm_(module.parameters(), kLongestGradient);
+    for (auto& group : adam.param_groups())
+      static_cast<torch::optim::AdamOptions&>(group.options()).lr(learningRate);
+    adam.step();
+    return mean;
+  }
+
   static DirectionModule make(const TrainConfig& config) {
     // The same in every process, whatever it drew before.
     torch::manual_seed(uint64_t(config.seed));
@@ -214,7 +284,7 @@ class TorchLearner : public Learner {
     m_group->broadcast(tensors)->wait();
   }
   // Of all gradients at once, and the loss.
-  void average(double& loss) {
+  void average(torch::nn::Module& module, double& loss) {
     std::vector<torch::Tensor> parts;
     for (const torch::Tensor& p : m_module->parameters())
       parts.push_back(p.grad().reshape({-1}).to(torch::kCPU));
@@ -223,7 +293,7 @@ class TorchLearner : public Learner {
     m_group->allreduce(all)->wait();
     const torch::Tensor mean = all[0] / double(m_processes.count);
     int64_t at = 0;
-    for (torch::Tensor& p : m_module->parameters()) {
+    for (torch::Tensor& p : module.parameters()) {
       p.mutable_grad().copy_(mean.slice(0, at, at + p.numel()).reshape(p.sizes()));
       at += p.numel();
     }
@@ -235,13 +305,14 @@ class TorchLearner : public Learner {
     throw TrainError("this odis was built without Gloo: install libgloo-dev and build again");
   }
   void broadcast(std::vector<torch::Tensor>&) {}
-  void average(double&) {}
+  void average(torch::nn::Module&, double&) {}
 #endif
 
   torch::Device m_device;
   Processes m_processes;
   DirectionModule m_module;
-  std::unique_ptr<torch::optim::Adam> m_adam;
+  LightModule m_lights;
+  std::unique_ptr<torch::optim::Adam> m_adam, m_lightAdam;
 };
 
 }  // namespace

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <numeric>
 #include <utility>
 
 #include "learn/scenes/random.h"
@@ -58,8 +59,12 @@ void ExamplePool::add(const std::vector<std::string>& shardFiles) {
         float mass = 0;
         for (size_t t = 0; t < kMapTexels; ++t) mass += float(view.mass[i * kMapTexels + t]);
         // The smallest pilot knows something of a place, and some light arrives there.
-        if (mass > 0.5f && view.statistics[i * kCellLevels].count > 0)
-          m_usable.emplace_back(uint32_t(m_views.size()), uint32_t(i));
+        const Place place(uint32_t(m_views.size()), uint32_t(i));
+        const bool known = view.statistics[i * kCellLevels].count > 0;
+        if (known && mass > 0.5f) m_usable.push_back(place);
+        const float* rms = &view.lightRms[i * view.groups];
+        if (known && view.groups > 1 && std::accumulate(rms, rms + view.groups, 0.0f) > 0)
+          m_lit.push_back(place);
       }
       m_views.push_back(std::move(view));
     }
@@ -76,8 +81,7 @@ void ExamplePool::draw(uint64_t seed, uint64_t step, size_t count, double shiftP
   const Random stream = Random(seed).fork(fmt::format("step {}", step));
   tbb::parallel_for(size_t(0), count, [&](size_t row) {
     Random random = stream.fork(fmt::format("{}", row));
-    const auto [viewIndex, example] =
-        m_usable[std::min(size_t(random.unit() * double(m_usable.size())), m_usable.size() - 1)];
+    const auto [viewIndex, example] = random.pick(std::span(m_usable));
     const ViewExamples& view = m_views[viewIndex];
     const int variant = std::min(int(random.unit() * kInputVariants), kInputVariants - 1);
     const bool shift = random.unit() < shiftProbability;
@@ -98,6 +102,32 @@ void ExamplePool::draw(uint64_t seed, uint64_t step, size_t count, double shiftP
       batch.diffuse[at] = (std::max(features.cosines[t], 0.0f) + 1e-4f) / cosines;
       batch.mass[at] = view.mass[example * kMapTexels + t];
       batch.square[at] = view.square[example * kMapTexels + t];
+    }
+  });
+}
+
+void ExamplePool::draw(uint64_t seed, uint64_t step, size_t count, LightBatch& batch) const {
+  batch.count = count;
+  batch.pairs.assign(count * kMostLightGroups * kPairFeatures, 0);
+  for (std::vector<float>* values : {&batch.formula, &batch.rms, &batch.probability})
+    values->assign(count * kMostLightGroups, 0);
+  const Random stream = Random(seed).fork(fmt::format("lights of step {}", step));
+  tbb::parallel_for(size_t(0), count, [&](size_t row) {
+    Random random = stream.fork(fmt::format("{}", row));
+    const auto [viewIndex, example] = random.pick(std::span(m_lit));
+    const ViewExamples& view = m_views[viewIndex];
+    std::array<CellStatistics, kCellLevels> storage;
+    LightFeatures features;
+    computeFeatures(view.chain(random.integer(0, kInputVariants - 1), example, false, storage),
+                    uint32_t(view.groups), features);
+    const float* rms = &view.lightRms[example * view.groups];
+    const float sum = std::accumulate(rms, rms + view.groups, 0.0f);
+    for (size_t g = 0; g < view.groups; ++g) {
+      const size_t at = row * kMostLightGroups + g;
+      for (size_t f = 0; f < kPairFeatures; ++f) batch.pairs[at * kPairFeatures + f] = features.pairs[f][g];
+      batch.formula[at] = std::max(features.formula[g], 1e-6f);
+      batch.rms[at] = rms[g] / sum;
+      batch.probability[at] = view.lightProbability[example * view.groups + g];
     }
   });
 }

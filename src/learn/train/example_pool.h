@@ -6,6 +6,7 @@
 
 #include "learn/train/examples.h"
 #include "odis/features/cell_features.h"
+#include "odis/features/light_features.h"
 
 namespace odis::learn {
 
@@ -21,6 +22,15 @@ struct DirectionBatch {
   std::vector<float> mass, square;        // [count][texel]: ViewExamples
 };
 
+// The same for a network that chooses among groups of lights.
+struct LightBatch {
+  size_t count = 0;
+  std::vector<float> pairs;        // [count][group][kPairFeatures]
+  std::vector<float> formula;      // [count][group]: shares; zero of groups that are not there
+  std::vector<float> rms;          // [count][group]: ViewExamples::lightRms, over their sum
+  std::vector<float> probability;  // [count][group]: if nothing is learned
+};
+
 class ExamplePool {
  public:
   // Keeps what it makes of shards in this folder, to find it there again.
@@ -30,19 +40,24 @@ class ExamplePool {
   void add(const std::vector<std::string>& shardFiles);
   // Examples that there is something to learn from.
   size_t size() const { return m_usable.size(); }
+  // Those of them where there are several groups of lights and one gives something.
+  size_t lightSize() const { return m_lit.size(); }
 
   // Tells one set of shards from another: a CRC-32 over theirs, in order.
   uint32_t fingerprint() const { return crc32(m_origins); }
 
   // `count` examples at random, drawn anew for each step. The pool must not be empty.
   void draw(uint64_t seed, uint64_t step, size_t count, double shiftProbability, DirectionBatch& batch) const;
+  // The same of examples with lights, of which there must be some.
+  void draw(uint64_t seed, uint64_t step, size_t count, LightBatch& batch) const;
 
  private:
   std::vector<ViewExamples> load(const std::string& shardFile, std::string& origin) const;
 
   std::string m_folder, m_origins;
   std::vector<ViewExamples> m_views;
-  std::vector<std::pair<uint32_t, uint32_t>> m_usable;  // view and example
+  using Place = std::pair<uint32_t, uint32_t>;  // view and example
+  std::vector<Place> m_usable, m_lit;
 };
 
 }  // namespace odis::learn

@@ -127,15 +127,19 @@ void writeText(const std::string& path, const std::string& text) {
 }  // namespace
 
 Canvas drawHistory(const History& history) {
-  Canvas canvas(kWidth, 2 * kPanel, kPaper);
-  Points losses, network, formula;
-  for (const LossRow& row : history.losses) losses.emplace_back(row.step, row.loss);
+  Canvas canvas(kWidth, 3 * kPanel, kPaper);
+  Points losses, lights, network, formula;
+  for (const LossRow& row : history.losses) {
+    losses.emplace_back(row.step, row.loss);
+    lights.emplace_back(row.step, row.lights);
+  }
   for (const ValidationRow& row : history.validations) {
     network.emplace_back(row.step, row.variance);
     formula.emplace_back(row.step, row.formula);
   }
-  drawPanel(canvas, 0, "loss", {{losses, kLine}});
-  drawPanel(canvas, kPanel, "predicted variance on held-out scenes: network (blue), formula (orange)",
+  drawPanel(canvas, 0, "loss of maps", {{losses, kLine}});
+  drawPanel(canvas, kPanel, "loss of choices among lights", {{lights, kLine}});
+  drawPanel(canvas, 2 * kPanel, "predicted variance on held-out scenes: network (blue), formula (orange)",
             {{network, kLine}, {formula, kOther}});
   return canvas;
 }
@@ -147,7 +151,8 @@ std::string tensorboardEvents(const History& history) {
   putText(first, kFileVersion, "brain.Event:2");
   putRecord(file, first);
   for (const LossRow& row : history.losses) {
-    putScalar(file, row.seconds, row.step, "loss", row.loss);
+    putScalar(file, row.seconds, row.step, "loss/maps", row.loss);
+    putScalar(file, row.seconds, row.step, "loss/lights", row.lights);
     putScalar(file, row.seconds, row.step, "learning rate", row.learningRate);
   }
   for (const ValidationRow& row : history.validations) {
@@ -158,9 +163,11 @@ std::string tensorboardEvents(const History& history) {
 }
 
 void writeHistory(const std::string& folder, const History& history) {
-  std::string losses = "step,loss,learning rate,seconds\n", validations = "step,network,formula\n";
+  std::string losses = "step,loss,loss of lights,learning rate,seconds\n",
+              validations = "step,network,formula\n";
   for (const LossRow& row : history.losses)
-    losses += fmt::format("{},{},{},{:.1f}\n", row.step, row.loss, row.learningRate, row.seconds);
+    losses +=
+        fmt::format("{},{},{},{},{:.1f}\n", row.step, row.loss, row.lights, row.learningRate, row.seconds);
   for (const ValidationRow& row : history.validations)
     validations += fmt::format("{},{},{}\n", row.step, row.variance, row.formula);
   writeText(folder + "/losses.csv", losses);

@@ -11,7 +11,9 @@ namespace odis::learn {
 // The mean over the steps since the row before.
 struct LossRow {
   int step = 0;
-  double loss = 0, learningRate = 0, seconds = 0;  // seconds since the training began, pauses left out
+  double loss = 0, lights = 0;  // of maps, and of choices among lights
+  double learningRate = 0;
+  double seconds = 0;  // since the training began, pauses left out
 };
 
 // Held-out scenes: predictedVariance() of the network, and of the formula beside it.
@@ -28,7 +30,7 @@ struct History {
 // Writes losses.csv, validation.csv, curves.png and events.out.tfevents.odis to the folder. Throws WriteError.
 void writeHistory(const std::string& folder, const History& history);
 
-// The curves: loss above, predicted variance below.
+// The curves: losses above, predicted variance below.
 Canvas drawHistory(const History& history);
 // An event file as TensorBoard reads it: records with masked CRC-32C, each a protocol buffer `Event`.
 std::string tensorboardEvents(const History& history);

@@ -41,7 +41,7 @@ void evenOut(std::span<double> weights) {
 
 }  // namespace
 
-LightSquares ShrunkLightSquares::predict(const CellChain& chain, const LightSquares* parent) const {
+LightSquares ShrunkLightSquares::predict(const CellChain& chain, const LightSquares* parent, uint32_t) const {
   const CellStatistics& cell = *chain[0];
   LightSquares result{};
   const double prior = parent ? kPriorSamples : 0, count = cell.count + prior;
@@ -51,6 +51,10 @@ LightSquares ShrunkLightSquares::predict(const CellChain& chain, const LightSqua
   return result;
 }
 
+double ShrunkLightSquares::trust(const CellStatistics& cell) const {
+  return cell.count / (cell.count + kHalfEnough);
+}
+
 std::vector<float> tabulateLights(std::vector<Cell>& result, std::span<const CellStatistics> cells,
                                   const LightModel& model, uint32_t groups,
                                   std::span<const LightParts> parts) {
@@ -58,7 +62,7 @@ std::vector<float> tabulateLights(std::vector<Cell>& result, std::span<const Cel
   std::vector<float> table(cells.size() * (groups + 1));
   forEachFromCoarse(cells, [&](size_t c) {
     const uint32_t parent = cells[c].parent;
-    squares[c] = model.predict(chainOf(cells, c), parent == kNoCell ? nullptr : &squares[parent]);
+    squares[c] = model.predict(chainOf(cells, c), parent == kNoCell ? nullptr : &squares[parent], groups);
     std::array<double, kMostLightGroups> weights{};
     for (uint32_t g = 0; g < groups; ++g) {
       const double weight = std::sqrt(squares[c][g]);
@@ -68,7 +72,7 @@ std::vector<float> tabulateLights(std::vector<Cell>& result, std::span<const Cel
       if (light.first <= groups && light.count <= groups - light.first)
         evenOut(std::span(weights).subspan(light.first, light.count));
     const double total = std::accumulate(weights.begin(), weights.end(), 0.0);
-    result[c].lightShare = total > 0 ? float(kShare * cells[c].count / (cells[c].count + kHalfEnough)) : 0;
+    result[c].lightShare = total > 0 ? float(kShare * model.trust(cells[c])) : 0;
     float* cdf = &table[c * (groups + 1)];
     double sum = 0;
     for (uint32_t g = 0; g < groups && total > 0; ++g) {

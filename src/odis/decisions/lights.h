@@ -20,13 +20,17 @@ class LightModel {
   virtual ~LightModel() = default;
   // Given the statistics of the cell and its ancestors, and its parent's result (null for the coarsest level). Called for
   // parents before their children; thread-safe.
-  virtual LightSquares predict(const CellChain& chain, const LightSquares* parent) const = 0;
+  // There are so many groups, at most kMostLightGroups.
+  virtual LightSquares predict(const CellChain& chain, const LightSquares* parent, uint32_t groups) const = 0;
+  // How much of the share of learned choices a cell gets, from 0 to 1.
+  virtual double trust(const CellStatistics& cell) const = 0;
 };
 
 // The cell's means, shrunk towards its parent's by how many samples the cell has.
 class ShrunkLightSquares : public LightModel {
  public:
-  LightSquares predict(const CellChain& chain, const LightSquares* parent) const override;
+  LightSquares predict(const CellChain& chain, const LightSquares* parent, uint32_t groups) const override;
+  double trust(const CellStatistics& cell) const override;
 };
 
 // Tables of `groups` + 1 entries for each cell, one after the other, and the cells' shares (Cell::lightShare). The best

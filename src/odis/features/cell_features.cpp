@@ -1,23 +1,13 @@
 #include "odis/features/cell_features.h"
 
-#include <bit>
 #include <cmath>
 
 #include "odis/decisions/texel_directions.h"
+#include "odis/features/fast_log2.h"
 
 namespace odis {
 
 namespace {
-
-// Base-2 logarithm of a positive, normal number: the exponent, and of the mantissa a polynomial of degree five.
-inline float fastLog2(float x) {
-  const uint32_t bits = std::bit_cast<uint32_t>(x);
-  const float exponent = float(int(bits >> 23) - 127);
-  const float m = std::bit_cast<float>((bits & 0x7fffffu) | 0x3f800000u) - 1;
-  const float series =
-      m * (1.441917042f + m * (-0.709096506f + m * (0.415606337f + m * (-0.193576135f + m * 0.045149265f))));
-  return exponent + series;
-}
 
 double effectiveSamples(const CellStatistics& cell) {
   return cell.sumSquares > 0 ? cell.sum * cell.sum / cell.sumSquares : 0;

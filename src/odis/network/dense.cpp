@@ -1,5 +1,6 @@
 #include "odis/network/dense.h"
 
+#include <algorithm>
 #include <array>
 
 namespace odis {
@@ -19,6 +20,17 @@ void Dense::apply(std::span<const float> x, std::span<float> y) const {
     float sums[4] = {m_bias[o], 0, 0, 0};
     for (uint32_t i = 0; i < m_inputs; ++i) sums[i & 3] += row[i] * x[i];
     y[o] = (sums[0] + sums[1]) + (sums[2] + sums[3]);
+  }
+}
+
+void Dense::applyLanes(const float* x, float* y) const {
+  for (uint32_t o = 0; o < m_outputs; ++o) {
+    const float* row = &m_weights[size_t(o) * m_inputs];
+    float sums[kLanes];
+    for (float& sum : sums) sum = m_bias[o];
+    for (uint32_t i = 0; i < m_inputs; ++i)
+      for (uint32_t lane = 0; lane < kLanes; ++lane) sums[lane] += row[i] * x[i * kLanes + lane];
+    std::copy_n(sums, kLanes, y + size_t(o) * kLanes);
   }
 }
 

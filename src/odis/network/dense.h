@@ -12,6 +12,9 @@ namespace odis {
 // No layer is wider, so that intermediate results lie on the stack.
 inline constexpr uint32_t kWidestLayer = 256;
 
+// Vectors that a layer is applied to at once: the groups of lights of a cell.
+inline constexpr uint32_t kLanes = 32;
+
 class Dense {
  public:
   Dense() = default;
@@ -23,6 +26,8 @@ class Dense {
 
   // y = W x + b.
   void apply(std::span<const float> x, std::span<float> y) const;
+  // The same for kLanes vectors side by side: x[i * kLanes + lane].
+  void applyLanes(const float* x, float* y) const;
 
  private:
   uint32_t m_inputs = 0, m_outputs = 0;

@@ -1,6 +1,7 @@
 #include "odis/networks.h"
 
 #include "odis/network/direction_network.h"
+#include "odis/network/light_network.h"
 
 namespace odis {
 
@@ -10,6 +11,7 @@ Networks make(const Weights& weights) {
   Networks networks;
   if (weights.contains("directions.blend.weight"))
     networks.directions = std::make_shared<DirectionNetwork>(weights);
+  if (weights.contains("lights.0.weight")) networks.lights = std::make_shared<LightNetwork>(weights);
   return networks;
 }
 

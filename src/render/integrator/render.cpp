@@ -214,7 +214,7 @@ class Renderer {
 
   void useGuide(PathSettings& settings) const {
     settings.guide = &m_guide;
-    settings.learnedLights = m_options.lights == LightChoiceKind::learned;
+    settings.learnedLights = m_options.lights != LightChoiceKind::hierarchy;
     settings.shadowRoulette = m_options.shadowRays == ShadowRayKind::roulette;
     settings.learnedRoulette = m_options.roulette == RouletteKind::learned;
   }
@@ -223,13 +223,15 @@ class Renderer {
     if (m_stopped) return;
     const Clock::time_point start = Clock::now();
     GuideOptions guideOptions = m_options.guideOptions;
-    if (m_options.lights == LightChoiceKind::learned && m_lights.groupCount() > 1) {
+    if (m_options.lights != LightChoiceKind::hierarchy && m_lights.groupCount() > 1) {
       guideOptions.lightGroups = m_lights.groupCount();
       guideOptions.lightParts = m_lights.dividedLights();
     }
     const Networks& networks = m_options.networks ? *m_options.networks : builtInNetworks();
     if (m_options.guide == GuideKind::network && !guideOptions.model)
       guideOptions.model = networks.directions;
+    if (m_options.lights == LightChoiceKind::network && !guideOptions.lights)
+      guideOptions.lights = networks.lights;
     m_builder = std::make_unique<GuideBuilder>(guideOptions);
     if (m_options.guide == GuideKind::oracle) {
       m_progress.begin("oracle", m_pixels * uint64_t(m_options.oracleSpp));

@@ -21,7 +21,7 @@ enum class IntegratorKind { path, odis, ppg, openpgl, restir };
 enum class SamplerKind { sobol, independent };
 enum class GuideKind { network, histogram, oracle };
 enum class RouletteKind { throughput, learned };
-enum class LightChoiceKind { hierarchy, learned };
+enum class LightChoiceKind { hierarchy, formula, network };
 enum class ShadowRayKind { all, roulette };
 
 struct RenderOptions {
@@ -44,7 +44,7 @@ struct RenderOptions {
   GuideKind guide = GuideKind::network;
   std::shared_ptr<const Networks> networks;            // null: those that come with the library
   RouletteKind roulette = RouletteKind::learned;       // of the guided samples
-  LightChoiceKind lights = LightChoiceKind::learned;   // likewise
+  LightChoiceKind lights = LightChoiceKind::network;   // likewise
   ShadowRayKind shadowRays = ShadowRayKind::roulette;  // likewise
   // Guided samples per pixel that the guide learns from, too: it is rebuilt after 1, 3, 7, ... if as many are left.
   int refineSpp = 3;
