@@ -7,7 +7,7 @@ ifeq ($(PRESET),tsan)
 export TSAN_OPTIONS ?= suppressions=$(CURDIR)/tests/support/thread_sanitizer/suppressions
 endif
 
-.PHONY: help setup build demo test bench agreement fuzz format format-check lint clean
+.PHONY: help setup build demo test bench agreement train-small weights fuzz format format-check lint clean
 
 help:                ## Show this list
 	@sed -n 's/^\([a-z-]*\):.*## /  make \1\t/p' Makefile | expand -t 24
@@ -34,6 +34,12 @@ bench: setup         ## Compare on all scenes of a folder: SCENES=DIR [OUT=DIR];
 
 agreement: build     ## Test `path` against other renderers' images: SCENES=DIR REFERENCES=DIR
 	@scripts/agreement $(BUILD)/apps/odis/odis "$(SCENES)" "$(REFERENCES)" $(SPP)
+
+train-small:         ## Make data and train weights from nothing, in some ten minutes: out/train-small/run/odis.weights
+	@scripts/train small "$(PRESET)" "$(JOBS)" 0-299 --quick $(ASSETS)
+
+weights:             ## Make the shipped weights again (1,000 scenes, 1 to 2 hours; goes on where it stopped): out/weights/run
+	@scripts/train full "$(PRESET)" "$(JOBS)" 0-999 $(ASSETS)
 
 fuzz:                ## Feed damaged input to all readers, SECONDS=60 each; needs `scripts/setup --dev`
 	@cmake --preset fuzz $(CMAKE_FLAGS) > /dev/null

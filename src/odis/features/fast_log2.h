@@ -12,8 +12,7 @@ inline float fastLog2(float x) {
   const float exponent = float(int(bits >> 23) - 127);
   const float m = std::bit_cast<float>((bits & 0x7fffffu) | 0x3f800000u) - 1;
   const float series =
-      m * (1.441917042f +
-           m * (-0.709096506f + m * (0.415606337f + m * (-0.193576135f + m * 0.045149265f))));
+      m * (1.441917042f + m * (-0.709096506f + m * (0.415606337f + m * (-0.193576135f + m * 0.045149265f))));
   return exponent + series;
 }
 

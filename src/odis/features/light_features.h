@@ -12,8 +12,9 @@ namespace odis {
 inline constexpr int kPairFeatures = 2 * kCellLevels + 2;
 
 struct LightFeatures {
-  std::array<std::array<float, kMostLightGroups>, kPairFeatures> pairs;  // [feature][group]; groups that are not: zero
-  std::array<float, kMostLightGroups> formula;                           // shares, with the sum 1
+  std::array<std::array<float, kMostLightGroups>, kPairFeatures>
+      pairs;                                    // [feature][group]; groups that are not: zero
+  std::array<float, kMostLightGroups> formula;  // shares, with the sum 1
 };
 
 // Features of the first cell of a chain, where there are so many groups.

@@ -21,7 +21,8 @@ LightNetwork::LightNetwork(const Weights& weights) {
   if (inputs != 1) throw WeightsError("lights.2: expected one output");
 }
 
-std::array<float, kMostLightGroups> LightNetwork::shares(const LightFeatures& features, uint32_t groups) const {
+std::array<float, kMostLightGroups> LightNetwork::shares(const LightFeatures& features,
+                                                         uint32_t groups) const {
   // All groups side by side.
   float x[kWidestPairLayer * kMostLightGroups], y[kWidestPairLayer * kMostLightGroups];
   m_layers[0].applyLanes(features.pairs[0].data(), x);
