@@ -49,6 +49,7 @@ Command addCompareCommand(CLI::App& parent, const std::string& commandLine);
 Command addAgreementCommand(CLI::App& parent);
 Command addBenchCommand(CLI::App& parent);
 Command addAnalyzeCommand(CLI::App& parent);
+Command addInspectCommand(CLI::App& parent);
 Command addTrainCommand(CLI::App& parent);
 
 // Runs the whole command line; errors go to stderr. Returns an ExitCode.

@@ -66,6 +66,7 @@ int runCommandLine(int argc, char** argv) {
                                       addCompareCommand(app, commandLine),
                                       addAnalyzeCommand(app),
                                       addTrainCommand(app),
+                                      addInspectCommand(app),
                                       addAgreementCommand(app),
                                       addBenchCommand(app),
                                       addMetricsCommand(app),

@@ -7,6 +7,7 @@
 #include "odis/decisions/choose_alphas.h"
 #include "odis/decisions/direction_model.h"
 #include "odis/decisions/lights.h"
+#include "odis/decisions/pack.h"
 #include "odis/decisions/roulette.h"
 
 namespace odis {
@@ -123,28 +124,6 @@ uint64_t GuideBuilder::bytes() const {
   const CellStore& store = m_data->store;
   return store.bytes() + std::max(store.transientBytes(), store.index().size() * kPerCell);
 }
-
-namespace {
-
-// Sixteen bits a texel, scaled to the brightest; at least one, so that every direction stays possible.
-SamplingMap pack(const DirectionDistribution& distribution, float floor) {
-  Histogram radiance;
-  float sum = 0;
-  for (int t = 0; t < kMapTexels; ++t)
-    sum += radiance[t] = distribution.probability[t] * distribution.perCosine[t];
-  float brightest = 0;
-  for (float& value : radiance) {
-    value = (sum > 0 ? (1 - floor) * value / sum : 0) + floor / kMapTexels;
-    brightest = std::max(brightest, value);
-  }
-  SamplingMap map;
-  for (int t = 0; t < kMapTexels; ++t)
-    map.texels[t] = uint16_t(std::max(1.0f, 65535 * (radiance[t] / brightest) + 0.5f));
-  map.update();
-  return map;
-}
-
-}  // namespace
 
 // A guide of maps alone, made for coarse levels first; leaves the distributions that they were made from.
 Guide GuideBuilder::buildMaps(const std::vector<CellStatistics>& cells,

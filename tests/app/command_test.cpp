@@ -116,6 +116,25 @@ TEST_F(Odis, MetricsAndMontage) {
   EXPECT_TRUE(exists("both.png"));
 }
 
+TEST_F(Odis, InspectsAPlace) {
+  const Outcome outcome = run("inspect room.xml --pixel 6,4 -o cell.png --json cell.json --paths 1 -q");
+  ASSERT_EQ(outcome.code, 0) << outcome.text;
+  EXPECT_NE(outcome.text.find("vertex 1 of pixel 6,4"), std::string::npos) << outcome.text;
+  EXPECT_TRUE(exists("cell.png"));
+  std::ifstream stream(file("cell.json"));
+  EXPECT_EQ(nlohmann::json::parse(stream).at("vertex").at("depth"), 1);
+  ASSERT_EQ(run("inspect room.xml --point 0,0,3 --paths 1 -o cell.exr -q").code, 0);
+  EXPECT_EQ(odis::render::readExr(file("cell.exr").string()).window.width, 1408);
+  expectFailure("inspect room.xml", 2, "expected --pixel x,y or --point x,y,z");
+  expectFailure("inspect room.xml --pixel 6", 2, "expected 2 numbers");
+  expectFailure("inspect room.xml --pixel 6,4.5", 2, "whole numbers");
+  expectFailure("inspect room.xml --pixel 12,4", 2, "12,4 is outside of the image, expected x from 0 to 11");
+  expectFailure("inspect room.xml --pixel 0,0", 2, "meets nothing that may be guided");
+  expectFailure("inspect room.xml --point 0,0,nan", 2, "expected 3 numbers");
+  expectFailure("inspect room.xml --point 50,0,3 -q", 2, "the nearest place that it saw");
+  expectFailure("inspect room.xml --pixel 6,4 --integrator path", 2, "--integrator odis");
+}
+
 TEST_F(Odis, ImageTools) {
   ASSERT_EQ(run("render room.xml --integrator path -o a.exr --aov albedo -q").code, 0);
   ASSERT_EQ(run("render room.xml --integrator path --seed 1 -o b.exr --aov albedo -q").code, 0);

@@ -73,11 +73,26 @@ TEST(CellFeatures, MapsAreDistributionsOrEmpty) {
   for (int m = 0; m < kBasisMaps; ++m) {
     const bool there = m != 2 && m != 3;  // the levels beyond
     EXPECT_EQ(features.there[size_t(m)], there) << m;
-    EXPECT_NEAR(sumOf(features.basis[size_t(m)]), there ? 1 : 0, 1e-5f) << m;
+    EXPECT_NEAR(sumOf(basisMap(features, m)), there ? 1 : 0, 1e-5f) << m;
   }
-  EXPECT_EQ(features.basis[0][size_t(texelAt(3, 12))], 1);
+  EXPECT_EQ(features.levels[0][size_t(texelAt(3, 12))], 1);
   EXPECT_NEAR(features.cosines[size_t(texelOf({0, 0, 1}))], 1, 0.1f);
   EXPECT_NEAR(features.cosines[size_t(texelOf({0, 0, -1}))], -1, 0.1f);
+}
+
+TEST(CellFeatures, BlendsAreSumsOfMaps) {
+  CellStatistics own = cellOf(7, 3, texelAt(3, 12)), parent = cellOf(31, 1, texelAt(0, 0), 1);
+  for (size_t t = 0; t < kMapTexels; ++t) own.histogram[t] += float(t % 7);
+  CellFeatures features;
+  computeFeatures({&own, &parent, &own, &parent}, features);
+  const std::array<float, kBasisMaps> shares{0.1f, 0.2f, 0.05f, 0.15f, 0.25f, 0.15f, 0.1f};
+  const Histogram blend = blendMaps(features, shares);
+  Histogram sum{};
+  for (int m = 0; m < kBasisMaps; ++m) {
+    const Histogram map = basisMap(features, m);
+    for (size_t t = 0; t < kMapTexels; ++t) sum[t] += shares[size_t(m)] * map[t];
+  }
+  for (size_t t = 0; t < kMapTexels; ++t) EXPECT_NEAR(blend[t], sum[t], 1e-6f) << t;
 }
 
 // The golden numbers that weights are trained for: whoever changes them counts kFeatureVersion up and trains anew.
@@ -100,8 +115,10 @@ TEST(CellFeatures, StayWhatWeightsWereTrainedFor) {
   EXPECT_NEAR(sum, kGoldenSum, 1e-3);
   EXPECT_NEAR(weighted, kGoldenWeighted, 1e-2);
   double maps = 0;
-  for (size_t m = 0; m < kBasisMaps; ++m)
-    for (size_t t = 0; t < kMapTexels; ++t) maps += double((m + 1) * (t + 1)) * features.basis[m][t];
+  for (int m = 0; m < kBasisMaps; ++m) {
+    const Histogram map = basisMap(features, m);
+    for (size_t t = 0; t < kMapTexels; ++t) maps += double(size_t(m + 1) * (t + 1)) * map[t];
+  }
   EXPECT_NEAR(maps, kGoldenMaps, 1e-1);
 }
 

@@ -107,7 +107,8 @@ TEST(DirectionNetwork, BlendsTheMapsThatAreThere) {
   EXPECT_NEAR(sum, 1, 1e-5);
   const auto bright = size_t(texelOf({0.6f, 0, 0.8f}));
   EXPECT_NEAR(map.probability[bright],
-              (features.basis[0][bright] + features.basis[4][bright] + features.basis[6][bright]) / 3, 1e-6f);
+              (basisMap(features, 0)[bright] + basisMap(features, 4)[bright] + features.lobe[bright]) / 3,
+              1e-6f);
 
   // Only the histogram, if all others have tiny shares.
   const DirectionNetwork own(constantBlend({30, 0, 0, 0, 0, 0, 0}));
@@ -115,7 +116,7 @@ TEST(DirectionNetwork, BlendsTheMapsThatAreThere) {
   // A cell that has seen nothing has the lobe.
   const CellStatistics nothing;
   computeFeatures({&nothing}, features);
-  EXPECT_EQ(own.predict({&nothing}, nullptr).probability, features.basis[6]);
+  EXPECT_EQ(own.predict({&nothing}, nullptr).probability, features.lobe);
   EXPECT_EQ(own.predict({&nothing}, nullptr).sensitivity, 0);
 }
 

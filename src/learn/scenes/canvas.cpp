@@ -32,7 +32,8 @@ void Canvas::write(int x, int y, int columns, const std::string& text, const Rgb
     float x, y, z;
     uint8_t color[4];
   };
-  std::vector<Corner> corners(4 * 400);
+  constexpr size_t kMostQuads = 16;  // of a letter
+  std::vector<Corner> corners(4 * kMostQuads * (text.size() + 1));
   std::string shown = text;
   const int quads = stb_easy_font_print(float(x), float(y), shown.data(), nullptr, corners.data(),
                                         int(corners.size() * sizeof(Corner)));

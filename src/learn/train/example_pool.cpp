@@ -90,8 +90,8 @@ void ExamplePool::draw(uint64_t seed, uint64_t step, size_t count, double shiftP
     computeFeatures(view.chain(variant, example, shift, storage), features);
     std::copy(features.scalars.begin(), features.scalars.end(), &batch.scalars[row * kCellScalars]);
     for (size_t m = 0; m < kBasisMaps; ++m) {
-      std::copy(features.basis[m].begin(), features.basis[m].end(),
-                &batch.basis[(row * kBasisMaps + m) * kMapTexels]);
+      const Histogram map = basisMap(features, int(m));
+      std::copy(map.begin(), map.end(), &batch.basis[(row * kBasisMaps + m) * kMapTexels]);
       batch.there[row * kBasisMaps + m] = features.there[m];
     }
     float cosines = 0;

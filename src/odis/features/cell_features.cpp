@@ -13,10 +13,21 @@ double effectiveSamples(const CellStatistics& cell) {
   return cell.sumSquares > 0 ? cell.sum * cell.sum / cell.sumSquares : 0;
 }
 
+// The sum of f(texel), sixteen sums side by side: in this order the compiler may use vectors.
+template <class F>
+float sumOver(const F& f) {
+  constexpr int kSums = 16;
+  float sums[kSums] = {};
+  for (int t = 0; t < kMapTexels; t += kSums)
+    for (int i = 0; i < kSums; ++i) sums[i] += f(t + i);
+  float sum = 0;
+  for (const float part : sums) sum += part;
+  return sum;
+}
+
 // The map with the sum 1, or nothing where it has none; returns which.
 bool normalize(const Histogram& from, Histogram& to) {
-  float sum = 0;
-  for (const float value : from) sum += value;
+  const float sum = sumOver([&](int t) { return from[t]; });
   const float scale = sum > 0 && sum < INFINITY ? 1 / sum : 0;
   for (int t = 0; t < kMapTexels; ++t) to[t] = scale > 0 ? from[t] * scale : 0;
   return scale > 0;
@@ -24,16 +35,12 @@ bool normalize(const Histogram& from, Histogram& to) {
 
 // In bits, of a distribution.
 float entropy(const Histogram& p) {
-  float sum = 0;
-  for (const float value : p) sum -= value * fastLog2(std::max(value, 1e-12f));
-  return sum;
+  return -sumOver([&](int t) { return p[t] * fastLog2(p[t] > 1e-12f ? p[t] : 1e-12f); });
 }
 
 // The share of two distributions that they have in common, from 0 to 1.
 float overlap(const Histogram& a, const Histogram& b) {
-  float sum = 0;
-  for (int t = 0; t < kMapTexels; ++t) sum += std::min(a[t], b[t]);
-  return sum;
+  return sumOver([&](int t) { return a[t] < b[t] ? a[t] : b[t]; });
 }
 
 // How much brighter the cell is than the one around it, in octaves.
@@ -46,21 +53,44 @@ float brightness(const CellStatistics& cell, const CellStatistics& around) {
 }  // namespace
 
 Histogram blurred(const Histogram& map) {
-  // The nine texels around each, and their weights.
-  struct Kernel {
-    std::array<std::array<uint8_t, kMapTexels>, 9> texel;
-    Kernel() {
-      for (int y = 0; y < kMapSize; ++y)
-        for (int x = 0; x < kMapSize; ++x)
-          for (int k = 0; k < 9; ++k)
-            texel[k][texelAt(x, y)] = uint8_t(wrappedTexel(x + k % 3 - 1, y + k / 3 - 1));
+  // Row by row with a rim of what lies across the seams; then along rows and columns.
+  constexpr int kRim = kMapSize + 2;
+  struct Order {
+    std::array<uint8_t, kRim * kRim> texel;  // corners are the texels diagonally opposite
+    Order() {
+      for (int y = -1; y <= kMapSize; ++y)
+        for (int x = -1; x <= kMapSize; ++x)
+          texel[size_t((y + 1) * kRim + x + 1)] = uint8_t(wrappedTexel(x, y));
     }
   };
-  static const Kernel kernel;
-  constexpr float kWeights[9] = {1, 2, 1, 2, 4, 2, 1, 2, 1};
-  Histogram result{};
-  for (int k = 0; k < 9; ++k)
-    for (int t = 0; t < kMapTexels; ++t) result[t] += kWeights[k] / 16 * map[kernel.texel[k][t]];
+  static const Order order;
+  float square[kRim][kRim], along[kRim][kMapSize];
+  for (int i = 0; i < kRim * kRim; ++i) square[i / kRim][i % kRim] = map[order.texel[size_t(i)]];
+  for (int y = 0; y < kRim; ++y)
+    for (int x = 0; x < kMapSize; ++x) along[y][x] = (square[y][x] + square[y][x + 2]) + 2 * square[y][x + 1];
+  Histogram result;
+  for (int y = 0; y < kMapSize; ++y)
+    for (int x = 0; x < kMapSize; ++x)
+      result[size_t(texelAt(x, y))] = ((along[y][x] + along[y + 2][x]) + 2 * along[y + 1][x]) / 16;
+  return result;
+}
+
+Histogram basisMap(const CellFeatures& features, int map) {
+  if (map < kCellLevels) return features.levels[size_t(map)];
+  if (map == kCellLevels) return blurred(blurred(features.levels[0]));
+  return map == kCellLevels + 1 ? blurred(features.levels[1]) : features.lobe;
+}
+
+Histogram blendMaps(const CellFeatures& features, const std::array<float, kBasisMaps>& shares) {
+  const auto& levels = features.levels;
+  Histogram twice, once, result;
+  for (int t = 0; t < kMapTexels; ++t) twice[t] = shares[kCellLevels] * levels[0][t];
+  twice = blurred(twice);
+  for (int t = 0; t < kMapTexels; ++t) once[t] = twice[t] + shares[kCellLevels + 1] * levels[1][t];
+  once = blurred(once);
+  for (int t = 0; t < kMapTexels; ++t)
+    result[t] = once[t] + shares[0] * levels[0][t] + shares[1] * levels[1][t] + shares[2] * levels[2][t] +
+                shares[3] * levels[3][t] + shares[kCellLevels + 2] * features.lobe[t];
   return result;
 }
 
@@ -71,11 +101,9 @@ void computeFeatures(const CellChain& chain, CellFeatures& features) {
   const CellStatistics& own = *levels[0];
 
   // The maps.
-  auto& basis = features.basis;
+  auto& maps = features.levels;
   auto& there = features.there;
-  for (int l = 0; l < kCellLevels; ++l) there[l] = normalize(levels[l]->histogram, basis[l]);
-  basis[kCellLevels] = blurred(blurred(basis[0]));
-  basis[kCellLevels + 1] = blurred(basis[1]);
+  for (int l = 0; l < kCellLevels; ++l) there[l] = normalize(levels[l]->histogram, maps[l]);
   there[kCellLevels] = there[0];
   there[kCellLevels + 1] = there[1];
   const float length = std::sqrt(dot(own.normal, own.normal));
@@ -86,7 +114,7 @@ void computeFeatures(const CellChain& chain, CellFeatures& features) {
                           kTexelDirections.z[t] * normal.z;
     lobe[t] = std::max(features.cosines[t], 0.05f);
   }
-  there[kCellLevels + 2] = normalize(lobe, basis[kCellLevels + 2]);
+  there[kCellLevels + 2] = normalize(lobe, features.lobe);
 
   // Of each level: how many samples it has, how many of them matter, how spread the light is, how flat the surface.
   float* next = features.scalars.data();
@@ -94,13 +122,13 @@ void computeFeatures(const CellChain& chain, CellFeatures& features) {
     const CellStatistics& cell = *levels[l];
     *next++ = float(std::log2(1 + cell.count));
     *next++ = float(std::log2(1 + effectiveSamples(cell)));
-    *next++ = entropy(basis[l]);
+    *next++ = entropy(maps[l]);
     *next++ = cell.count > 0 ? std::sqrt(dot(cell.normal, cell.normal)) / float(cell.count) : 0;
   }
   // Beside the next coarser: brighter or darker, and how alike.
   for (int l = 0; l + 1 < kCellLevels; ++l) {
     *next++ = brightness(*levels[l], *levels[l + 1]);
-    *next++ = overlap(basis[l], basis[l + 1]);
+    *next++ = overlap(maps[l], maps[l + 1]);
   }
   // How near is what the cell sees, and the cell around it; how large they are.
   *next++ = own.count > 0 ? float(own.nearness / own.count) : 0;

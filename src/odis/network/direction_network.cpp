@@ -40,9 +40,7 @@ DirectionDistribution DirectionNetwork::predict(const CellChain& chain, const Di
   computeFeatures(chain, features);
   const std::array<float, kBasisMaps> shares = blend(features);
   DirectionDistribution result;
-  result.probability.fill(0);
-  for (int m = 0; m < kBasisMaps; ++m)
-    for (int t = 0; t < kMapTexels; ++t) result.probability[t] += shares[m] * features.basis[m][t];
+  result.probability = blendMaps(features, shares);
   for (int t = 0; t < kMapTexels; ++t)
     result.perCosine[t] = 1 / std::max(std::abs(features.cosines[t]), 0.1f);
 

@@ -10,6 +10,7 @@
 
 #include "render/integrator/combine.h"
 #include "render/integrator/path_text.h"
+#include "render/integrator/pilot_pass.h"
 #include "render/integrator/sample_image.h"
 #include "render/rivals/inverse_variance.h"
 #include "render/rivals/open_pgl.h"
@@ -103,6 +104,17 @@ class Renderer {
     if (!m_pixelValues.empty()) path.pixelValue = m_pixelValues[index];
     tracePaths(settings, std::span(&path, 1), &vertices);
     return path;
+  }
+
+  // What the guide is made of.
+  PilotPass pilot() {
+    if (m_options.integrator != IntegratorKind::odis)
+      throw OptionError("--integrator: expected odis, others have no pilot");
+    runPilot();
+    PilotPass result{std::move(m_pilot), {}, std::move(m_pixelValues), guideOptions(), m_stopped};
+    for (const std::vector<PilotVertex>& tile : m_records)
+      result.vertices.insert(result.vertices.end(), tile.begin(), tile.end());
+    return result;
   }
 
   // Everything up to the last sample, then what `use` asks for.
@@ -219,20 +231,23 @@ class Renderer {
     settings.learnedRoulette = m_options.roulette == RouletteKind::learned;
   }
 
+  // What guides are built with: the scene's lights, and the networks where they are asked for.
+  GuideOptions guideOptions() const {
+    GuideOptions options = m_options.guideOptions;
+    if (m_options.lights != LightChoiceKind::hierarchy && m_lights.groupCount() > 1) {
+      options.lightGroups = m_lights.groupCount();
+      options.lightParts = m_lights.dividedLights();
+    }
+    const Networks& networks = m_options.networks ? *m_options.networks : builtInNetworks();
+    if (m_options.guide == GuideKind::network && !options.model) options.model = networks.directions;
+    if (m_options.lights == LightChoiceKind::network && !options.lights) options.lights = networks.lights;
+    return options;
+  }
+
   void buildGuide() {
     if (m_stopped) return;
     const Clock::time_point start = Clock::now();
-    GuideOptions guideOptions = m_options.guideOptions;
-    if (m_options.lights != LightChoiceKind::hierarchy && m_lights.groupCount() > 1) {
-      guideOptions.lightGroups = m_lights.groupCount();
-      guideOptions.lightParts = m_lights.dividedLights();
-    }
-    const Networks& networks = m_options.networks ? *m_options.networks : builtInNetworks();
-    if (m_options.guide == GuideKind::network && !guideOptions.model)
-      guideOptions.model = networks.directions;
-    if (m_options.lights == LightChoiceKind::network && !guideOptions.lights)
-      guideOptions.lights = networks.lights;
-    m_builder = std::make_unique<GuideBuilder>(guideOptions);
+    m_builder = std::make_unique<GuideBuilder>(guideOptions());
     if (m_options.guide == GuideKind::oracle) {
       m_progress.begin("oracle", m_pixels * uint64_t(m_options.oracleSpp));
       Records selection;
@@ -478,6 +493,11 @@ void renderSamples(const Scene& scene, const RenderOptions& options, Progress& p
                    const std::function<void(const SampleRenderer&)>& use) {
   const tbb::global_control limit = limitThreads(options.threads);
   Renderer(scene, options, progress).samples(use);
+}
+
+PilotPass renderPilot(const Scene& scene, const RenderOptions& options, Progress& progress) {
+  const tbb::global_control limit = limitThreads(options.threads);
+  return Renderer(scene, options, progress).pilot();
 }
 
 std::string replay(const Scene& scene, const RenderOptions& options, Vec2i pixel, int sample) {

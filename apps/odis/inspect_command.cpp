@@ -1,0 +1,149 @@
+// odis inspect
+#include <fmt/format.h>
+#include <CLI/CLI.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <memory>
+#include <sstream>
+
+#include "command.h"
+#include "console.h"
+#include "learn/inspect/picture.h"
+#include "output.h"
+#include "render/image/write.h"
+#include "render_arguments.h"
+#include "validators.h"
+
+namespace odis::app {
+
+using namespace render;
+
+namespace {
+
+struct Arguments {
+  std::string scene, output, json, pixel, point, normal;
+  std::optional<int> spp, maxDepth, rrDepth;
+  uint64_t seed = 0;
+  int threads = 0;
+  bool quiet = false;
+  learn::InspectSettings settings;
+  MethodArguments method;
+  SceneArguments part;
+};
+
+// So many finite numbers with commas between them.
+std::vector<float> numbers(const std::string& option, const std::string& text, size_t count) {
+  std::vector<float> result;
+  std::istringstream stream(text);
+  for (std::string part; std::getline(stream, part, ',');) {
+    float value = 0;
+    if (!CLI::detail::lexical_cast(part, value) || !std::isfinite(value)) break;
+    result.push_back(value);
+  }
+  if (result.size() != count || size_t(std::count(text.begin(), text.end(), ',')) + 1 != count)
+    throw UsageError(
+        fmt::format("{}: found \"{}\", expected {} numbers with commas between them", option, text, count));
+  return result;
+}
+
+Float3 vector(const std::string& option, const std::string& text) {
+  const std::vector<float> v = numbers(option, text, 3);
+  return {v[0], v[1], v[2]};
+}
+
+void readPlace(Arguments& a) {
+  if (a.pixel.empty() == a.point.empty()) throw UsageError("expected --pixel x,y or --point x,y,z");
+  if (!a.pixel.empty()) {
+    const std::vector<float> at = numbers("--pixel", a.pixel, 2);
+    if (at[0] != std::floor(at[0]) || at[1] != std::floor(at[1]) || std::abs(at[0]) > 1e9f ||
+        std::abs(at[1]) > 1e9f)
+      throw UsageError(fmt::format("--pixel: found \"{}\", expected whole numbers", a.pixel));
+    a.settings.pixel = Vec2i(int(at[0]), int(at[1]));
+    if (!a.normal.empty()) throw UsageError("--normal: goes with --point, a pixel's vertex has one");
+    return;
+  }
+  a.settings.point = vector("--point", a.point);
+  if (a.normal.empty()) return;
+  a.settings.normal = vector("--normal", a.normal);
+  if (dot(*a.settings.normal, *a.settings.normal) == 0) throw UsageError("--normal: expected a direction");
+}
+
+void writePicture(const std::string& path, const learn::Inspection& inspection, const std::string& title) {
+  const bool png = endsWith(path, ".png");
+  const learn::Canvas canvas =
+      learn::drawInspection(inspection, title, png ? learn::MapColors::stops : learn::MapColors::values);
+  if (png) return writePng(path, canvas.width, canvas.height, canvas.pixels.data(), 0, ToneMap::clamp);
+  Frame2D frame;
+  FilmSettings film;
+  film.width = frame.width = canvas.width;
+  film.height = frame.height = canvas.height;
+  frame.color = canvas.pixels;
+  writeLayers(path, frame, film, {}, {});
+}
+
+int run(Arguments& a) {
+  readPlace(a);
+  if (a.method.integrator != "odis" || a.method.guide == "oracle")
+    throw UsageError("odis inspect: looks into --integrator odis with the pilot's guide, expected no other");
+  if (!a.output.empty()) checkWritable(a.output, {".png", ".exr"});
+  if (!a.json.empty()) checkWritable(a.json, {".json"});
+  Warnings warnings;
+  const std::unique_ptr<Scene> scene = Scene::load(a.scene, a.part.loadOptions(), warnings);
+  if (!a.quiet)
+    for (const std::string& text : warnings.texts()) say(fmt::format("warning: {}\n", text));
+  RenderOptions options;
+  a.method.apply(options);
+  const IntegratorSettings& asked = scene->integrator();
+  options.spp = a.spp.value_or(asked.samplesPerPixel > 0 ? asked.samplesPerPixel : options.spp);
+  options.maxDepth = a.maxDepth.value_or(asked.maxDepth);
+  options.rrDepth = a.rrDepth.value_or(asked.rrDepth);
+  options.seed = a.seed;
+  options.threads = a.threads;
+  const InterruptScope interruptible;
+  ConsoleProgress progress(a.quiet);
+  const auto inspection = learn::inspect(*scene, options, a.settings, progress);
+  if (!inspection) return InterruptScope::exitCode();
+  const std::string title = std::filesystem::path(a.scene).filename().string();
+  if (!a.output.empty()) writePicture(a.output, *inspection, title);
+  if (!a.json.empty()) writeText(a.json, learn::toJson(*inspection).dump(1) + "\n");
+  fmt::print("{}", learn::inspectionText(*inspection, title));
+  return kOk;
+}
+
+}  // namespace
+
+Command addInspectCommand(CLI::App& parent) {
+  CLI::App* app = parent.add_subcommand("inspect", "Look into the guide at one place");
+  app->footer(
+      "Traces the pilot as `odis render` does, and shows what the first vertex of a pixel that may be "
+      "guided, or\n"
+      "the cell at a point, is told: the pilot's samples, histograms of the cell and of those around it, "
+      "maps, and\n"
+      "what really arrives there. See docs/inspect.md.");
+  const auto a = std::make_shared<Arguments>();
+  app->add_option("SCENE", a->scene, "Mitsuba 3 scene file")->required();
+  app->add_option("--pixel", a->pixel, "x,y in the full image, from the upper left");
+  app->add_option("--point", a->point, "x,y,z in the world, on a surface");
+  app->add_option("--normal", a->normal, "x,y,z: where the surface at the point faces; default: any");
+  app->add_option("-o,--output", a->output, "Picture to write: .png, or .exr with maps as they are");
+  app->add_option("--json", a->json, "Write all numbers and maps");
+  app->add_option("--paths", a->settings.paths, "That the converged map is made of, about")
+      ->check(CLI::Range(1, 1 << 30))
+      ->capture_default_str();
+  app->add_option("--spp", a->spp, "Of the image whose pilot it is; default: what the scene asks for, else 4")
+      ->check(CLI::Range(1, 1 << 24));
+  app->add_option("--max-depth", a->maxDepth, "In place of the scene's")->check(CLI::Range(-1, 1 << 20));
+  app->add_option("--rr-depth", a->rrDepth, "In place of the scene's")->check(CLI::Range(1, 1 << 20));
+  app->add_option("--seed", a->seed, "Another seed, another noise")->capture_default_str();
+  app->add_option("--threads", a->threads, "0: one a core")
+      ->check(CLI::Range(0, 4096))
+      ->capture_default_str();
+  app->add_flag("-q,--quiet", a->quiet, "No progress");
+  a->method.addTo(*app);
+  a->part.addTo(*app);
+  return {app, [a] { return run(*a); }};
+}
+
+}  // namespace odis::app

@@ -1,0 +1,283 @@
+#include "learn/inspect/inspect.h"
+
+#include <fmt/format.h>
+#include <tbb/global_control.h>
+#include <tbb/info.h>
+
+#include <algorithm>
+#include <set>
+
+#include "learn/inspect/place.h"
+#include "learn/inspect/vertex_integral.h"
+#include "odis/decisions/pack.h"
+#include "render/integrator/pilot_pass.h"
+
+namespace odis::learn {
+
+using render::PilotPass;
+using render::Rgb;
+
+namespace {
+
+// At how many of a cell's vertices converged samples start, at most.
+constexpr size_t kMostStarts = 256;
+
+// Its histogram alone, made into a map as the formula does it with what it blends.
+SamplingMap mapOfHistogram(const CellStatistics& cell, float floor) {
+  const float length = std::sqrt(dot(cell.normal, cell.normal));
+  DirectionDistribution distribution;
+  distribution.probability = cell.histogram;
+  for (int t = 0; t < kMapTexels; ++t) {
+    const float cosine = length > 0 ? std::abs(dot(texelDirection(t), cell.normal)) / length : 1;
+    distribution.perCosine[size_t(t)] = 1 / std::max(cosine, 0.1f);
+  }
+  return pack(distribution, floor);
+}
+
+// A map of these texels' radiance.
+SamplingMap mapOfRadiance(const Histogram& radiance, float floor) {
+  DirectionDistribution distribution;
+  distribution.probability = radiance;
+  distribution.perCosine.fill(1);
+  return pack(distribution, floor);
+}
+
+Histogram texelsOf(const SamplingMap& map) {
+  Histogram result;
+  std::copy(map.texels.begin(), map.texels.end(), result.begin());
+  return result;
+}
+
+// Means of the pilot's samples; pixels without one have the mean of those around them.
+std::vector<Rgb> imageOf(const PilotPass& pilot, const render::Crop& crop) {
+  std::vector<Rgb> image(pilot.image.size(), Rgb(0, 0, 0));
+  for (int y = 0; y < crop.height; ++y)
+    for (int x = 0; x < crop.width; ++x) {
+      render::Rgbd sum(0, 0, 0);
+      double count = 0;
+      for (int reach = 0; reach <= 8 && count == 0; ++reach)
+        for (int py = std::max(y - reach, 0); py <= std::min(y + reach, crop.height - 1); ++py)
+          for (int px = std::max(x - reach, 0); px <= std::min(x + reach, crop.width - 1); ++px) {
+            const render::PixelSums& pixel = pilot.image[size_t(py) * size_t(crop.width) + size_t(px)];
+            sum += pixel.sum;
+            count += pixel.count;
+          }
+      if (count > 0)
+        image[size_t(y) * size_t(crop.width) + size_t(x)] =
+            Rgb(float(sum.x / count), float(sum.y / count), float(sum.z / count));
+    }
+  return image;
+}
+
+class Inspector {
+ public:
+  Inspector(const render::Scene& scene, const render::RenderOptions& options, const InspectSettings& settings,
+            render::Progress& progress)
+      : m_scene(scene),
+        m_options(options),
+        m_settings(settings),
+        m_progress(progress),
+        m_lights(scene.emitters()),
+        m_store(options.guideOptions.clamp) {}
+
+  std::optional<Inspection> run() {
+    // What is wrong with the pixel is found out before time is spent.
+    if (m_settings.pixel) m_place = placeOfPixel(m_scene, m_lights, m_options, *m_settings.pixel);
+    m_pilot = renderPilot(m_scene, m_options, m_progress);
+    if (m_pilot.interrupted) return std::nullopt;
+    m_vertices = m_pilot.vertices;
+    buildGuides();
+    findCell();
+    traceTruth();
+    if (m_progress.cancelled()) return std::nullopt;
+    describeVertex();
+    describeLevels();
+    describeSamples();
+    describeMaps();
+    describeLights();
+    return std::move(m_result);
+  }
+
+ private:
+  struct NamedGuide {
+    std::string name;
+    Guide guide;
+  };
+
+  // The formula's guide and, if another model is chosen, that one's; the last one decides.
+  void buildGuides() {
+    const auto build = [&](const std::string& name, const GuideOptions& options) {
+      GuideBuilder builder(options);
+      builder.add(m_pilot.vertices);
+      m_guides.push_back({name, builder.build(m_pilot.vertices, m_pilot.pixelValues)});
+    };
+    GuideOptions formula = m_pilot.guideOptions;
+    formula.model = nullptr;
+    build("formula", formula);
+    if (m_pilot.guideOptions.model)
+      build(m_options.guideOptions.model ? "model" : "network", m_pilot.guideOptions);
+    // The statistics that they were made from: the builder's own, with the same numbers.
+    m_store.add(PilotParts(&m_vertices, 1), m_pilot.guideOptions.cellsPerDiagonal);
+    m_cells = m_store.rollUp();
+  }
+
+  void findCell() {
+    if (!m_settings.pixel) {
+      if (!m_settings.point) throw render::OptionError("expected a pixel or a point to inspect");
+      m_place = placeAtPoint(m_scene, m_vertices, m_store, m_cells, *m_settings.point, m_settings.normal);
+    }
+    m_cell = finestCell(m_store, m_place.position, m_place.normal);
+    if (m_cell == kNoCell)
+      throw render::OptionError(
+          fmt::format("--pixel: the pilot saw nothing around the vertex at {:.4g},{:.4g},{:.4g}",
+                      m_place.position.x, m_place.position.y, m_place.position.z));
+    const int level = m_cells[m_cell].level;
+    m_members = membersOf(m_vertices, m_store.grid(),
+                          m_store.grid().key(m_place.position, m_place.normal, level), level);
+  }
+
+  // From vertices spread evenly over those of the cell.
+  void traceTruth() {
+    std::vector<Start> starts;
+    const size_t count = std::min(m_members.size(), kMostStarts);
+    for (size_t i = 0; i < count; ++i)
+      if (const auto start = findStart(m_scene, m_vertices, m_members[i * m_members.size() / count]))
+        starts.push_back(*start);
+    if (starts.empty()) starts.push_back(m_place.start);
+    const int depth = m_options.maxDepth < 0 ? kDeepestPath : m_options.maxDepth - int(m_place.vertex.depth);
+    m_halves = traceConverged(m_scene, m_lights, starts, m_settings.paths, std::clamp(depth, 1, kDeepestPath),
+                              m_options.seed, m_progress);
+    m_truth = m_halves[0];
+    m_truth.add(m_halves[1]);
+    m_result.starts = uint32_t(starts.size());
+    m_result.paths = m_truth.paths();
+    m_result.outgoing = m_truth.outgoing();
+    m_result.outgoingRms = m_truth.outgoingRms();
+    m_result.outgoingRays = m_truth.outgoingRays();
+  }
+
+  const Guide& guide() const { return m_guides.back().guide; }
+  const Cell& cellOf(const Guide& guide) const { return *guide.find(m_place.position, m_place.normal); }
+
+  void describeVertex() {
+    const PilotVertex& v = m_result.vertex = m_place.vertex;
+    const render::Crop& crop = m_result.crop = m_scene.film().crop;
+    m_result.pixel = render::Vec2i(crop.x + int(v.pixel) % crop.width, crop.y + int(v.pixel) / crop.width);
+    m_result.image = imageOf(m_pilot, crop);
+    std::set<uint32_t> pixels;
+    for (const size_t i : m_members)
+      if (m_vertices[i].depth == 1) pixels.insert(m_vertices[i].pixel);
+    m_result.cellPixels.assign(pixels.begin(), pixels.end());
+    m_result.guidable = v.guidableProbability;
+    m_result.cell = cellOf(guide());
+    m_result.alpha = v.guidableProbability > 0 ? m_result.cell.alpha[int(materialClass(v.roughness))] : 1;
+    m_result.pixelValue = m_pilot.pixelValues[v.pixel];
+    m_result.survival = m_options.roulette == render::RouletteKind::learned
+                            ? survivalProbability(m_result.cell, 1 / m_result.pixelValue)
+                            : 1;
+  }
+
+  void describeLevels() {
+    const VertexIntegral integral(m_place.start, m_truth);
+    const float floor = m_pilot.guideOptions.floor;
+    const SamplingMap converged = mapOfRadiance(integral.texels(), floor);
+    for (uint32_t c = m_cell; c != kNoCell; c = m_cells[c].parent) {
+      const CellStatistics& cell = m_cells[c];
+      LevelView& level = m_result.levels.emplace_back();
+      level.cell = c;
+      level.edge = m_store.grid().finestEdge() * float(1 << cell.level);
+      level.effective = cell.sumSquares > 0 ? cell.sum * cell.sum / cell.sumSquares : 0;
+      level.own = level.effective / (level.effective + m_pilot.guideOptions.trust[cell.level]);
+      level.statistics = cell;
+      level.histogram = squareOf(cell.histogram);
+      level.judgement = integral.judge(mapOfHistogram(cell, floor), converged, m_result.alpha);
+      level.judgement.entropy = entropyOf(cell.histogram);
+    }
+  }
+
+  void describeSamples() {
+    const CellStatistics& cell = m_cells[m_cell];
+    double sum = 0;
+    for (const size_t i : m_members) sum += sampleValue(m_vertices[i]);
+    const double scale = sum > 0 ? double(m_members.size()) / sum : 0;
+    for (const size_t i : m_members) {
+      const PilotVertex& v = m_vertices[i];
+      m_result.samples.push_back({directionToSquare(reaim(v.position, v.wi, v.distance, cell.centroid)),
+                                  float(sampleValue(v) * scale)});
+    }
+  }
+
+  void describeMaps() {
+    const float floor = m_pilot.guideOptions.floor, alpha = m_result.alpha;
+    const VertexIntegral integral(m_place.start, m_truth);
+    const SamplingMap truth = mapOfRadiance(integral.texels(), floor);
+    const auto fill = [&](MapView& view, const SamplingMap& map) {
+      const VertexMap here = integral.at(map);
+      view.timesCosine = squareOf(here);
+      view.mixture = integral.mixture(here, alpha);
+      view.judgement = integral.judge(map, truth, alpha);
+    };
+    for (const NamedGuide& g : m_guides) {
+      const Cell& cell = cellOf(g.guide);
+      MapView& view = m_result.maps.emplace_back();
+      view.name = g.name;
+      view.radiance = squareOf(texelsOf(cell.map));
+      std::copy_n(cell.alpha, kMaterialClasses, view.alpha);
+      fill(view, cell.map);
+    }
+    m_result.converged.name = "converged";
+    m_result.converged.radiance = integral.radiance();
+    fill(m_result.converged, truth);
+    m_result.bsdf = integral.bsdf();
+    m_result.best = integral.best();
+    m_result.bsdfAlone.moment = m_result.bsdfAlone.bestMoment = integral.moment(integral.at(truth), 1);
+
+    SamplingMap halves[2];
+    for (size_t i = 0; i < 2; ++i)
+      halves[i] = mapOfRadiance(VertexIntegral(m_place.start, m_halves[i]).texels(), floor);
+    m_result.noise = divergence(integral.at(halves[0]), integral.at(halves[1]));
+  }
+
+  void describeLights() {
+    m_result.lightShare = m_result.cell.lightShare;
+    render::LightReference reference = m_place.start.reference;
+    for (uint32_t group = 0; group < m_lights.groupCount(); ++group) {
+      GroupView& view = m_result.groups.emplace_back();
+      view.lights = m_lights.describe(group);
+      reference.learned = {};
+      view.unlearned = m_lights.groupProbability(reference, group);
+      if (m_options.lights != render::LightChoiceKind::hierarchy)
+        reference.learned = guide().lights(cellOf(guide()));
+      view.learned = m_lights.groupProbability(reference, group);
+      view.converged = m_truth.lights(group);
+    }
+  }
+
+  const render::Scene& m_scene;
+  const render::RenderOptions& m_options;
+  const InspectSettings& m_settings;
+  render::Progress& m_progress;
+  render::LightSampler m_lights;
+  PilotPass m_pilot;
+  std::span<const PilotVertex> m_vertices;  // the pilot's
+  std::vector<NamedGuide> m_guides;
+  CellStore m_store;
+  std::vector<CellStatistics> m_cells;
+  InspectedPlace m_place;
+  uint32_t m_cell = kNoCell;
+  std::vector<size_t> m_members;  // of the cell
+  std::array<Converged, 2> m_halves;
+  Converged m_truth;
+  Inspection m_result;
+};
+
+}  // namespace
+
+std::optional<Inspection> inspect(const render::Scene& scene, const render::RenderOptions& options,
+                                  const InspectSettings& settings, render::Progress& progress) {
+  const int threads = options.threads > 0 ? options.threads : tbb::info::default_concurrency();
+  const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, size_t(threads));
+  return Inspector(scene, options, settings, progress).run();
+}
+
+}  // namespace odis::learn

@@ -1,0 +1,61 @@
+// What a vertex scatters, as an integral over directions: how good is a density for it?
+#pragma once
+
+#include "learn/inspect/converged.h"
+#include "learn/inspect/inspect.h"
+
+namespace odis::learn {
+
+// Directions lie on a grid finer than any map's: 128 x 128 points of the equal-area octahedral square, so that lobes of
+// roughness 0.05 and more are resolved. BSDF and densities are evaluated there; what arrives is known a texel of
+// targets. Perfect mirrors and glass, which no density changes, are left out.
+class VertexIntegral {
+ public:
+  VertexIntegral(const Start& start, const Converged& arriving);
+
+  // A map as the vertex sees it. The map must outlive the result.
+  VertexMap at(const SamplingMap& map) const;
+
+  // The second moment over the squared mean of what the vertex scatters: next-event estimation (of emitters that can be
+  // met; without a choice among them that was learned) and one direction from `map` times the cosine, mixed with the BSDF
+  // as mixturePdf() says, both weighted by MIS. The direction's radiance has the noise of single paths. kUnknown where
+  // nothing is scattered.
+  float moment(const VertexMap& map, float alpha) const;
+  // All there is to say of a map: `converged` is the one that its divergence is measured from.
+  Judgement judge(const SamplingMap& map, const SamplingMap& converged, float alpha) const;
+
+  // Radiance that arrives, emission weighted by MIS against the BSDF as the pilot's is; of radiance() kUnknown where
+  // nothing was measured, 0 there of texels(), which has those of maps.
+  SquareMap radiance() const;
+  Histogram texels() const;
+  SquareMap bsdf() const;  // f |cos|, luminance
+  SquareMap best() const;  // that times the radiance
+  SquareMap mixture(const VertexMap& map, float alpha) const;
+
+ private:
+  struct Direction {
+    float value = 0, pdf = 0, guidablePdf = 0;  // of the BSDF, f |cos| as luminance
+    int texel = 0, target = 0;                  // of maps, of targets
+  };
+  // Means of a function of (direction, what arrives there) over texels of targets.
+  template <class Function>
+  SquareMap means(const Function& function) const;
+
+  std::vector<Direction> m_directions;
+  std::vector<Converged::Texel> m_arriving;
+  float m_guidable;
+  Float3 m_normal;
+  Sides m_sides;
+};
+
+// The map as texels row by row, over its mean.
+SquareMap squareOf(const Histogram& texels);
+// The density of each texel, over the even one.
+SquareMap squareOf(const VertexMap& map);
+
+// In bits, of densities over a map's texels that need not sum to one; 0 log 0 is 0.
+float entropyOf(const Histogram& weights);
+// Of the density of `other` from that of `map`.
+float divergence(const VertexMap& map, const VertexMap& other);
+
+}  // namespace odis::learn
