@@ -286,7 +286,7 @@ class TorchLearner : public Learner {
   // Of all gradients at once, and the loss.
   void average(torch::nn::Module& module, double& loss) {
     std::vector<torch::Tensor> parts;
-    for (const torch::Tensor& p : m_module->parameters())
+    for (const torch::Tensor& p : module.parameters())
       parts.push_back(p.grad().reshape({-1}).to(torch::kCPU));
     parts.push_back(torch::full({1}, loss, torch::kFloat32));
     std::vector<torch::Tensor> all{torch::cat(parts)};

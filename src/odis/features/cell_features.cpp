@@ -60,7 +60,7 @@ Histogram blurred(const Histogram& map) {
     Order() {
       for (int y = -1; y <= kMapSize; ++y)
         for (int x = -1; x <= kMapSize; ++x)
-          texel[size_t((y + 1) * kRim + x + 1)] = uint8_t(wrappedTexel(x, y));
+          texel[size_t(y + 1) * kRim + size_t(x + 1)] = uint8_t(wrappedTexel(x, y));
     }
   };
   static const Order order;
