@@ -62,7 +62,7 @@ std::string openRoom(int size) {
 // Tables for no reason, and values that are none.
 class AdversarialLights : public LightModel {
  public:
-  double trust(const CellStatistics&) const override { return 1; }
+  double trust(const CellStatistics& cell) const override { return cell.count / (cell.count + 20); }
   LightSquares predict(const CellChain& chain, const LightSquares*, uint32_t) const override {
     const CellStatistics& cell = *chain[0];
     LightSquares result{};
@@ -81,7 +81,7 @@ class AdversarialLights : public LightModel {
 // All the same: the first group and no other.
 class StubbornLights : public LightModel {
  public:
-  double trust(const CellStatistics&) const override { return 1; }
+  double trust(const CellStatistics& cell) const override { return cell.count / (cell.count + 20); }
   LightSquares predict(const CellChain&, const LightSquares*, uint32_t) const override { return {1}; }
 };
 

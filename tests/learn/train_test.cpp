@@ -1,5 +1,6 @@
 // Training: examples, the learner beside the run time, runs that are killed and go on.
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <atomic>
 #include <cmath>
@@ -19,11 +20,11 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// A data set of a few tiny scenes, made once.
+// A data set of a few tiny scenes, made once; in a folder of this process, since others may run tests at the same time.
 class Training : public ::testing::Test {
  protected:
   static void SetUpTestSuite() {
-    s_folder = (fs::path(testing::TempDir()) / "odis_train_test").string();
+    s_folder = (fs::path(testing::TempDir()) / ("odis_train_test_" + std::to_string(getpid()))).string();
     fs::remove_all(s_folder);
     fs::create_directories(s_folder + "/data");
     DataSettings settings = DataSettings::quick();
@@ -251,7 +252,8 @@ TEST_F(Training, GoesOnAsIfNothingHadHappened) {
 TEST_F(Training, TwoProcessesLearnTheSame) {
   if (!canTrain()) GTEST_SKIP() << "built without libtorch";
   setenv("MASTER_ADDR", "127.0.0.1", 1);
-  setenv("MASTER_PORT", "29653", 1);
+  // A port of this process.
+  setenv("MASTER_PORT", std::to_string(20000 + getpid() % 20000).c_str(), 1);
   ExamplePool pool(config().examples);
   pool.add({shardFile(config().data, shardsIn(config().data).front())});
   std::vector<Tensor> learned[2];
@@ -336,7 +338,7 @@ TEST_F(Training, ValidationTellsGoodMapsFromBad) {
 }
 
 TEST(TrainConfig, MistakesAreNamed) {
-  const std::string path = testing::TempDir() + "/odis_train_config.json";
+  const std::string path = testing::TempDir() + "/odis_train_config_" + std::to_string(getpid()) + ".json";
   const auto errorOf = [&](const std::string& text) {
     std::ofstream(path) << text;
     try {

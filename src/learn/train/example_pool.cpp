@@ -25,9 +25,9 @@ std::string viewPrefix(size_t view) {
 
 std::vector<ViewExamples> ExamplePool::load(const std::string& shardFile, std::string& originText) const {
   const fs::path source(shardFile), kept = fs::path(m_folder) / (source.stem().string() + ".examples");
-  // What was kept is of use if it was made of this very shard.
+  // What was kept is of use if it was made of this very shard: its header has the length of every array.
   const nlohmann::ordered_json origin = {{"bytes", fs::file_size(source)},
-                                         {"crc32", crc32(shardBytes(shardFile))}};
+                                         {"header", crc32(ShardHeader(shardFile).header().dump())}};
   originText = origin.dump();
   std::vector<ViewExamples> views;
   if (fs::exists(kept)) {

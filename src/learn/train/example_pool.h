@@ -43,7 +43,7 @@ class ExamplePool {
   // Those of them where there are several groups of lights and one gives something.
   size_t lightSize() const { return m_lit.size(); }
 
-  // Tells one set of shards from another: a CRC-32 over theirs, in order.
+  // Tells one set of shards from another: a CRC-32 over their headers, in order.
   uint32_t fingerprint() const { return crc32(m_origins); }
 
   // `count` examples at random, drawn anew for each step. The pool must not be empty.
