@@ -1,6 +1,7 @@
 // Files of weights: as they are, and with a checksum that is made right, so that damage gets behind it.
 #include <cstring>
 
+#include "learn/data/shard_file.h"
 #include "odis/network/direction_network.h"
 #include "odis/network/light_network.h"
 
@@ -19,23 +20,13 @@ void readAll(std::string_view bytes) {
   }
 }
 
-// Bit by bit, as the file has it.
-uint32_t crc32(std::string_view bytes) {
-  uint32_t crc = ~0u;
-  for (const char c : bytes) {
-    crc ^= uint8_t(c);
-    for (int bit = 0; bit < 8; ++bit) crc = (crc >> 1) ^ (0xedb88320u & (0u - (crc & 1u)));
-  }
-  return ~crc;
-}
-
 }  // namespace
 
 extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
   std::string bytes(reinterpret_cast<const char*>(data), size);
   readAll(bytes);
   if (size < 4) return 0;
-  const uint32_t crc = crc32(std::string_view(bytes).substr(0, size - 4));
+  const uint32_t crc = learn::crc32(std::string_view(bytes).substr(0, size - 4));
   std::memcpy(bytes.data() + size - 4, &crc, 4);
   readAll(bytes);
   return 0;

@@ -111,11 +111,7 @@ void writePreview(const std::string& path, const Frame2D& frame, float exposure)
 }
 
 void writeText(const std::string& path, const std::string& text) {
-  replaceFile(path, [&](const std::string& temporary) {
-    CheckedStream stream(temporary);
-    stream.write(text.data(), std::streamsize(text.size()));
-    stream.close();
-  });
+  writeFile(path, text);
 }
 
 }  // namespace odis::app

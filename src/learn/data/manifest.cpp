@@ -232,11 +232,7 @@ void writeManifest(const std::string& folder, const nlohmann::ordered_json& mani
     separator = ",\n";
   }
   text += "\n ]\n}\n";
-  render::replaceFile((fs::path(folder) / kManifestName).string(), [&](const std::string& temporary) {
-    render::CheckedStream stream(temporary);
-    stream.write(text.data(), std::streamsize(text.size()));
-    stream.close();
-  });
+  render::writeFile((fs::path(folder) / kManifestName).string(), text);
 }
 
 std::vector<std::string> missingShards(const std::vector<ShardSource>& sources,

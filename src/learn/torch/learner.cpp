@@ -82,6 +82,7 @@ struct LightRows {
     probability = toDevice(b.probability, {count, groups}, device);
   }
 };
+
 struct Rows {
   torch::Tensor scalars, basis, there, perCosine, diffuse, mass, square;
 

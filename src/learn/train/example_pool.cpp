@@ -83,8 +83,8 @@ void ExamplePool::draw(uint64_t seed, uint64_t step, size_t count, double shiftP
     Random random = stream.fork(fmt::format("{}", row));
     const auto [viewIndex, example] = random.pick(std::span(m_usable));
     const ViewExamples& view = m_views[viewIndex];
-    const int variant = std::min(int(random.unit() * kInputVariants), kInputVariants - 1);
-    const bool shift = random.unit() < shiftProbability;
+    const int variant = random.integer(0, kInputVariants - 1);
+    const bool shift = random.chance(shiftProbability);
     std::array<CellStatistics, kCellLevels> storage;
     CellFeatures features;
     computeFeatures(view.chain(variant, example, shift, storage), features);

@@ -8,7 +8,6 @@
 #include <functional>
 
 #include "render/image/checked_stream.h"
-#include "render/image/replace_file.h"
 #include "render/image/write.h"
 
 namespace odis::learn {
@@ -116,14 +115,6 @@ void putScalar(std::string& file, double seconds, int step, const std::string& t
   putRecord(file, event);
 }
 
-void writeText(const std::string& path, const std::string& text) {
-  render::replaceFile(path, [&](const std::string& temporary) {
-    render::CheckedStream stream(temporary);
-    stream.write(text.data(), std::streamsize(text.size()));
-    stream.close();
-  });
-}
-
 }  // namespace
 
 Canvas drawHistory(const History& history) {
@@ -170,9 +161,9 @@ void writeHistory(const std::string& folder, const History& history) {
         fmt::format("{},{},{},{},{:.1f}\n", row.step, row.loss, row.lights, row.learningRate, row.seconds);
   for (const ValidationRow& row : history.validations)
     validations += fmt::format("{},{},{}\n", row.step, row.variance, row.formula);
-  writeText(folder + "/losses.csv", losses);
-  writeText(folder + "/validation.csv", validations);
-  writeText(folder + "/events.out.tfevents.odis", tensorboardEvents(history));
+  render::writeFile(folder + "/losses.csv", losses);
+  render::writeFile(folder + "/validation.csv", validations);
+  render::writeFile(folder + "/events.out.tfevents.odis", tensorboardEvents(history));
   const Canvas canvas = drawHistory(history);
   render::writePng(folder + "/curves.png", canvas.width, canvas.height, canvas.pixels.data(), 0);
 }

@@ -13,7 +13,6 @@
 #include "odis/network/direction_network.h"
 #include "odis_version.h"
 #include "render/image/checked_stream.h"
-#include "render/image/replace_file.h"
 
 namespace odis::learn {
 
@@ -26,14 +25,6 @@ using Clock = std::chrono::steady_clock;
 constexpr size_t kStandardizedBy = 4096;  // examples
 constexpr int kStepsPerRow = 50;          // of losses.csv
 constexpr size_t kShardsAtOnce = 100;
-
-void writeFile(const std::string& path, const std::string& bytes) {
-  render::replaceFile(path, [&](const std::string& temporary) {
-    render::CheckedStream stream(temporary);
-    stream.write(bytes.data(), std::streamsize(bytes.size()));
-    stream.close();
-  });
-}
 
 double learningRateAt(const TrainConfig& c, int step) {
   const double warm = c.warmUpSteps > 0 ? std::min(1.0, (step + 1.0) / c.warmUpSteps) : 1.0;
@@ -86,12 +77,12 @@ class Training {
                         "same configuration",
                         path));
     }
-    writeFile(path, nlohmann::ordered_json{{"software", "ODIS " ODIS_VERSION_STRING},
-                                           {"processes", m_processes.count},
-                                           {"device", m_learner->device()},
-                                           {"config", mine}}
-                            .dump(1) +
-                        "\n");
+    render::writeFile(path, nlohmann::ordered_json{{"software", "ODIS " ODIS_VERSION_STRING},
+                                                   {"processes", m_processes.count},
+                                                   {"device", m_learner->device()},
+                                                   {"config", mine}}
+                                    .dump(1) +
+                                "\n");
   }
 
   // The data's shards of one side of the split, by name.
@@ -217,7 +208,7 @@ class Training {
   // First what others read, last the checkpoint: whatever is killed in between is made again.
   void save() {
     writeHistory(m_folder, m_history);
-    writeFile(m_folder + "/odis.weights", Weights(about().dump(), m_learner->tensors()).bytes());
+    render::writeFile(m_folder + "/odis.weights", Weights(about().dump(), m_learner->tensors()).bytes());
     nlohmann::ordered_json losses = nlohmann::ordered_json::array(),
                            validations = nlohmann::ordered_json::array();
     for (const LossRow& r : m_history.losses)

@@ -6,6 +6,9 @@
 #include <fstream>
 #include <stdexcept>
 #include <string>
+#include <string_view>
+
+#include "render/image/replace_file.h"
 
 namespace odis::render {
 
@@ -40,5 +43,14 @@ class CheckedStream {
   std::ofstream m_stream;
   std::string m_reason;
 };
+
+// The whole file, under its name only once it is complete. Throws WriteError.
+inline void writeFile(const std::string& path, std::string_view bytes) {
+  replaceFile(path, [&](const std::string& temporary) {
+    CheckedStream stream(temporary);
+    stream.write(bytes.data(), std::streamsize(bytes.size()));
+    stream.close();
+  });
+}
 
 }  // namespace odis::render
