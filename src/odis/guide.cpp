@@ -19,6 +19,10 @@ struct Guide::Data {
   std::vector<float> lights;  // tables of lightGroups + 1 entries for each cell
   uint32_t lightGroups = 0;
   AlphaPrediction predicted;
+
+  const float* lightTable(const Cell& cell) const {
+    return &lights[size_t(&cell - cells.data()) * size_t(lightGroups + 1)];
+  }
 };
 
 Guide::Guide() = default;
@@ -53,12 +57,17 @@ void Guide::find(std::span<const Place> places, std::span<const Cell*> cells) co
     __builtin_prefetch(cells[i]->alpha);
     for (const auto* sums : {&cells[i]->map.x, &cells[i]->map.y, &cells[i]->map.z, &cells[i]->map.sum})
       __builtin_prefetch(sums->data());
+    if (!m_data->lights.empty()) {
+      const float* table = m_data->lightTable(*cells[i]);
+      __builtin_prefetch(table);
+      __builtin_prefetch(table + m_data->lightGroups);
+    }
   }
 }
 
 LearnedLights Guide::lights(const Cell& cell) const {
   if (!(cell.lightShare > 0)) return {};
-  return {&m_data->lights[indexOf(cell) * size_t(m_data->lightGroups + 1)], cell.lightShare};
+  return {m_data->lightTable(cell), cell.lightShare};
 }
 
 uint32_t Guide::indexOf(const Cell& cell) const {

@@ -1,8 +1,10 @@
 #include "odis/decisions/pack.h"
 
+#include "odis/instruction_sets.h"
+
 namespace odis {
 
-SamplingMap pack(const DirectionDistribution& distribution, float floor) {
+ODIS_WIDE SamplingMap pack(const DirectionDistribution& distribution, float floor) {
   Histogram radiance;
   float sum = 0;
   for (int t = 0; t < kMapTexels; ++t)

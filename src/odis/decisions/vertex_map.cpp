@@ -1,4 +1,5 @@
 #include "odis/decisions/texel_directions.h"
+#include "odis/instruction_sets.h"
 #include "odis/sampling.h"
 
 namespace odis {
@@ -28,7 +29,7 @@ float sumRows(const float* table, float* rows) {
 
 }  // namespace
 
-void SamplingMap::update() {
+ODIS_WIDE void SamplingMap::update() {
   for (int b = 0; b < kMapBlocks; ++b) {
     x[b] = y[b] = z[b] = sum[b] = 0;
     for (int t = b * kBlockTexels; t < (b + 1) * kBlockTexels; ++t) {
@@ -40,7 +41,7 @@ void SamplingMap::update() {
   }
 }
 
-void VertexMap::prepare(const SamplingMap& map, const Float3& normal, Sides sides) {
+ODIS_WIDE void VertexMap::prepare(const SamplingMap& map, const Float3& normal, Sides sides) {
   m_map = &map;
   m_normal = normal;
   m_below = sides == Sides::both ? -1.0f : 0.0f;
@@ -61,7 +62,7 @@ struct VertexMap::BlockWeights {
   float toPdf;
 };
 
-void VertexMap::weigh(int block, BlockWeights& weights) const {
+ODIS_WIDE void VertexMap::weigh(int block, BlockWeights& weights) const {
   const int first = block * kBlockTexels;
   const float *x = kTexelDirections.x + first, *y = kTexelDirections.y + first,
               *z = kTexelDirections.z + first;

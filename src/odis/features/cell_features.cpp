@@ -4,6 +4,7 @@
 
 #include "odis/decisions/texel_directions.h"
 #include "odis/features/fast_log2.h"
+#include "odis/instruction_sets.h"
 
 namespace odis {
 
@@ -26,7 +27,7 @@ float sumOver(const F& f) {
 }
 
 // The map with the sum 1, or nothing where it has none; returns which.
-bool normalize(const Histogram& from, Histogram& to) {
+ODIS_WIDE bool normalize(const Histogram& from, Histogram& to) {
   const float sum = sumOver([&](int t) { return from[t]; });
   const float scale = sum > 0 && sum < INFINITY ? 1 / sum : 0;
   for (int t = 0; t < kMapTexels; ++t) to[t] = scale > 0 ? from[t] * scale : 0;
@@ -34,12 +35,12 @@ bool normalize(const Histogram& from, Histogram& to) {
 }
 
 // In bits, of a distribution.
-float entropy(const Histogram& p) {
+ODIS_WIDE float entropy(const Histogram& p) {
   return -sumOver([&](int t) { return p[t] * fastLog2(p[t] > 1e-12f ? p[t] : 1e-12f); });
 }
 
 // The share of two distributions that they have in common, from 0 to 1.
-float overlap(const Histogram& a, const Histogram& b) {
+ODIS_WIDE float overlap(const Histogram& a, const Histogram& b) {
   return sumOver([&](int t) { return a[t] < b[t] ? a[t] : b[t]; });
 }
 
@@ -52,7 +53,7 @@ float brightness(const CellStatistics& cell, const CellStatistics& around) {
 
 }  // namespace
 
-Histogram blurred(const Histogram& map) {
+ODIS_WIDE Histogram blurred(const Histogram& map) {
   // Row by row with a rim of what lies across the seams; then along rows and columns.
   constexpr int kRim = kMapSize + 2;
   struct Order {
@@ -81,7 +82,7 @@ Histogram basisMap(const CellFeatures& features, int map) {
   return map == kCellLevels + 1 ? blurred(features.levels[1]) : features.lobe;
 }
 
-Histogram blendMaps(const CellFeatures& features, const std::array<float, kBasisMaps>& shares) {
+ODIS_WIDE Histogram blendMaps(const CellFeatures& features, const std::array<float, kBasisMaps>& shares) {
   const auto& levels = features.levels;
   Histogram twice, once, result;
   for (int t = 0; t < kMapTexels; ++t) twice[t] = shares[kCellLevels] * levels[0][t];

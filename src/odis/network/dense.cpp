@@ -3,35 +3,63 @@
 #include <algorithm>
 #include <array>
 
+#include "odis/instruction_sets.h"
+
 namespace odis {
+
+namespace {
+
+constexpr size_t kVector = 8;
+static_assert(kWidestLayer % kVector == 0);
+
+// Column by column, so that all outputs grow together.
+ODIS_WIDE void accumulate(const float* columns, const float* bias, const float* x, size_t inputs,
+                          size_t outputs, float* y) {
+  std::copy_n(bias, outputs, y);
+  for (size_t i = 0; i < inputs; ++i) {
+    const float* column = columns + i * outputs;
+    for (size_t o = 0; o < outputs; o += kVector)
+      for (size_t k = o; k < o + kVector; ++k) y[k] += column[k] * x[i];
+  }
+}
+
+ODIS_WIDE void accumulateLanes(const float* rows, const float* bias, const float* x, size_t inputs,
+                               size_t outputs, float* y) {
+  for (size_t o = 0; o < outputs; ++o) {
+    const float* row = rows + o * inputs;
+    float sums[kLanes];
+    for (float& sum : sums) sum = bias[o];
+    for (size_t i = 0; i < inputs; ++i) {
+      const float* lanes = x + i * kLanes;
+      for (size_t lane = 0; lane < kLanes; ++lane) sums[lane] += row[i] * lanes[lane];
+    }
+    std::copy_n(sums, kLanes, y + o * kLanes);
+  }
+}
+
+}  // namespace
 
 Dense::Dense(const Weights& weights, const std::string& name, uint32_t inputs) : m_inputs(inputs) {
   m_outputs = weights.rows(name + ".bias", 1);
   if (inputs > kWidestLayer || m_outputs > kWidestLayer)
     throw WeightsError("tensor " + name + ".weight is wider than " + std::to_string(kWidestLayer));
-  m_weights = weights.get(name + ".weight", {m_outputs, inputs});
+  m_rows = weights.get(name + ".weight", {m_outputs, inputs});
   m_bias = weights.get(name + ".bias", {m_outputs});
+  // Outputs lie side by side, as many as fill vectors.
+  m_bias.resize((m_outputs + kVector - 1) / kVector * kVector, 0.0f);
+  m_columns.resize(inputs * m_bias.size());
+  for (uint32_t o = 0; o < m_outputs; ++o)
+    for (uint32_t i = 0; i < inputs; ++i) m_columns[i * m_bias.size() + o] = m_rows[size_t(o) * inputs + i];
 }
 
 void Dense::apply(std::span<const float> x, std::span<float> y) const {
-  for (uint32_t o = 0; o < m_outputs; ++o) {
-    const float* row = &m_weights[size_t(o) * m_inputs];
-    // Four sums side by side: one would wait for itself.
-    float sums[4] = {m_bias[o], 0, 0, 0};
-    for (uint32_t i = 0; i < m_inputs; ++i) sums[i & 3] += row[i] * x[i];
-    y[o] = (sums[0] + sums[1]) + (sums[2] + sums[3]);
-  }
+  float sums[kWidestLayer];
+  accumulate(m_columns.data(), m_bias.data(), x.data(), m_inputs, m_bias.size(), sums);
+  std::copy_n(sums, m_outputs, y.begin());
 }
 
 void Dense::applyLanes(const float* x, float* y) const {
-  for (uint32_t o = 0; o < m_outputs; ++o) {
-    const float* row = &m_weights[size_t(o) * m_inputs];
-    float sums[kLanes];
-    for (float& sum : sums) sum = m_bias[o];
-    for (uint32_t i = 0; i < m_inputs; ++i)
-      for (uint32_t lane = 0; lane < kLanes; ++lane) sums[lane] += row[i] * x[i * kLanes + lane];
-    std::copy_n(sums, kLanes, y + size_t(o) * kLanes);
-  }
+  accumulateLanes(m_rows.data(), m_bias.data(), x, m_inputs, m_outputs, y);
 }
 
 Standardize::Standardize(const Weights& weights, const std::string& name, uint32_t inputs)

@@ -31,7 +31,9 @@ class Dense {
 
  private:
   uint32_t m_inputs = 0, m_outputs = 0;
-  std::vector<float> m_weights, m_bias;
+  std::vector<float> m_rows;     // of the weights: [output][input]
+  std::vector<float> m_columns;  // the same, [input][output], outputs filled up
+  std::vector<float> m_bias;     // filled up likewise
 };
 
 inline void rectify(std::span<float> values) {

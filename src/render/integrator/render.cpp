@@ -1,4 +1,5 @@
 #include "render/integrator/render.h"
+#include "render/integrator/pilot_counts.h"
 
 #include <fmt/format.h>
 #include <tbb/global_control.h>
@@ -62,6 +63,9 @@ class Renderer {
     if (options.features) m_features.resize(m_pixels);
     if (options.records) m_emitted.assign(m_pixels, Rgb(0, 0, 0));
     m_rival = makeRival(options);
+    if (options.integrator == IntegratorKind::odis)
+      m_pilotCounts = pilotCounts(m_pixels, uint32_t(scene.film().crop.width), m_pilotSpp,
+                                  uint32_t(options.spp), options.seed);
   }
 
   RenderResult run() {
@@ -178,17 +182,8 @@ class Renderer {
     m_stats.shadowRays += counts.shadowRays;
   }
 
-  // How many of the pixel's samples belong to the pilot: n for every pixel, or one pixel of each block,
-  // chosen by hash.
-  uint32_t pilotCount(uint32_t pixel) const {
-    if (m_options.integrator != IntegratorKind::odis) return 0;
-    const uint32_t spp = uint32_t(m_options.spp);
-    if (m_pilotSpp >= 1) return std::min(spp, uint32_t(std::lround(m_pilotSpp)));
-    const uint32_t block = uint32_t(std::lround(1 / std::sqrt(m_pilotSpp)));
-    const uint32_t width = uint32_t(m_scene.film().crop.width), x = pixel % width, y = pixel / width;
-    const uint64_t hash = mixBits(m_options.seed ^ (uint64_t(y / block) << 32 | (x / block)));
-    return x % block == hash % block && y % block == (hash >> 32) % block ? 1 : 0;
-  }
+  // How many of the pixel's samples belong to the pilot.
+  uint32_t pilotCount(uint32_t pixel) const { return m_pilotCounts.empty() ? 0 : m_pilotCounts[pixel]; }
 
   void runPilot() {
     const Clock::time_point start = Clock::now();
@@ -462,7 +457,8 @@ class Renderer {
   LightSampler m_lights;
   Clock::time_point m_start;
   size_t m_pixels;
-  double m_pilotSpp;  // m_options' or its default
+  double m_pilotSpp;                    // m_options' or its default
+  std::vector<uint32_t> m_pilotCounts;  // samples of the pilot in each pixel; empty: none
   std::vector<PixelSums> m_pilot, m_guided;
   std::vector<FeatureSums> m_features;
   Records m_records;
