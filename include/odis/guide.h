@@ -134,9 +134,10 @@ class Guide {
   // The finest cell there is for a vertex; null where the pilot saw nothing at all.
   const Cell* find(const Float3& position, const Float3& normal) const;
   // The same for many vertices at once, which is faster: cells lie all over memory, and here none waits for the
-  // memory of another. What a vertex reads of its cell is on its way when this returns. `cells` has room for
-  // as many as there are `places`.
+  // memory of another. `cells` has room for as many as there are `places`.
   void find(std::span<const Place> places, std::span<const Cell*> cells) const;
+  // Asks for everything that a vertex may read of a cell of this guide to be fetched: to be called a few vertices ahead.
+  void prefetch(const Cell& cell) const;
 
   // What is known about lights in a cell of this guide. The table lasts as long as the guide.
   LearnedLights lights(const Cell& cell) const;

@@ -53,16 +53,17 @@ void Guide::find(std::span<const Place> places, std::span<const Cell*> cells) co
   for (size_t i = 0; i < places.size(); ++i) {
     const uint32_t finest = m_data->index.find(keys[i]);
     cells[i] = finest != kNoCell ? &m_data->cells[finest] : find(places[i].position, places[i].normal);
-    if (!cells[i]) continue;
-    __builtin_prefetch(cells[i]->alpha);
-    for (const auto* sums : {&cells[i]->map.x, &cells[i]->map.y, &cells[i]->map.z, &cells[i]->map.sum})
-      __builtin_prefetch(sums->data());
-    if (!m_data->lights.empty()) {
-      const float* table = m_data->lightTable(*cells[i]);
-      __builtin_prefetch(table);
-      __builtin_prefetch(table + m_data->lightGroups);
-    }
   }
+}
+
+void Guide::prefetch(const Cell& cell) const {
+  constexpr size_t kLine = 64;
+  for (size_t byte = 0; byte < sizeof(Cell); byte += kLine)
+    __builtin_prefetch(reinterpret_cast<const char*>(&cell) + byte);
+  if (m_data->lights.empty()) return;
+  const float* table = m_data->lightTable(cell);
+  __builtin_prefetch(table);
+  __builtin_prefetch(table + m_data->lightGroups);
 }
 
 LearnedLights Guide::lights(const Cell& cell) const {

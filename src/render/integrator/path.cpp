@@ -424,6 +424,9 @@ LightReference lightReference(const SurfacePoint& at, const Vec3& wo) {
   return {at.p, facing(at, wo), at.shape->bsdf().traits().transmissive};
 }
 
+// How many vertices before it is needed a cell is asked for: a few hundred nanoseconds each.
+constexpr size_t kCellsAhead = 6;
+
 void tracePaths(const PathSettings& settings, std::span<Path> paths, std::vector<PilotVertex>* records) {
   thread_local Batch batch;
   batch.recording = records != nullptr;
@@ -440,6 +443,8 @@ void tracePaths(const PathSettings& settings, std::span<Path> paths, std::vector
 
     size_t left = 0;
     for (size_t i = 0; i < batch.active.size(); ++i) {
+      if (const size_t ahead = i + kCellsAhead; ahead < batch.cells.size() && batch.cells[ahead])
+        settings.guide->prefetch(*batch.cells[ahead]);
       const uint32_t index = batch.active[i];
       if (extend(settings, paths[index], index, batch.vertices[i], batch.cells[i], depth, batch))
         batch.active[left++] = index;
