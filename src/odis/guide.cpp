@@ -1,8 +1,5 @@
 #include "odis/guide.h"
 
-#include <tbb/blocked_range.h>
-#include <tbb/parallel_for.h>
-
 #include "odis/cells/statistics.h"
 #include "odis/decisions/choose_alphas.h"
 #include "odis/decisions/direction_model.h"
@@ -151,17 +148,12 @@ Guide GuideBuilder::buildMaps(const std::vector<CellStatistics>& cells,
   guide.m_data->index = m_data->store.index();
   guide.m_data->cells.resize(cells.size());
   distributions.resize(cells.size());
-  for (int level = kCellLevels - 1; level >= 0; --level)
-    tbb::parallel_for(tbb::blocked_range<size_t>(0, cells.size(), 16),
-                      [&](const tbb::blocked_range<size_t>& range) {
-                        for (size_t c = range.begin(); c < range.end(); ++c) {
-                          if (cells[c].level != level) continue;
-                          const uint32_t parent = cells[c].parent;
-                          distributions[c] = options.model->predict(
-                              chainOf(cells, c), parent == kNoCell ? nullptr : &distributions[parent]);
-                          guide.m_data->cells[c].map = pack(distributions[c], options.floor);
-                        }
-                      });
+  forEachFromCoarse(cells, [&](size_t c) {
+    const uint32_t parent = cells[c].parent;
+    distributions[c] =
+        options.model->predict(chainOf(cells, c), parent == kNoCell ? nullptr : &distributions[parent]);
+    guide.m_data->cells[c].map = pack(distributions[c], options.floor);
+  });
   return guide;
 }
 

@@ -1,8 +1,5 @@
 #include "odis/cells/statistics.h"
 
-#include <tbb/blocked_range.h>
-#include <tbb/parallel_for.h>
-
 #include <algorithm>
 #include <cmath>
 
@@ -75,15 +72,15 @@ void CellStore::place(const CellGrid& grid) {
   m_placed = true;
 }
 
-// The cell with this key, of the finest level; it and its ancestors are made if they are not there.
+// The number of the cell with this key, of the finest level; it and its ancestors get numbers if they have none.
 uint32_t CellStore::insert(uint64_t key) {
   uint32_t child = kNoCell, finest = kNoCell;
   for (int level = 0; level < kCellLevels; ++level, key = CellGrid::parent(key)) {
     const uint32_t before = m_index.size();
     const uint32_t cell = m_index.insert(key);
     if (level == 0) finest = cell;
-    if (cell == before) m_cells.emplace_back().level = level;
-    if (child != kNoCell) m_cells[child].parent = cell;
+    if (cell == before) m_links.push_back({kNoCell, level});
+    if (child != kNoCell) m_links[child].parent = cell;
     if (cell != before) break;  // its ancestors are known
     child = cell;
   }
@@ -139,6 +136,12 @@ void CellStore::add(std::span<const BatchSamples* const> batches) {
     for (const BatchSamples::Cell& cell : batches[b]->cells) cells[b].cells.push_back(insert(cell.key));
     cells[b].cellOf = batches[b]->cellOf;
     m_transientBytes += batches[b]->bytes();
+  }
+  size_t known = m_cells.size();
+  m_cells.resize(m_links.size());
+  for (; known < m_cells.size(); ++known) {
+    m_cells[known].parent = m_links[known].parent;
+    m_cells[known].level = m_links[known].level;
   }
 
   // Values are clamped to a multiple of the mean over the next coarser cell, so that no single path rules a

@@ -2,6 +2,9 @@
 // there was.
 #pragma once
 
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+
 #include <array>
 #include <span>
 #include <vector>
@@ -50,12 +53,15 @@ inline CellChain chainOf(std::span<const CellStatistics> cells, size_t cell) {
   return chain;
 }
 
-// Calls `body` with the index of each cell, parents before their children.
+// Calls `body` with the index of each cell: parents before their children, those of a level by many threads at once.
 template <class Body>
 void forEachFromCoarse(std::span<const CellStatistics> cells, const Body& body) {
   for (int level = kCellLevels - 1; level >= 0; --level)
-    for (size_t c = 0; c < cells.size(); ++c)
-      if (cells[c].level == level) body(c);
+    tbb::parallel_for(tbb::blocked_range<size_t>(0, cells.size(), 16),
+                      [&](const tbb::blocked_range<size_t>& range) {
+                        for (size_t c = range.begin(); c < range.end(); ++c)
+                          if (cells[c].level == level) body(c);
+                      });
 }
 
 // The cells at every level. A coarser cell's statistics are the sums of its children's, formed by `rollUp`.
@@ -75,7 +81,9 @@ class CellStore {
 
   const CellGrid& grid() const { return m_grid; }
   const CellIndex& index() const { return m_index; }
-  uint64_t bytes() const { return m_cells.capacity() * sizeof(CellStatistics) + m_index.bytes(); }
+  uint64_t bytes() const {
+    return m_cells.capacity() * sizeof(CellStatistics) + m_links.capacity() * sizeof(Link) + m_index.bytes();
+  }
   // What the last `add` needed on top of the cells.
   uint64_t transientBytes() const { return m_transientBytes; }
   float clamp() const { return m_clamp; }
@@ -88,6 +96,11 @@ class CellStore {
   bool m_placed = false;
   CellGrid m_grid;
   CellIndex m_index;
+  struct Link {
+    uint32_t parent;
+    int level;
+  };
+  std::vector<Link> m_links;  // of all cells that have numbers
   std::vector<CellStatistics> m_cells;
   uint64_t m_transientBytes = 0;
 };

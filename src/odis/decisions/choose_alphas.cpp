@@ -150,7 +150,7 @@ AlphaPrediction chooseAlphas(std::vector<Cell>& result, const CellStore& store,
   prediction.totals = totals;
   prediction.pixels.resize(pixelValues.size());
   std::vector<CellSelection> backed(cells.size());
-  double saved = 0;
+  std::vector<std::pair<uint32_t, float>> savings(order.items.size());  // pixels, and what they save
   forEachFromCoarse(cells, [&](size_t c) {
     const CellSelection& coarser = cells[c].parent == kNoCell ? image : backed[cells[c].parent];
     size_t choices[kMaterialClasses];
@@ -161,11 +161,14 @@ AlphaPrediction chooseAlphas(std::vector<Cell>& result, const CellStore& store,
     }
     for (uint32_t i = order.begin[c]; i < order.begin[c + 1]; ++i) {
       const PilotVertex& v = *order.items[i];
-      const float gain = moments[i][0] - moments[i][choices[int(materialClass(v.roughness))]];
-      saved += gain;
-      if (!pixelValues.empty()) prediction.pixels[v.pixel].saved += gain;
+      savings[i] = {v.pixel, moments[i][0] - moments[i][choices[int(materialClass(v.roughness))]]};
     }
   });
+  double saved = 0;
+  for (const auto& [pixel, saving] : savings) {
+    saved += saving;
+    if (!pixelValues.empty()) prediction.pixels[pixel].saved += saving;
+  }
   if (!pixelValues.empty())
     for (const BatchSelection& batch : batches)
       for (const auto& [pixel, variance] : batch.variances) prediction.pixels[pixel].variance += variance;

@@ -1,8 +1,5 @@
 #include "odis/decisions/lights.h"
 
-#include <tbb/blocked_range.h>
-#include <tbb/parallel_for.h>
-
 #include <algorithm>
 #include <cmath>
 #include <numeric>
@@ -63,7 +60,7 @@ std::vector<float> tabulateLights(std::vector<Cell>& result, std::span<const Cel
                                   std::span<const LightParts> parts) {
   std::vector<LightSquares> squares(cells.size());
   std::vector<float> table(cells.size() * (groups + 1));
-  const auto tabulate = [&](size_t c) {
+  forEachFromCoarse(cells, [&](size_t c) {
     const uint32_t parent = cells[c].parent;
     squares[c] = model.predict(chainOf(cells, c), parent == kNoCell ? nullptr : &squares[parent], groups);
     std::array<double, kMostLightGroups> weights{};
@@ -82,13 +79,7 @@ std::vector<float> tabulateLights(std::vector<Cell>& result, std::span<const Cel
       sum += weights[g];
       cdf[g + 1] = float(sum / total);
     }
-  };
-  for (int level = kCellLevels - 1; level >= 0; --level)
-    tbb::parallel_for(tbb::blocked_range<size_t>(0, cells.size(), 64),
-                      [&](const tbb::blocked_range<size_t>& range) {
-                        for (size_t c = range.begin(); c < range.end(); ++c)
-                          if (cells[c].level == level) tabulate(c);
-                      });
+  });
   return table;
 }
 
