@@ -2,6 +2,7 @@
 #include <cstring>
 
 #include "learn/data/shard_file.h"
+#include "odis/network/continuation_network.h"
 #include "odis/network/direction_network.h"
 #include "odis/network/light_network.h"
 
@@ -16,6 +17,9 @@ void readAll(std::string_view bytes) {
     const CellStatistics cell;
     network.predict({&cell}, nullptr);
     LightNetwork(weights).predict({&cell}, nullptr, kMostLightGroups);
+    CellStatistics bright;
+    bright.count = bright.outgoingSquares = 1;
+    ContinuationNetwork(weights).predict({&bright}, nullptr);
   } catch (const WeightsError&) {
   }
 }

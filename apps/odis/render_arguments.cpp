@@ -38,8 +38,9 @@ void MethodArguments::addTo(CLI::App& app) {
       ->group(group);
   app.add_option(
          "--roulette", roulette,
-         "Whether guided paths go on: by their throughput, or learned from what the pilot saw come back")
-      ->check(CLI::IsMember({"throughput", "learned"}))
+         "Whether guided paths go on: by their throughput, or by what the pilot saw come back, weighed by "
+         "formula or by the network")
+      ->check(CLI::IsMember({"throughput", "formula", "network"}))
       ->capture_default_str()
       ->group(group);
   app.add_option("--ended-paths", endedPaths,
@@ -123,7 +124,9 @@ void MethodArguments::apply(RenderOptions& options) const {
                   : guide == "histogram" ? GuideKind::histogram
                                          : GuideKind::network;
   if (!weights.empty()) options.networks = std::make_shared<Networks>(loadNetworks(weights));
-  options.roulette = roulette == "learned" ? RouletteKind::learned : RouletteKind::throughput;
+  options.roulette = roulette == "throughput" ? RouletteKind::throughput
+                     : roulette == "formula"  ? RouletteKind::formula
+                                              : RouletteKind::network;
   options.guideBounces = guideBounces;
   options.pilotSpp = pilotSpp;
   options.lights = lights == "hierarchy" ? LightChoiceKind::hierarchy

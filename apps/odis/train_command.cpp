@@ -30,7 +30,8 @@ class Observer : public learn::TrainObserver {
   void loaded(size_t shards, size_t examples) override {
     print(fmt::format("{} shards, {} examples\n", shards, examples));
   }
-  void step(int step, int of, double loss, double lights) override {
+  void step(int of, const learn::LossRow& row) override {
+    const int step = row.step;
     const Clock::time_point now = Clock::now();
     if (m_first == 0) {
       m_first = step;
@@ -42,8 +43,8 @@ class Observer : public learn::TrainObserver {
     const std::string left = step > m_first && step < of
                                  ? ", " + durationText(seconds * (of - step) / (step - m_first)) + " left"
                                  : "";
-    print(fmt::format("step {} of {}: loss of maps {:.4f}, of lights {:.4f}{}\n", step, of, loss, lights,
-                      left));
+    print(fmt::format("step {} of {}: loss of maps {:.4f}, of lights {:.4f}, of roulette {:.4f}{}\n", step,
+                      of, row.loss, row.lights, row.continuations, left));
   }
   void validated(const learn::ValidationRow& row) override {
     print(fmt::format("step {}: predicted variance {:.4f}, of the formula {:.4f}\n", row.step, row.variance,

@@ -12,6 +12,7 @@ struct Networks {
   // Null where the weights hold no such network: the formula decides.
   std::shared_ptr<const DirectionModel> directions;
   std::shared_ptr<const LightModel> lights;
+  std::shared_ptr<const ContinuationModel> continuations;
 };
 
 // From a file of weights (src/odis/weights/weights.h). Throws std::runtime_error, which names the file.

@@ -4,11 +4,13 @@
 #include <numeric>
 
 #include "odis/features/cell_features.h"
+#include "odis/features/continuation_features.h"
 
 namespace odis {
 namespace {
 
 constexpr double kGoldenSum = 61.05387, kGoldenWeighted = 610.59096, kGoldenMaps = 3405.339;
+constexpr double kGoldenContinuations = 837.4872;
 
 float sumOf(const Histogram& map) {
   return std::accumulate(map.begin(), map.end(), 0.0f);
@@ -120,6 +122,18 @@ TEST(CellFeatures, StayWhatWeightsWereTrainedFor) {
     for (size_t t = 0; t < kMapTexels; ++t) maps += double(size_t(m + 1) * (t + 1)) * map[t];
   }
   EXPECT_NEAR(maps, kGoldenMaps, 1e-1);
+
+  for (CellStatistics& cell : cells) {
+    cell.outgoing = {0.5 * cell.count, cell.count / (1.0 + cell.level), 0.25 * cell.count};
+    cell.outgoingSquares = (2 + cell.level) * cell.count;
+    cell.rays = 5 * cell.count + 3 * cell.level;
+  }
+  ContinuationFeatures continuation;
+  computeFeatures({&cells[0], &cells[1], &cells[2], &cells[3]}, continuation);
+  double continuations = 0;
+  for (size_t i = 0; i < continuation.scalars.size(); ++i)
+    continuations += double(i + 1) * continuation.scalars[i];
+  EXPECT_NEAR(continuations, kGoldenContinuations, 1e-2);
 }
 
 }  // namespace

@@ -4,6 +4,7 @@
 
 #include <fstream>
 
+#include "odis/network/continuation_network.h"
 #include "odis/network/direction_network.h"
 #include "odis/network/light_network.h"
 
@@ -163,6 +164,115 @@ TEST(LightNetwork, FeaturesAreSharesCountsAndTheFormula) {
   EXPECT_NEAR(features.pairs[kCellLevels][0], 3.0f / 8, 1e-6f);
   EXPECT_NEAR(features.pairs[kPairFeatures - 1][1], 0.25f, 1e-6f);
   EXPECT_EQ(features.pairs[0][2], 0);
+}
+
+// A network for continuations that answers every cell with this.
+Weights constantCorrection(float correction) {
+  const uint32_t inputs = kContinuationScalars;
+  return Weights("{}", {{"continuations.cell.mean", {inputs}, std::vector<float>(inputs, 0.0f)},
+                        {"continuations.cell.scale", {inputs}, std::vector<float>(inputs, 1.0f)},
+                        {"continuations.cell.0.weight", {2, inputs}, std::vector<float>(2 * inputs, 0.5f)},
+                        {"continuations.cell.0.bias", {2}, {0, 0}},
+                        {"continuations.cell.1.weight", {2, 2}, {1, 0, 0, 1}},
+                        {"continuations.cell.1.bias", {2}, {0, 0}},
+                        {"continuations.worth.weight", {1, 2}, {0, 0}},
+                        {"continuations.worth.bias", {1}, {correction}}});
+}
+
+// Two cells, one in the other, that something comes back from.
+std::array<CellStatistics, 2> nestedCells() {
+  std::array<CellStatistics, 2> cells;
+  for (size_t i = 0; i < 2; ++i) {
+    CellStatistics& cell = cells[i];
+    cell.level = int(i) + kCellLevels - 2;
+    cell.parent = i == 0 ? 1 : kNoCell;
+    cell.count = i == 0 ? 15 : 63;
+    cell.outgoing = {2 * cell.count, 2 * cell.count, 2 * cell.count};
+    cell.outgoingSquares = (i == 0 ? 5 : 6) * cell.count;
+    cell.rays = 4 * cell.count;
+    cell.normal = {0, 0, float(cell.count)};
+    cell.nearness = 0.5 * cell.count;
+  }
+  return cells;
+}
+
+TEST(ContinuationNetwork, CorrectsTheFormulaAndNothingElse) {
+  const auto cells = nestedCells();
+  const ContinuationNetwork network(constantCorrection(std::log(9.0f)));
+  const Continuation coarse = ShrunkMoments().predict({&cells[1]}, nullptr),
+                     formula = ShrunkMoments().predict({&cells[0], &cells[1]}, &coarse),
+                     learned = network.predict({&cells[0], &cells[1]}, nullptr);
+  EXPECT_EQ(learned.mean, formula.mean);
+  EXPECT_EQ(learned.square, formula.square);
+  EXPECT_EQ(learned.rays, formula.rays);
+  EXPECT_NEAR(learned.correction, 9, 1e-4);
+
+  // Its worth is three times the formula's, each with its own caution; what stands in for ended paths is the same.
+  const SelectionTotals totals{40, 180, 10};
+  std::vector<Cell> byNetwork(2), byFormula(2);
+  weighContinuations(byNetwork, cells, network, totals, true);
+  weighContinuations(byFormula, cells, ShrunkMoments(), totals, true);
+  const float caution = float(network.caution() / ShrunkMoments().caution());
+  EXPECT_NEAR(byNetwork[0].worth / byFormula[0].worth, 3 * caution, 1e-4f);
+  EXPECT_EQ(byNetwork[0].expected.x, byFormula[0].expected.x);
+  EXPECT_GT(byNetwork[0].expected.x, 0);
+}
+
+TEST(ContinuationNetwork, GivesAWorthWhateverItsWeightsAre) {
+  const auto cells = nestedCells();
+  const std::array<CellStatistics, 1> dark{};
+  for (const float bias : {1e30f, -1e30f, INFINITY, -INFINITY, NAN}) {
+    const ContinuationNetwork network(constantCorrection(bias));
+    for (const std::span<const CellStatistics> all :
+         {std::span<const CellStatistics>(cells), std::span<const CellStatistics>(dark)}) {
+      std::vector<Cell> result(all.size());
+      weighContinuations(result, all, network, {40, 180, 10}, true);
+      for (const Cell& cell : result) {
+        EXPECT_TRUE(cell.worth >= 0 && cell.worth <= 1e30f) << bias;
+        EXPECT_TRUE(cell.expected.x >= 0 && cell.expected.x < 1e30f) << bias;
+      }
+    }
+  }
+  EXPECT_EQ(ContinuationNetwork(constantCorrection(2)).predict({&dark[0]}, nullptr).correction, 1);
+}
+
+TEST(ContinuationNetwork, FeaturesAreCountsAndRatios) {
+  const auto cells = nestedCells();
+  ContinuationFeatures features;
+  computeFeatures({&cells[0], &cells[1]}, features);
+  const auto& s = features.scalars;
+  const float square = (15 * 5 + 50 * 6) / 65.0f;
+  EXPECT_NEAR(features.formula.square, square, 1e-5f);
+  EXPECT_NEAR(s[0], 4, 1e-5f);  // log2(1 + 15)
+  EXPECT_NEAR(s[1], 0, 1e-5f);  // nothing arrives
+  EXPECT_NEAR(s[2], std::log2(1 + 15 * 4 / 5.0f), 1e-4f);
+  EXPECT_NEAR(s[3], std::log2(5 / square), 1e-4f);
+  EXPECT_NEAR(s[4], std::log2(2 / std::sqrt(square)), 1e-4f);
+  EXPECT_NEAR(s[5], 2, 1e-5f);
+  EXPECT_EQ(s[6], -8);
+  EXPECT_NEAR(s[7], 1, 1e-5f);  // flat
+  EXPECT_NEAR(s[8], 6, 1e-5f);  // log2(1 + 63)
+  EXPECT_NEAR(s[11], std::log2(6 / square), 1e-4f);
+  EXPECT_EQ(s[16], 0);  // no third level
+  EXPECT_EQ(s[19], -12);
+  EXPECT_NEAR(s[kContinuationScalars - 3], 0.5f, 1e-5f);
+  EXPECT_EQ(s[kContinuationScalars - 1], kCellLevels - 2);
+
+  // Of nothing there are features, too.
+  ContinuationFeatures nothing;
+  computeFeatures({}, nothing);
+  EXPECT_EQ(nothing.formula.square, 0);
+  EXPECT_EQ(nothing.scalars[kContinuationScalars - 1], 0);
+
+  // Nothing has a unit: ten times the radiance, another exposure, makes no difference.
+  auto brighter = cells;
+  for (CellStatistics& cell : brighter) {
+    for (double& sum : cell.outgoing) sum *= 10;
+    cell.outgoingSquares *= 100;
+  }
+  ContinuationFeatures same;
+  computeFeatures({&brighter[0], &brighter[1]}, same);
+  for (size_t i = 0; i < s.size(); ++i) EXPECT_NEAR(same.scalars[i], s[i], 1e-4f) << i;
 }
 
 TEST(DirectionNetwork, SensitivityIsWhatASampleAdds) {

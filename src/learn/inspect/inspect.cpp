@@ -172,7 +172,7 @@ class Inspector {
     m_result.cell = cellOf(guide());
     m_result.alpha = v.guidableProbability > 0 ? m_result.cell.alpha[int(materialClass(v.roughness))] : 1;
     m_result.pixelValue = m_pilot.pixelValues[v.pixel];
-    m_result.survival = m_options.roulette == render::RouletteKind::learned
+    m_result.survival = m_options.roulette != render::RouletteKind::throughput
                             ? survivalProbability(m_result.cell, 1 / m_result.pixelValue)
                             : 1;
   }

@@ -25,6 +25,9 @@ constexpr double kLongestGradient = 1;
 // Width of the lights' layers, and the share of choices that follows the network (odis/decisions/lights.cpp).
 constexpr int64_t kPairWidth = 16;
 constexpr double kLearnedShare = 0.9;
+// Width of the continuations' layers, and errors of the worth's logarithm that count as no larger.
+constexpr int64_t kContinuationWidth = 32;
+constexpr double kLargestError = 6;
 
 // The same as DirectionNetwork (odis/network).
 struct DirectionModuleImpl : torch::nn::Module {
@@ -66,6 +69,25 @@ struct LightModuleImpl : torch::nn::Module {
 };
 TORCH_MODULE(LightModule);
 
+// The same as ContinuationNetwork.
+struct ContinuationModuleImpl : torch::nn::Module {
+  ContinuationModuleImpl()
+      : cell0(register_module("cell0", torch::nn::Linear(kContinuationScalars, kContinuationWidth))),
+        cell1(register_module("cell1", torch::nn::Linear(kContinuationWidth, kContinuationWidth))),
+        worth(register_module("worth", torch::nn::Linear(kContinuationWidth, 1))),
+        mean(register_buffer("mean", torch::zeros({kContinuationScalars}))),
+        scale(register_buffer("scale", torch::ones({kContinuationScalars}))) {}
+
+  torch::Tensor forward(const torch::Tensor& scalars) {
+    const torch::Tensor x = torch::relu(cell0((scalars - mean) * scale));
+    return worth(torch::relu(cell1(x))).squeeze(-1);
+  }
+
+  torch::nn::Linear cell0, cell1, worth;
+  torch::Tensor mean, scale;
+};
+TORCH_MODULE(ContinuationModule);
+
 torch::Tensor toDevice(const std::vector<float>& values, at::IntArrayRef shape, const torch::Device& device) {
   return torch::from_blob(const_cast<float*>(values.data()), shape, torch::kFloat32).to(device);
 }
@@ -80,6 +102,16 @@ struct LightRows {
     formula = toDevice(b.formula, {count, groups}, device);
     rms = toDevice(b.rms, {count, groups}, device);
     probability = toDevice(b.probability, {count, groups}, device);
+  }
+};
+
+struct ContinuationRows {
+  torch::Tensor scalars, target;
+
+  ContinuationRows(const ContinuationBatch& b, const torch::Device& device) {
+    const auto count = int64_t(b.count);
+    scalars = toDevice(b.scalars, {count, kContinuationScalars}, device);
+    target = toDevice(b.target, {count}, device);
   }
 };
 
@@ -141,9 +173,12 @@ class TorchLearner : public Learner {
       : m_device(chooseDevice(config.device)), m_processes(processes), m_module(make(config)) {
     m_module->to(m_device);
     m_lights->to(m_device);
+    m_continuations->to(m_device);
     m_adam = std::make_unique<torch::optim::Adam>(m_module->parameters(), torch::optim::AdamOptions(1e-3));
     m_lightAdam =
         std::make_unique<torch::optim::Adam>(m_lights->parameters(), torch::optim::AdamOptions(1e-3));
+    m_continuationAdam =
+        std::make_unique<torch::optim::Adam>(m_continuations->parameters(), torch::optim::AdamOptions(1e-3));
     if (processes.count > 1) join();
   }
 
@@ -154,6 +189,13 @@ class TorchLearner : public Learner {
     const Rows rows(batch, m_device);
     m_module->mean.copy_(rows.scalars.mean(0));
     m_module->scale.copy_(1 / rows.scalars.std(0).clamp_min(0.1));
+  }
+
+  void standardize(const ContinuationBatch& batch) override {
+    const torch::NoGradGuard guard;
+    const ContinuationRows rows(batch, m_device);
+    m_continuations->mean.copy_(rows.scalars.mean(0));
+    m_continuations->scale.copy_(1 / rows.scalars.std(0).clamp_min(0.1));
   }
 
   double step(const DirectionBatch& batch, Loss loss, double learningRate) override {
@@ -170,6 +212,14 @@ class TorchLearner : public Learner {
     return descend(*m_lights, *m_lightAdam, torch::log(moment).mean(), learningRate);
   }
 
+  double step(const ContinuationBatch& batch, double learningRate) override {
+    const ContinuationRows rows(batch, m_device);
+    // The worth is the root of what the network corrects.
+    const torch::Tensor error = 0.5 * (m_continuations(rows.scalars) - rows.target);
+    const torch::Tensor cost = torch::cosh(error.clamp(-kLargestError, kLargestError)).mean();
+    return descend(*m_continuations, *m_continuationAdam, cost, learningRate);
+  }
+
   std::vector<float> predict(const DirectionBatch& batch) override {
     const torch::NoGradGuard guard;
     const Rows rows(batch, m_device);
@@ -180,6 +230,11 @@ class TorchLearner : public Learner {
     const torch::NoGradGuard guard;
     const LightRows rows(batch, m_device);
     return toTensor("", m_lights(rows.pairs, rows.formula)).values;
+  }
+
+  std::vector<float> predict(const ContinuationBatch& batch) override {
+    const torch::NoGradGuard guard;
+    return toTensor("", m_continuations(ContinuationRows(batch, m_device).scalars)).values;
   }
 
   std::vector<Tensor> tensors() const override {
@@ -196,19 +251,31 @@ class TorchLearner : public Learner {
             toTensor("lights.1.weight", m_lights->layer1->weight),
             toTensor("lights.1.bias", m_lights->layer1->bias),
             toTensor("lights.2.weight", m_lights->layer2->weight),
-            toTensor("lights.2.bias", m_lights->layer2->bias)};
+            toTensor("lights.2.bias", m_lights->layer2->bias),
+            toTensor("continuations.cell.mean", m_continuations->mean),
+            toTensor("continuations.cell.scale", m_continuations->scale),
+            toTensor("continuations.cell.0.weight", m_continuations->cell0->weight),
+            toTensor("continuations.cell.0.bias", m_continuations->cell0->bias),
+            toTensor("continuations.cell.1.weight", m_continuations->cell1->weight),
+            toTensor("continuations.cell.1.bias", m_continuations->cell1->bias),
+            toTensor("continuations.worth.weight", m_continuations->worth->weight),
+            toTensor("continuations.worth.bias", m_continuations->worth->bias)};
   }
 
   std::string state() const override {
-    torch::serialize::OutputArchive archive, module, adam, lights, lightAdam;
+    torch::serialize::OutputArchive archive, module, adam, lights, lightAdam, continuations, continuationAdam;
     m_module->save(module);
     m_adam->save(adam);
     m_lights->save(lights);
     m_lightAdam->save(lightAdam);
+    m_continuations->save(continuations);
+    m_continuationAdam->save(continuationAdam);
     archive.write("module", module);
     archive.write("adam", adam);
     archive.write("lights", lights);
     archive.write("lightAdam", lightAdam);
+    archive.write("continuations", continuations);
+    archive.write("continuationAdam", continuationAdam);
     std::ostringstream stream;
     archive.save_to(stream);
     return stream.str();
@@ -216,16 +283,20 @@ class TorchLearner : public Learner {
 
   void restore(const std::string& state) override {
     std::istringstream stream(state);
-    torch::serialize::InputArchive archive, module, adam, lights, lightAdam;
+    torch::serialize::InputArchive archive, module, adam, lights, lightAdam, continuations, continuationAdam;
     archive.load_from(stream, m_device);
     archive.read("module", module);
     archive.read("adam", adam);
     archive.read("lights", lights);
     archive.read("lightAdam", lightAdam);
+    archive.read("continuations", continuations);
+    archive.read("continuationAdam", continuationAdam);
     m_module->load(module);
     m_adam->load(adam);
     m_lights->load(lights);
     m_lightAdam->load(lightAdam);
+    m_continuations->load(continuations);
+    m_continuationAdam->load(continuationAdam);
   }
 
   std::string agree(const std::string& text) override {
@@ -313,7 +384,8 @@ class TorchLearner : public Learner {
   Processes m_processes;
   DirectionModule m_module;
   LightModule m_lights;
-  std::unique_ptr<torch::optim::Adam> m_adam, m_lightAdam;
+  ContinuationModule m_continuations;
+  std::unique_ptr<torch::optim::Adam> m_adam, m_lightAdam, m_continuationAdam;
 };
 
 }  // namespace

@@ -132,4 +132,29 @@ void ExamplePool::draw(uint64_t seed, uint64_t step, size_t count, LightBatch& b
   });
 }
 
+void ExamplePool::draw(uint64_t seed, uint64_t step, size_t count, double shiftProbability,
+                       ContinuationBatch& batch) const {
+  batch.count = count;
+  batch.scalars.resize(count * kContinuationScalars);
+  batch.target.resize(count);
+  const Random stream = Random(seed).fork(fmt::format("continuations of step {}", step));
+  tbb::parallel_for(size_t(0), count, [&](size_t row) {
+    Random random = stream.fork(fmt::format("{}", row));
+    const auto [viewIndex, example] = random.pick(std::span(m_usable));
+    const ViewExamples& view = m_views[viewIndex];
+    const int variant = random.integer(0, kInputVariants - 1);
+    const bool shift = random.chance(shiftProbability);
+    std::array<CellStatistics, kCellLevels> storage;
+    ContinuationFeatures features;
+    computeFeatures(view.chain(variant, example, shift, storage), features);
+    std::copy(features.scalars.begin(), features.scalars.end(), &batch.scalars[row * kContinuationScalars]);
+    // Where the formula knows of nothing it is not corrected.
+    const Continuation& formula = features.formula;
+    const float* outgoing = &view.outgoing[3 * example];
+    const double known = double(outgoing[1]) * outgoing[1] / std::max(double(outgoing[2]), 0.5);
+    const double ratio = formula.square > 0 ? known * formula.rays / formula.square : 1;
+    batch.target[row] = float(std::log(std::clamp(ratio, 1e-6, 1e6)));
+  });
+}
+
 }  // namespace odis::learn

@@ -6,6 +6,7 @@
 
 #include "learn/train/examples.h"
 #include "odis/features/cell_features.h"
+#include "odis/features/continuation_features.h"
 #include "odis/features/light_features.h"
 
 namespace odis::learn {
@@ -31,6 +32,13 @@ struct LightBatch {
   std::vector<float> probability;  // [count][group]: if nothing is learned
 };
 
+// The same for a network that says what going on is worth.
+struct ContinuationBatch {
+  size_t count = 0;
+  std::vector<float> scalars;  // [count][kContinuationScalars]
+  std::vector<float> target;   // [count]: the logarithm of mean square over rays, over the formula's
+};
+
 class ExamplePool {
  public:
   // Keeps what it makes of shards in this folder, to find it there again.
@@ -50,6 +58,9 @@ class ExamplePool {
   void draw(uint64_t seed, uint64_t step, size_t count, double shiftProbability, DirectionBatch& batch) const;
   // The same of examples with lights, of which there must be some.
   void draw(uint64_t seed, uint64_t step, size_t count, LightBatch& batch) const;
+  // The same of all examples.
+  void draw(uint64_t seed, uint64_t step, size_t count, double shiftProbability,
+            ContinuationBatch& batch) const;
 
  private:
   std::vector<ViewExamples> load(const std::string& shardFile, std::string& origin) const;

@@ -11,7 +11,8 @@ namespace odis::learn {
 // The mean over the steps since the row before.
 struct LossRow {
   int step = 0;
-  double loss = 0, lights = 0;  // of maps, and of choices among lights
+  double loss = 0, lights = 0,
+         continuations = 0;  // of maps, of choices among lights, of what going on is worth
   double learningRate = 0;
   double seconds = 0;  // since the training began, pauses left out
 };

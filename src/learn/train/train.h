@@ -14,7 +14,7 @@ class TrainObserver {
   virtual ~TrainObserver() = default;
   virtual void waiting(size_t /*shards*/, int /*expected*/) {}
   virtual void loaded(size_t /*shards*/, size_t /*examples*/) {}
-  virtual void step(int /*step*/, int /*of*/, double /*loss*/, double /*lights*/) {}
+  virtual void step(int /*of*/, const LossRow& /*row*/) {}
   virtual void validated(const ValidationRow& /*row*/) {}
   virtual bool cancelled() const { return false; }
 };

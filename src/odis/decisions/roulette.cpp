@@ -9,9 +9,6 @@ namespace {
 
 // How many samples' worth of the coarser level stands behind a cell's own.
 constexpr double kPriorSamples = 50;
-// Guided, stratified samples vary less than the pilot's single ones, so that roulette's own noise weighs more
-// beside theirs: what survival is multiplied by.
-constexpr double kCaution = 3;
 // Besides what its first vertex samples, a path has its camera ray and that vertex's shadow ray.
 constexpr double kFirstRays = 2;
 // However well a cell's mean stands in for its vertices, this share of their mean square is left to chance: a cell
@@ -48,6 +45,7 @@ void weighContinuations(std::vector<Cell>& result, std::span<const CellStatistic
                         const ContinuationModel& model, const SelectionTotals& totals, bool controlVariate) {
   const double rays = totals.rays + kFirstRays * totals.count;
   const double exchange = totals.variance > 0 ? std::sqrt(rays / totals.variance) : 0;
+  const double factor = model.caution() * exchange;
   std::vector<Continuation> continuations(cells.size());
   forEachFromCoarse(cells, [&](size_t c) {
     const uint32_t parent = cells[c].parent;
@@ -60,7 +58,7 @@ void weighContinuations(std::vector<Cell>& result, std::span<const CellStatistic
     result[c].expected = mean * float(share);
     const double square = next.square - (2 - share) * share * known;
     const double worth =
-        kCaution * exchange * std::sqrt(std::max(square, kLeastVariance * next.square) / next.rays);
+        factor * std::sqrt(next.correction * std::max(square, kLeastVariance * next.square) / next.rays);
     result[c].worth = worth >= 0 ? float(std::min(worth, 1e30)) : INFINITY;
   });
 }

@@ -16,6 +16,7 @@ struct Continuation {
   std::array<double, 3> mean{};  // radiance: red, green, blue
   double square = 0;             // mean of the squared luminance
   double rays = 1;               // traced for it on average, shadow rays included
+  double correction = 1;         // by how much square / rays is off, as far as known: of the worth alone
 };
 
 // From a cell's statistics to its continuation: the interface behind which formula and network stand side by side.
@@ -25,6 +26,9 @@ class ContinuationModel {
   // Given the statistics of the cell and its ancestors, and its parent's continuation (null for the coarsest level). Called for
   // parents before their children; thread-safe.
   virtual Continuation predict(const CellChain& chain, const Continuation* parent) const = 0;
+  // Guided, stratified samples vary less than the pilot's single ones, so that roulette's own noise weighs more beside
+  // theirs: what survival is multiplied by.
+  virtual double caution() const { return 3; }
 };
 
 // The cell's means, shrunk towards its parent's by how many samples the cell has.

@@ -1,5 +1,6 @@
 #include "odis/networks.h"
 
+#include "odis/network/continuation_network.h"
 #include "odis/network/direction_network.h"
 #include "odis/network/light_network.h"
 
@@ -12,6 +13,8 @@ Networks make(const Weights& weights) {
   if (weights.contains("directions.blend.weight"))
     networks.directions = std::make_shared<DirectionNetwork>(weights);
   if (weights.contains("lights.0.weight")) networks.lights = std::make_shared<LightNetwork>(weights);
+  if (weights.contains("continuations.worth.weight"))
+    networks.continuations = std::make_shared<ContinuationNetwork>(weights);
   return networks;
 }
 

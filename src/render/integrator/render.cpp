@@ -223,7 +223,7 @@ class Renderer {
     settings.guide = &m_guide;
     settings.learnedLights = m_options.lights != LightChoiceKind::hierarchy;
     settings.shadowRoulette = m_options.shadowRays == ShadowRayKind::roulette;
-    settings.learnedRoulette = m_options.roulette == RouletteKind::learned;
+    settings.learnedRoulette = m_options.roulette != RouletteKind::throughput;
   }
 
   // What guides are built with: the scene's lights, and the networks where they are asked for.
@@ -236,6 +236,8 @@ class Renderer {
     const Networks& networks = m_options.networks ? *m_options.networks : builtInNetworks();
     if (m_options.guide == GuideKind::network && !options.model) options.model = networks.directions;
     if (m_options.lights == LightChoiceKind::network && !options.lights) options.lights = networks.lights;
+    if (m_options.roulette == RouletteKind::network && !options.continuations)
+      options.continuations = networks.continuations;
     return options;
   }
 

@@ -20,7 +20,7 @@ namespace odis::render {
 enum class IntegratorKind { path, odis, ppg, openpgl, restir };
 enum class SamplerKind { sobol, independent };
 enum class GuideKind { network, histogram, oracle };
-enum class RouletteKind { throughput, learned };
+enum class RouletteKind { throughput, formula, network };
 enum class LightChoiceKind { hierarchy, formula, network };
 enum class ShadowRayKind { all, roulette };
 
@@ -43,7 +43,7 @@ struct RenderOptions {
   // odis only
   GuideKind guide = GuideKind::network;
   std::shared_ptr<const Networks> networks;            // null: those that come with the library
-  RouletteKind roulette = RouletteKind::learned;       // of the guided samples
+  RouletteKind roulette = RouletteKind::formula;       // of the guided samples
   LightChoiceKind lights = LightChoiceKind::network;   // likewise
   ShadowRayKind shadowRays = ShadowRayKind::roulette;  // likewise
   // Guided samples per pixel that the guide learns from, too: it is rebuilt after 1, 3, 7, ... if as many are left.
