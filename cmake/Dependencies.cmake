@@ -23,27 +23,31 @@ add_library(zstd INTERFACE)
 target_include_directories(zstd SYSTEM INTERFACE ${ZSTD_INCLUDE_DIR})
 target_link_libraries(zstd INTERFACE ${ZSTD_LIBRARY})
 
-# Optional, for training. Debian's package for CMake asks for CUDA's and Python's where there is none, so its libraries
-# are looked for one by one; of PyTorch's own (-DTorch_DIR=...) the package is used.
+# Optional, for training: Debian's libtorch, or that of a PyTorch wheel. Packages for CMake of either ask for CUDA's compiler or
+# Python where nothing of them is needed, so the libraries are looked for one by one.
 option(ODIS_TRAIN "Build `odis train`, where libtorch is found" ON)
-if(ODIS_TRAIN AND Torch_DIR)
-  find_package(Torch REQUIRED)
-  add_library(torch_learn INTERFACE)
-  target_link_libraries(torch_learn INTERFACE torch)
-elseif(ODIS_TRAIN)
-  find_path(TORCH_INCLUDE_DIR torch/csrc/api/include/torch/torch.h)
-  find_library(TORCH_CPU_LIBRARY torch_cpu)
-  find_library(TORCH_LIBRARY torch)
-  find_library(C10_LIBRARY c10)
-  mark_as_advanced(TORCH_INCLUDE_DIR TORCH_CPU_LIBRARY TORCH_LIBRARY C10_LIBRARY)
-  if(TORCH_INCLUDE_DIR AND TORCH_CPU_LIBRARY AND TORCH_LIBRARY AND C10_LIBRARY)
+set(ODIS_TORCH "" CACHE PATH "The folder of a PyTorch wheel (.../site-packages/torch), in the place of the system's libtorch")
+if(ODIS_TRAIN)
+  find_path(TORCH_INCLUDE_DIR torch/csrc/api/include/torch/torch.h HINTS ${ODIS_TORCH}/include)
+  find_library(TORCH_CPU_LIBRARY torch_cpu HINTS ${ODIS_TORCH}/lib)
+  find_library(C10_LIBRARY c10 HINTS ${ODIS_TORCH}/lib)
+  find_library(TORCH_CUDA_LIBRARY torch_cuda HINTS ${ODIS_TORCH}/lib)
+  find_library(C10_CUDA_LIBRARY c10_cuda HINTS ${ODIS_TORCH}/lib)
+  mark_as_advanced(TORCH_INCLUDE_DIR TORCH_CPU_LIBRARY C10_LIBRARY TORCH_CUDA_LIBRARY C10_CUDA_LIBRARY)
+  if(TORCH_INCLUDE_DIR AND TORCH_CPU_LIBRARY AND C10_LIBRARY)
     add_library(torch_learn INTERFACE)
     target_include_directories(torch_learn SYSTEM INTERFACE
       ${TORCH_INCLUDE_DIR} ${TORCH_INCLUDE_DIR}/torch/csrc/api/include)
-    target_link_libraries(torch_learn INTERFACE ${TORCH_LIBRARY} ${TORCH_CPU_LIBRARY} ${C10_LIBRARY})
+    target_link_libraries(torch_learn INTERFACE ${TORCH_CPU_LIBRARY} ${C10_LIBRARY})
+    # Nothing refers to these; they announce themselves when they are loaded.
+    if(TORCH_CUDA_LIBRARY AND C10_CUDA_LIBRARY)
+      target_link_libraries(torch_learn INTERFACE
+        -Wl,--no-as-needed ${TORCH_CUDA_LIBRARY} ${C10_CUDA_LIBRARY} -Wl,--as-needed)
+    endif()
   endif()
 endif()
-if(TARGET torch_learn)
+# A wheel has a Gloo of its own and none of its headers, which others' need not fit.
+if(TARGET torch_learn AND NOT ODIS_TORCH)
   find_path(GLOO_INCLUDE_DIR gloo/rendezvous/store.h)
   mark_as_advanced(GLOO_INCLUDE_DIR)
   if(GLOO_INCLUDE_DIR)
