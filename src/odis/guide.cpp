@@ -47,14 +47,13 @@ void Guide::find(std::span<const Place> places, std::span<const Cell*> cells) co
     keys.push_back(m_data->grid.key(place.position, place.normal, 0));
     m_data->index.prefetch(keys.back());
   }
-  uint32_t finest = kNoCell;
   for (size_t i = 0; i < places.size(); ++i) {
-    // Neighbours in the list are often neighbours in the scene.
-    if (i > 0 && keys[i] == keys[i - 1] && finest != kNoCell) {
+    // Neighbours in the list are often neighbours in the scene; places with the same key share all coarser cells, too.
+    if (i > 0 && keys[i] == keys[i - 1]) {
       cells[i] = cells[i - 1];
       continue;
     }
-    finest = m_data->index.find(keys[i]);
+    const uint32_t finest = m_data->index.find(keys[i]);
     cells[i] = finest != kNoCell ? &m_data->cells[finest] : find(places[i].position, places[i].normal);
   }
 }
