@@ -10,7 +10,7 @@ namespace odis {
 namespace {
 
 // Selection probabilities are made from about so many vertices: one pixel of `stride`, all of its path.
-constexpr size_t kSelectionVertices = 200000;
+constexpr size_t kSelectionVertices = 50000;
 bool isChosen(const PilotVertex& vertex, uint32_t stride) {
   return ((vertex.pixel * 0x9e3779b9u) >> 8) % stride == 0;
 }
