@@ -43,6 +43,17 @@ if(ODIS_TRAIN)
     if(TORCH_CUDA_LIBRARY AND C10_CUDA_LIBRARY)
       target_link_libraries(torch_learn INTERFACE
         -Wl,--no-as-needed ${TORCH_CUDA_LIBRARY} ${C10_CUDA_LIBRARY} -Wl,--as-needed)
+      # For several processes on CUDA: headers alone, which a wheel has beside it or CUDA's toolkit brings; the library is
+      # libtorch's own.
+      file(GLOB NVIDIA_INCLUDE_DIRS ${ODIS_TORCH}/../nvidia/*/include)
+      find_path(NCCL_INCLUDE_DIR nccl.h HINTS ${NVIDIA_INCLUDE_DIRS})
+      find_path(CUDA_RUNTIME_INCLUDE_DIR cuda_runtime_api.h HINTS ${NVIDIA_INCLUDE_DIRS} /usr/local/cuda/include)
+      mark_as_advanced(NCCL_INCLUDE_DIR CUDA_RUNTIME_INCLUDE_DIR)
+      if(NCCL_INCLUDE_DIR AND CUDA_RUNTIME_INCLUDE_DIR)
+        target_include_directories(torch_learn SYSTEM INTERFACE ${NCCL_INCLUDE_DIR} ${CUDA_RUNTIME_INCLUDE_DIR})
+        # CUDA_NO_HALF: no type ::half, which is that of Imath here.
+        target_compile_definitions(torch_learn INTERFACE ODIS_NCCL USE_C10D_NCCL CUDA_NO_HALF)
+      endif()
     endif()
   endif()
 endif()

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <filesystem>
 #include <fstream>
+#include <numeric>
 #include <sstream>
 #include <thread>
 
@@ -262,6 +263,29 @@ TEST_F(Training, LowersEveryLoss) {
       -0.2);  // the best choice has zero; a tenth that is not learned costs a little, or gains where it helps
 }
 
+TEST_F(Training, MixedPrecisionLearnsNearlyTheSame) {
+  if (!canTrain()) GTEST_SKIP() << "built without libtorch";
+  ExamplePool pool(config().examples);
+  pool.add({shardFile(config().data, shardsIn(config().data).front())});
+  DirectionBatch batch;
+  pool.draw(1, 0, 256, 0.1, batch);
+  std::vector<double> losses[2];
+  for (const Precision precision : {Precision::single, Precision::mixed}) {
+    TrainConfig c = config();
+    c.precision = precision;
+    const auto learner = makeLearner(c, {});
+    learner->standardize(batch);
+    for (int step = 0; step < 40; ++step)
+      losses[int(precision)].push_back(learner->step(batch, Loss::crossEntropy, 5e-3));
+    // Maps and losses are computed in single precision: a distribution sums to one.
+    const std::vector<float> maps = learner->predict(batch);
+    EXPECT_NEAR(std::accumulate(maps.begin(), maps.begin() + kMapTexels, 0.0), 1, 1e-5);
+  }
+  EXPECT_NE(losses[0], losses[1]);
+  for (size_t i = 0; i < losses[0].size(); ++i) EXPECT_NEAR(losses[0][i], losses[1][i], 0.01) << i;
+  EXPECT_LT(losses[1].back(), losses[1].front());
+}
+
 TEST_F(Training, GoesOnAsIfNothingHadHappened) {
   if (!canTrain()) GTEST_SKIP() << "built without libtorch";
   TrainObserver patient;
@@ -411,6 +435,8 @@ TEST(TrainConfig, MistakesAreNamed) {
             std::string::npos);
   EXPECT_NE(errorOf(R"({"data": "d", "batch": 0})").find("batch: found 0"), std::string::npos);
   EXPECT_NE(errorOf(R"({"data": "d", "loss": "l3"})").find("loss: found l3"), std::string::npos);
+  EXPECT_NE(errorOf(R"({"data": "d", "precision": "half"})").find("expected one of single, mixed"),
+            std::string::npos);
   EXPECT_NE(errorOf(R"({"data": 7})").find("data: expected a text"), std::string::npos);
   std::ofstream(path) << R"({"data": "shards", "examples": "/elsewhere"})";
   EXPECT_EQ(readConfig(path).data, (fs::path(path).parent_path() / "shards").lexically_normal().string());

@@ -3,10 +3,17 @@
 #include <torch/torch.h>
 #ifdef ODIS_GLOO
 #include <torch/csrc/distributed/c10d/ProcessGroupGloo.hpp>
+#endif
+#ifdef ODIS_NCCL
+#include <torch/csrc/distributed/c10d/ProcessGroupNCCL.hpp>
+#endif
+#if defined(ODIS_GLOO) || defined(ODIS_NCCL)
+#define ODIS_PROCESSES
 #include <torch/csrc/distributed/c10d/TCPStore.hpp>
 #endif
 
 #include <cstdlib>
+#include <mutex>
 #include <sstream>
 #include <thread>
 
@@ -29,10 +36,17 @@ constexpr double kLearnedShare = 0.9;
 constexpr int64_t kContinuationWidth = 32;
 constexpr double kLargestError = 6;
 
+// A layer in a precision of its own, its result in that of the losses: what autocast does, the same in every libtorch.
+torch::Tensor through(const torch::nn::Linear& layer, const torch::Tensor& x, torch::Dtype precision) {
+  return torch::linear(x.to(precision), layer->weight.to(precision), layer->bias.to(precision))
+      .to(torch::kFloat32);
+}
+
 // The same as DirectionNetwork (odis/network).
 struct DirectionModuleImpl : torch::nn::Module {
-  explicit DirectionModuleImpl(int64_t hidden)
-      : cell0(register_module("cell0", torch::nn::Linear(kCellScalars, hidden))),
+  DirectionModuleImpl(int64_t hidden, torch::Dtype dtype)
+      : precision(dtype),
+        cell0(register_module("cell0", torch::nn::Linear(kCellScalars, hidden))),
         cell1(register_module("cell1", torch::nn::Linear(hidden, hidden))),
         blend(register_module("blend", torch::nn::Linear(hidden, kBasisMaps))),
         mean(register_buffer("mean", torch::zeros({kCellScalars}))),
@@ -40,12 +54,13 @@ struct DirectionModuleImpl : torch::nn::Module {
 
   torch::Tensor forward(const torch::Tensor& scalars, const torch::Tensor& basis,
                         const torch::Tensor& there) {
-    torch::Tensor x = torch::relu(cell0((scalars - mean) * scale));
-    x = torch::relu(cell1(x));
-    const torch::Tensor shares = blend(x).masked_fill(there < 0.5, -INFINITY).softmax(-1);
+    torch::Tensor x = torch::relu(through(cell0, (scalars - mean) * scale, precision));
+    x = torch::relu(through(cell1, x, precision));
+    const torch::Tensor shares = through(blend, x, precision).masked_fill(there < 0.5, -INFINITY).softmax(-1);
     return torch::bmm(shares.unsqueeze(1), basis).squeeze(1);
   }
 
+  torch::Dtype precision;
   torch::nn::Linear cell0, cell1, blend;
   torch::Tensor mean, scale;
 };
@@ -53,36 +68,40 @@ TORCH_MODULE(DirectionModule);
 
 // The same as LightNetwork.
 struct LightModuleImpl : torch::nn::Module {
-  LightModuleImpl()
-      : layer0(register_module("layer0", torch::nn::Linear(kPairFeatures, kPairWidth))),
+  explicit LightModuleImpl(torch::Dtype dtype)
+      : precision(dtype),
+        layer0(register_module("layer0", torch::nn::Linear(kPairFeatures, kPairWidth))),
         layer1(register_module("layer1", torch::nn::Linear(kPairWidth, kPairWidth))),
         layer2(register_module("layer2", torch::nn::Linear(kPairWidth, 1))) {}
 
   torch::Tensor forward(const torch::Tensor& pairs, const torch::Tensor& formula) {
-    torch::Tensor x = torch::relu(layer0(pairs));
-    x = layer2(torch::relu(layer1(x))).squeeze(-1);
+    torch::Tensor x = torch::relu(through(layer0, pairs, precision));
+    x = through(layer2, torch::relu(through(layer1, x, precision)), precision).squeeze(-1);
     // Groups that are not there have no share: the logarithm of zero is minus infinity.
     return (x + torch::log(formula)).softmax(-1);
   }
 
+  torch::Dtype precision;
   torch::nn::Linear layer0, layer1, layer2;
 };
 TORCH_MODULE(LightModule);
 
 // The same as ContinuationNetwork.
 struct ContinuationModuleImpl : torch::nn::Module {
-  ContinuationModuleImpl()
-      : cell0(register_module("cell0", torch::nn::Linear(kContinuationScalars, kContinuationWidth))),
+  explicit ContinuationModuleImpl(torch::Dtype dtype)
+      : precision(dtype),
+        cell0(register_module("cell0", torch::nn::Linear(kContinuationScalars, kContinuationWidth))),
         cell1(register_module("cell1", torch::nn::Linear(kContinuationWidth, kContinuationWidth))),
         worth(register_module("worth", torch::nn::Linear(kContinuationWidth, 1))),
         mean(register_buffer("mean", torch::zeros({kContinuationScalars}))),
         scale(register_buffer("scale", torch::ones({kContinuationScalars}))) {}
 
   torch::Tensor forward(const torch::Tensor& scalars) {
-    const torch::Tensor x = torch::relu(cell0((scalars - mean) * scale));
-    return worth(torch::relu(cell1(x))).squeeze(-1);
+    const torch::Tensor x = torch::relu(through(cell0, (scalars - mean) * scale, precision));
+    return through(worth, torch::relu(through(cell1, x, precision)), precision).squeeze(-1);
   }
 
+  torch::Dtype precision;
   torch::nn::Linear cell0, cell1, worth;
   torch::Tensor mean, scale;
 };
@@ -157,7 +176,11 @@ torch::Device chooseDevice(const std::string& name) {
   const bool cuda = torch::cuda::is_available();
   if (name == "cuda" && !cuda)
     throw TrainError("there is no CUDA device that libtorch can use, expected \"cpu\"");
-  return cuda && name != "cpu" ? torch::kCUDA : torch::kCPU;
+  if (!cuda || name == "cpu") return torch::kCPU;
+  // As torchrun numbers the processes of a machine.
+  const char* local = std::getenv("LOCAL_RANK");
+  const int index = local ? std::atoi(local) : 0;
+  return {torch::kCUDA, torch::DeviceIndex(index % int(torch::cuda::device_count()))};
 }
 
 Tensor toTensor(const std::string& name, const torch::Tensor& tensor) {
@@ -167,18 +190,36 @@ Tensor toTensor(const std::string& name, const torch::Tensor& tensor) {
   return result;
 }
 
+struct Modules {
+  DirectionModule directions;
+  LightModule lights;
+  ContinuationModule continuations;
+};
+
+// The same in every process, whatever it drew before. Processes may be threads, and the generator is one for all.
+Modules makeModules(const TrainConfig& config) {
+  static std::mutex mutex;
+  const std::lock_guard lock(mutex);
+  torch::manual_seed(uint64_t(config.seed));
+  // Small layers: more threads than these would mostly wait for each other.
+  at::set_num_threads(int(std::clamp(std::thread::hardware_concurrency() / 2, 1u, 4u)));
+  const torch::Dtype precision = config.precision == Precision::mixed ? torch::kBFloat16 : torch::kFloat32;
+  return {DirectionModule(config.hidden, precision), LightModule(precision), ContinuationModule(precision)};
+}
+
 class TorchLearner : public Learner {
  public:
   TorchLearner(const TrainConfig& config, const Processes& processes)
-      : m_device(chooseDevice(config.device)), m_processes(processes), m_module(make(config)) {
-    m_module->to(m_device);
-    m_lights->to(m_device);
-    m_continuations->to(m_device);
-    m_adam = std::make_unique<torch::optim::Adam>(m_module->parameters(), torch::optim::AdamOptions(1e-3));
+      : m_device(chooseDevice(config.device)), m_processes(processes), m_modules(makeModules(config)) {
+    m_modules.directions->to(m_device);
+    m_modules.lights->to(m_device);
+    m_modules.continuations->to(m_device);
+    m_adam = std::make_unique<torch::optim::Adam>(m_modules.directions->parameters(),
+                                                  torch::optim::AdamOptions(1e-3));
     m_lightAdam =
-        std::make_unique<torch::optim::Adam>(m_lights->parameters(), torch::optim::AdamOptions(1e-3));
-    m_continuationAdam =
-        std::make_unique<torch::optim::Adam>(m_continuations->parameters(), torch::optim::AdamOptions(1e-3));
+        std::make_unique<torch::optim::Adam>(m_modules.lights->parameters(), torch::optim::AdamOptions(1e-3));
+    m_continuationAdam = std::make_unique<torch::optim::Adam>(m_modules.continuations->parameters(),
+                                                              torch::optim::AdamOptions(1e-3));
     if (processes.count > 1) join();
   }
 
@@ -187,88 +228,89 @@ class TorchLearner : public Learner {
   void standardize(const DirectionBatch& batch) override {
     const torch::NoGradGuard guard;
     const Rows rows(batch, m_device);
-    m_module->mean.copy_(rows.scalars.mean(0));
-    m_module->scale.copy_(1 / rows.scalars.std(0).clamp_min(0.1));
+    m_modules.directions->mean.copy_(rows.scalars.mean(0));
+    m_modules.directions->scale.copy_(1 / rows.scalars.std(0).clamp_min(0.1));
   }
 
   void standardize(const ContinuationBatch& batch) override {
     const torch::NoGradGuard guard;
     const ContinuationRows rows(batch, m_device);
-    m_continuations->mean.copy_(rows.scalars.mean(0));
-    m_continuations->scale.copy_(1 / rows.scalars.std(0).clamp_min(0.1));
+    m_modules.continuations->mean.copy_(rows.scalars.mean(0));
+    m_modules.continuations->scale.copy_(1 / rows.scalars.std(0).clamp_min(0.1));
   }
 
   double step(const DirectionBatch& batch, Loss loss, double learningRate) override {
     const Rows rows(batch, m_device);
-    return descend(*m_module, *m_adam, lossOf(loss, m_module(rows.scalars, rows.basis, rows.there), rows),
+    return descend(*m_modules.directions, *m_adam,
+                   lossOf(loss, m_modules.directions(rows.scalars, rows.basis, rows.there), rows),
                    learningRate);
   }
 
   double step(const LightBatch& batch, double learningRate) override {
     const LightRows rows(batch, m_device);
     const torch::Tensor mixture =
-        kLearnedShare * m_lights(rows.pairs, rows.formula) + (1 - kLearnedShare) * rows.probability;
+        kLearnedShare * m_modules.lights(rows.pairs, rows.formula) + (1 - kLearnedShare) * rows.probability;
     const torch::Tensor moment = (rows.rms.square() / mixture.clamp_min(1e-9)).sum(-1);
-    return descend(*m_lights, *m_lightAdam, torch::log(moment).mean(), learningRate);
+    return descend(*m_modules.lights, *m_lightAdam, torch::log(moment).mean(), learningRate);
   }
 
   double step(const ContinuationBatch& batch, double learningRate) override {
     const ContinuationRows rows(batch, m_device);
     // The worth is the root of what the network corrects.
-    const torch::Tensor error = 0.5 * (m_continuations(rows.scalars) - rows.target);
+    const torch::Tensor error = 0.5 * (m_modules.continuations(rows.scalars) - rows.target);
     const torch::Tensor cost = torch::cosh(error.clamp(-kLargestError, kLargestError)).mean();
-    return descend(*m_continuations, *m_continuationAdam, cost, learningRate);
+    return descend(*m_modules.continuations, *m_continuationAdam, cost, learningRate);
   }
 
   std::vector<float> predict(const DirectionBatch& batch) override {
     const torch::NoGradGuard guard;
     const Rows rows(batch, m_device);
-    return toTensor("", m_module(rows.scalars, rows.basis, rows.there)).values;
+    return toTensor("", m_modules.directions(rows.scalars, rows.basis, rows.there)).values;
   }
 
   std::vector<float> predict(const LightBatch& batch) override {
     const torch::NoGradGuard guard;
     const LightRows rows(batch, m_device);
-    return toTensor("", m_lights(rows.pairs, rows.formula)).values;
+    return toTensor("", m_modules.lights(rows.pairs, rows.formula)).values;
   }
 
   std::vector<float> predict(const ContinuationBatch& batch) override {
     const torch::NoGradGuard guard;
-    return toTensor("", m_continuations(ContinuationRows(batch, m_device).scalars)).values;
+    return toTensor("", m_modules.continuations(ContinuationRows(batch, m_device).scalars)).values;
   }
 
   std::vector<Tensor> tensors() const override {
-    return {toTensor("directions.cell.mean", m_module->mean),
-            toTensor("directions.cell.scale", m_module->scale),
-            toTensor("directions.cell.0.weight", m_module->cell0->weight),
-            toTensor("directions.cell.0.bias", m_module->cell0->bias),
-            toTensor("directions.cell.1.weight", m_module->cell1->weight),
-            toTensor("directions.cell.1.bias", m_module->cell1->bias),
-            toTensor("directions.blend.weight", m_module->blend->weight),
-            toTensor("directions.blend.bias", m_module->blend->bias),
-            toTensor("lights.0.weight", m_lights->layer0->weight),
-            toTensor("lights.0.bias", m_lights->layer0->bias),
-            toTensor("lights.1.weight", m_lights->layer1->weight),
-            toTensor("lights.1.bias", m_lights->layer1->bias),
-            toTensor("lights.2.weight", m_lights->layer2->weight),
-            toTensor("lights.2.bias", m_lights->layer2->bias),
-            toTensor("continuations.cell.mean", m_continuations->mean),
-            toTensor("continuations.cell.scale", m_continuations->scale),
-            toTensor("continuations.cell.0.weight", m_continuations->cell0->weight),
-            toTensor("continuations.cell.0.bias", m_continuations->cell0->bias),
-            toTensor("continuations.cell.1.weight", m_continuations->cell1->weight),
-            toTensor("continuations.cell.1.bias", m_continuations->cell1->bias),
-            toTensor("continuations.worth.weight", m_continuations->worth->weight),
-            toTensor("continuations.worth.bias", m_continuations->worth->bias)};
+    return {toTensor("directions.cell.mean", m_modules.directions->mean),
+            toTensor("directions.cell.scale", m_modules.directions->scale),
+            toTensor("directions.cell.0.weight", m_modules.directions->cell0->weight),
+            toTensor("directions.cell.0.bias", m_modules.directions->cell0->bias),
+            toTensor("directions.cell.1.weight", m_modules.directions->cell1->weight),
+            toTensor("directions.cell.1.bias", m_modules.directions->cell1->bias),
+            toTensor("directions.blend.weight", m_modules.directions->blend->weight),
+            toTensor("directions.blend.bias", m_modules.directions->blend->bias),
+            toTensor("lights.0.weight", m_modules.lights->layer0->weight),
+            toTensor("lights.0.bias", m_modules.lights->layer0->bias),
+            toTensor("lights.1.weight", m_modules.lights->layer1->weight),
+            toTensor("lights.1.bias", m_modules.lights->layer1->bias),
+            toTensor("lights.2.weight", m_modules.lights->layer2->weight),
+            toTensor("lights.2.bias", m_modules.lights->layer2->bias),
+            toTensor("continuations.cell.mean", m_modules.continuations->mean),
+            toTensor("continuations.cell.scale", m_modules.continuations->scale),
+            toTensor("continuations.cell.0.weight", m_modules.continuations->cell0->weight),
+            toTensor("continuations.cell.0.bias", m_modules.continuations->cell0->bias),
+            toTensor("continuations.cell.1.weight", m_modules.continuations->cell1->weight),
+            toTensor("continuations.cell.1.bias", m_modules.continuations->cell1->bias),
+            toTensor("continuations.worth.weight", m_modules.continuations->worth->weight),
+            toTensor("continuations.worth.bias", m_modules.continuations->worth->bias)};
   }
 
   std::string state() const override {
     torch::serialize::OutputArchive archive, module, adam, lights, lightAdam, continuations, continuationAdam;
-    m_module->save(module);
+    m_modules.directions->save(module);
     m_adam->save(adam);
-    m_lights->save(lights);
+    m_modules.lights->save(lights);
     m_lightAdam->save(lightAdam);
-    m_continuations->save(continuations);
+    m_modules.continuations->save(continuations);
     m_continuationAdam->save(continuationAdam);
     archive.write("module", module);
     archive.write("adam", adam);
@@ -291,22 +333,21 @@ class TorchLearner : public Learner {
     archive.read("lightAdam", lightAdam);
     archive.read("continuations", continuations);
     archive.read("continuationAdam", continuationAdam);
-    m_module->load(module);
+    m_modules.directions->load(module);
     m_adam->load(adam);
-    m_lights->load(lights);
+    m_modules.lights->load(lights);
     m_lightAdam->load(lightAdam);
-    m_continuations->load(continuations);
+    m_modules.continuations->load(continuations);
     m_continuationAdam->load(continuationAdam);
   }
 
   std::string agree(const std::string& text) override {
     if (m_processes.count == 1) return text;
-    std::vector<torch::Tensor> length{torch::tensor({int64_t(text.size())})};
+    torch::Tensor length = torch::tensor({int64_t(text.size())});
     broadcast(length);
-    torch::Tensor bytes = torch::zeros({length[0].item<int64_t>()}, torch::kUInt8);
+    torch::Tensor bytes = torch::zeros({length.item<int64_t>()}, torch::kUInt8);
     if (m_processes.rank == 0) std::memcpy(bytes.data_ptr(), text.data(), text.size());
-    std::vector<torch::Tensor> all{bytes};
-    if (bytes.numel() > 0) broadcast(all);
+    if (bytes.numel() > 0) broadcast(bytes);
     return {static_cast<const char*>(bytes.data_ptr()), size_t(bytes.numel())};
   }
 
@@ -325,15 +366,7 @@ class TorchLearner : public Learner {
     return mean;
   }
 
-  static DirectionModule make(const TrainConfig& config) {
-    // The same in every process, whatever it drew before.
-    torch::manual_seed(uint64_t(config.seed));
-    // Small layers: more threads than these would mostly wait for each other.
-    at::set_num_threads(int(std::clamp(std::thread::hardware_concurrency() / 2, 1u, 4u)));
-    return DirectionModule(config.hidden);
-  }
-
-#ifdef ODIS_GLOO
+#ifdef ODIS_PROCESSES
   void join() {
     const char* address = std::getenv("MASTER_ADDR");
     const char* port = std::getenv("MASTER_PORT");
@@ -344,23 +377,44 @@ class TorchLearner : public Learner {
       options.port = uint16_t(std::atoi(port));
       options.isServer = m_processes.rank == 0;
       options.numWorkers = size_t(m_processes.count);
-      const auto store = c10::make_intrusive<c10d::TCPStore>(address, options);
-      const auto gloo = c10d::ProcessGroupGloo::Options::create();
-      gloo->devices.push_back(c10d::ProcessGroupGloo::createDefaultDevice());
-      m_group = c10::make_intrusive<c10d::ProcessGroupGloo>(store, m_processes.rank, m_processes.count, gloo);
+      m_group = makeGroup(c10::make_intrusive<c10d::TCPStore>(address, options));
     } catch (const c10::Error& e) {
       throw TrainError(std::string("the processes don't find each other: ") + e.what_without_backtrace());
     }
   }
-  void broadcast(std::vector<torch::Tensor>& tensors) {
-    m_group->broadcast(tensors)->wait();
+  // What libtorch 2 calls a backend was a process group before.
+#if TORCH_VERSION_MAJOR >= 2
+  using Group = c10d::Backend;
+#else
+  using Group = c10d::ProcessGroup;
+#endif
+  // Processes on CUDA talk by NCCL where it is there, others by Gloo.
+  c10::intrusive_ptr<Group> makeGroup(const c10::intrusive_ptr<c10d::Store>& store) {
+#ifdef ODIS_NCCL
+    if (m_device.is_cuda()) {
+      m_talksOn = m_device;
+      return c10::make_intrusive<c10d::ProcessGroupNCCL>(store, m_processes.rank, m_processes.count);
+    }
+#endif
+#ifdef ODIS_GLOO
+    const auto gloo = c10d::ProcessGroupGloo::Options::create();
+    gloo->devices.push_back(c10d::ProcessGroupGloo::createDefaultDevice());
+    return c10::make_intrusive<c10d::ProcessGroupGloo>(store, m_processes.rank, m_processes.count, gloo);
+#else
+    throw TrainError("this odis was built without Gloo: several processes need a CUDA device each");
+#endif
+  }
+  // What the first process has, for all.
+  void broadcast(torch::Tensor& tensor) {
+    std::vector<torch::Tensor> there{tensor.to(m_talksOn)};
+    m_group->broadcast(there)->wait();
+    tensor = there[0].to(torch::kCPU);
   }
   // Of all gradients at once, and the loss.
   void average(torch::nn::Module& module, double& loss) {
     std::vector<torch::Tensor> parts;
-    for (const torch::Tensor& p : module.parameters())
-      parts.push_back(p.grad().reshape({-1}).to(torch::kCPU));
-    parts.push_back(torch::full({1}, loss, torch::kFloat32));
+    for (const torch::Tensor& p : module.parameters()) parts.push_back(p.grad().reshape({-1}).to(m_talksOn));
+    parts.push_back(torch::full({1}, loss, torch::TensorOptions(m_talksOn).dtype(torch::kFloat32)));
     std::vector<torch::Tensor> all{torch::cat(parts)};
     m_group->allreduce(all)->wait();
     const torch::Tensor mean = all[0] / double(m_processes.count);
@@ -371,20 +425,19 @@ class TorchLearner : public Learner {
     }
     loss = mean[at].item<double>();
   }
-  c10::intrusive_ptr<c10d::ProcessGroupGloo> m_group;
+  torch::Device m_talksOn = torch::kCPU;  // where tensors are when processes exchange them
+  c10::intrusive_ptr<Group> m_group;
 #else
   void join() {
-    throw TrainError("this odis was built without Gloo: install libgloo-dev and build again");
+    throw TrainError("this odis was built without Gloo and NCCL: one process can train");
   }
-  void broadcast(std::vector<torch::Tensor>&) {}
+  void broadcast(torch::Tensor&) {}
   void average(torch::nn::Module&, double&) {}
 #endif
 
   torch::Device m_device;
   Processes m_processes;
-  DirectionModule m_module;
-  LightModule m_lights;
-  ContinuationModule m_continuations;
+  Modules m_modules;
   std::unique_ptr<torch::optim::Adam> m_adam, m_lightAdam, m_continuationAdam;
 };
 

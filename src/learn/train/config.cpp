@@ -14,6 +14,16 @@ constexpr std::pair<Loss, const char*> kLosses[] = {{Loss::crossEntropy, "cross-
                                                     {Loss::l1, "l1"},
                                                     {Loss::l2, "l2"}};
 
+constexpr std::pair<Precision, const char*> kPrecisions[] = {{Precision::single, "single"},
+                                                             {Precision::mixed, "mixed"}};
+
+template <class T, size_t N>
+const char* nameOf(T value, const std::pair<T, const char*> (&words)[N]) {
+  for (const auto& [which, name] : words)
+    if (which == value) return name;
+  return "";
+}
+
 // Takes values out of a JSON object and knows which keys it has been asked for.
 class Keys {
  public:
@@ -38,6 +48,20 @@ class Keys {
       m_left.erase(found);
     }
   }
+  // One of several words.
+  template <class T, size_t N>
+  void take(const char* key, T& value, const std::pair<T, const char*> (&words)[N]) {
+    std::string word = nameOf(value, words), expected;
+    take(key, word);
+    for (const auto& [which, name] : words) {
+      if (word == name) {
+        value = which;
+        return;
+      }
+      expected += (expected.empty() ? "" : ", ") + std::string(name);
+    }
+    fail(key, "found " + word + ", expected one of " + expected);
+  }
   [[noreturn]] void fail(const std::string& key, const std::string& why) const {
     throw ConfigError(fmt::format("{}: {}: {}", m_path, key, why));
   }
@@ -49,12 +73,6 @@ class Keys {
   const std::string& m_path;
   nlohmann::json m_left;
 };
-
-const char* nameOf(Loss loss) {
-  for (const auto& [which, name] : kLosses)
-    if (which == loss) return name;
-  return "";
-}
 
 }  // namespace
 
@@ -77,15 +95,7 @@ TrainConfig readConfig(const std::string& path) {
   keys.take("steps", c.steps, 1, kMany);
   keys.take("batch", c.batch, 1, 1 << 20);
   keys.take("hidden", c.hidden, 1, 256);
-  std::string loss = nameOf(c.loss);
-  keys.take("loss", loss);
-  bool known = false;
-  for (const auto& [which, name] : kLosses)
-    if (loss == name) {
-      c.loss = which;
-      known = true;
-    }
-  if (!known) keys.fail("loss", "found " + loss + ", expected cross-entropy, log-variance, l1 or l2");
+  keys.take("loss", c.loss, kLosses);
   keys.take("fineTuneSteps", c.fineTuneSteps, 0, kMany);
   keys.take("learningRate", c.learningRate, 0.0, 1.0);
   keys.take("finalLearningRate", c.finalLearningRate, 0.0, 1.0);
@@ -95,6 +105,7 @@ TrainConfig readConfig(const std::string& path) {
   keys.take("validateSteps", c.validateSteps, 1, kMany);
   keys.take("validationScenes", c.validationScenes, 0, kMany);
   keys.take("seed", c.seed, 0, kMany);
+  keys.take("precision", c.precision, kPrecisions);
   keys.take("device", c.device);
   if (c.device != "auto" && c.device != "cpu" && c.device != "cuda")
     keys.fail("device", "found " + c.device + ", expected auto, cpu or cuda");
@@ -114,7 +125,7 @@ nlohmann::ordered_json toJson(const TrainConfig& c) {
           {"steps", c.steps},
           {"batch", c.batch},
           {"hidden", c.hidden},
-          {"loss", nameOf(c.loss)},
+          {"loss", nameOf(c.loss, kLosses)},
           {"fineTuneSteps", c.fineTuneSteps},
           {"learningRate", c.learningRate},
           {"finalLearningRate", c.finalLearningRate},
@@ -124,6 +135,7 @@ nlohmann::ordered_json toJson(const TrainConfig& c) {
           {"validateSteps", c.validateSteps},
           {"validationScenes", c.validationScenes},
           {"seed", c.seed},
+          {"precision", nameOf(c.precision, kPrecisions)},
           {"device", c.device}};
 }
 

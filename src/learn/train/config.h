@@ -13,6 +13,8 @@ class ConfigError : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
+// Of the layers: float32, or bfloat16 between float32 weights, losses and maps.
+enum class Precision { single, mixed };
 enum class Loss { crossEntropy, logVariance, l1, l2 };
 
 struct TrainConfig {
@@ -32,6 +34,7 @@ struct TrainConfig {
   int validateSteps = 1000;  // how often held-out scenes are looked at
   int validationScenes = 24;
   int seed = 1;
+  Precision precision = Precision::single;
   std::string device = "auto";  // cpu, cuda, or auto: cuda where there is one
 };
 
