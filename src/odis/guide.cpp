@@ -132,10 +132,22 @@ void GuideBuilder::add(std::span<const PilotDigest> digests) {
 uint64_t GuideBuilder::bytes() const {
   // What `build` makes beside the cells' statistics: a copy of them, distributions, sums for the selection.
   constexpr uint64_t kPerCell =
-      sizeof(CellStatistics) + sizeof(DirectionDistribution) + 2 * sizeof(CellSelection);
+      sizeof(CellStatistics) + sizeof(Surroundings) + sizeof(DirectionDistribution) + 2 * sizeof(CellSelection);
   const CellStore& store = m_data->store;
   return store.bytes() + std::max(store.transientBytes(), store.index().size() * kPerCell);
 }
+
+namespace {
+
+// The cells, and what lies around them where that is asked for.
+struct RolledUp {
+  RolledUp(const CellStore& store, bool lookAround)
+      : cells(store.rollUp()), around(lookAround ? store.lookAround(cells) : nullptr) {}
+  std::vector<CellStatistics> cells;
+  std::unique_ptr<Surroundings[]> around;
+};
+
+}  // namespace
 
 // A guide of maps alone, made for coarse levels first; leaves the distributions that they were made from.
 Guide GuideBuilder::buildMaps(const std::vector<CellStatistics>& cells,
@@ -169,7 +181,8 @@ void GuideBuilder::addRouletteAndLights(Guide& guide, const std::vector<CellStat
 
 Guide GuideBuilder::build(PilotParts parts, std::span<const float> pixelValues) const {
   const GuideOptions& options = m_data->options;
-  const std::vector<CellStatistics> cells = m_data->store.rollUp();
+  const RolledUp rolledUp(m_data->store, m_data->options.model->looksAround());
+  const std::vector<CellStatistics>& cells = rolledUp.cells;
   std::vector<DirectionDistribution> distributions;
   Guide guide = buildMaps(cells, distributions);
   std::vector<Cell>& result = guide.m_data->cells;
@@ -188,7 +201,8 @@ Guide GuideBuilder::build(PilotParts parts, std::span<const float> pixelValues) 
 }
 
 Guide GuideBuilder::rebuild(const Guide& previous) const {
-  const std::vector<CellStatistics> cells = m_data->store.rollUp();
+  const RolledUp rolledUp(m_data->store, m_data->options.model->looksAround());
+  const std::vector<CellStatistics>& cells = rolledUp.cells;
   std::vector<DirectionDistribution> distributions;
   Guide guide = buildMaps(cells, distributions);
   std::vector<Cell>& result = guide.m_data->cells;

@@ -98,7 +98,7 @@ TEST_F(Training, ExamplesHoldWhatCellsHave) {
   for (const ViewExamples& view : views) {
     ASSERT_GT(view.count, 0u);
     for (size_t i = 0; i < view.count; ++i) {
-      std::array<CellStatistics, kCellLevels> all, one;
+      ViewExamples::Storage all, one;
       const CellChain chain = view.chain(2, i, false, all), small = view.chain(0, i, false, one);
       ASSERT_TRUE(chain[0] != nullptr);
       // All pilots have at least as many samples as one of them, and coarser cells at least as many as finer ones.
@@ -115,7 +115,7 @@ TEST_F(Training, ExamplesHoldWhatCellsHave) {
       EXPECT_NEAR(histogram, chain[0]->sum, 2e-3 * chain[0]->sum);
       if (mass > 0) EXPECT_NEAR(mass, 1, 5e-3);
       bright += mass > 0;
-      std::array<CellStatistics, kCellLevels> shifted;
+      ViewExamples::Storage shifted;
       const CellChain coarse = view.chain(2, i, true, shifted);
       if (chain[1]) EXPECT_EQ(coarse[0]->count, chain[1]->count);
     }

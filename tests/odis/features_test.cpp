@@ -9,7 +9,7 @@
 namespace odis {
 namespace {
 
-constexpr double kGoldenSum = 61.05387, kGoldenWeighted = 610.59096, kGoldenMaps = 3405.339;
+constexpr double kGoldenSum = 61.05387, kGoldenWeighted = 610.59096, kGoldenMaps = 6199.3403;
 constexpr double kGoldenContinuations = 837.4872;
 
 float sumOf(const Histogram& map) {
@@ -69,11 +69,18 @@ TEST(CellFeatures, CountsEffectiveSamplesAndEntropies) {
 }
 
 TEST(CellFeatures, MapsAreDistributionsOrEmpty) {
-  const CellStatistics own = cellOf(7, 3, texelAt(3, 12)), parent = cellOf(31, 1, texelAt(0, 0), 1);
+  CellStatistics own = cellOf(7, 3, texelAt(3, 12));
+  const CellStatistics parent = cellOf(31, 1, texelAt(0, 0), 1);
+  Surroundings around{};
+  around[0][17] = 3;
+  around[0][90] = 1;
+  own.around = &around;
   CellFeatures features;
   computeFeatures({&own, &parent}, features);
+  EXPECT_EQ(features.aroundSums[0], 4);
+  EXPECT_EQ(features.around[0][17], 0.75f);
   for (int m = 0; m < kBasisMaps; ++m) {
-    const bool there = m != 2 && m != 3;  // the levels beyond
+    const bool there = m != 2 && m != 3 && m != kAround + 1;  // the levels beyond
     EXPECT_EQ(features.there[size_t(m)], there) << m;
     EXPECT_NEAR(sumOf(basisMap(features, m)), there ? 1 : 0, 1e-5f) << m;
   }
@@ -85,9 +92,15 @@ TEST(CellFeatures, MapsAreDistributionsOrEmpty) {
 TEST(CellFeatures, BlendsAreSumsOfMaps) {
   CellStatistics own = cellOf(7, 3, texelAt(3, 12)), parent = cellOf(31, 1, texelAt(0, 0), 1);
   for (size_t t = 0; t < kMapTexels; ++t) own.histogram[t] += float(t % 7);
+  Surroundings around{};
+  for (size_t t = 0; t < kMapTexels; ++t) {
+    around[0][t] = float(t % 5);
+    around[1][t] = float(t % 3);
+  }
+  own.around = &around;
   CellFeatures features;
   computeFeatures({&own, &parent, &own, &parent}, features);
-  const std::array<float, kBasisMaps> shares{0.1f, 0.2f, 0.05f, 0.15f, 0.25f, 0.15f, 0.1f};
+  const std::array<float, kBasisMaps> shares{0.1f, 0.15f, 0.05f, 0.15f, 0.2f, 0.1f, 0.05f, 0.15f, 0.05f};
   const Histogram blend = blendMaps(features, shares);
   Histogram sum{};
   for (int m = 0; m < kBasisMaps; ++m) {
@@ -106,6 +119,10 @@ TEST(CellFeatures, StayWhatWeightsWereTrainedFor) {
     cell.histogram[size_t(texelAt(12, 2 * l))] = 5;
     cell.normal = {float(cell.count) * 0.6f, 0, float(cell.count) * 0.7f};
   }
+  Surroundings around{};
+  around[0][size_t(texelAt(5, 5))] = 2;
+  around[1][size_t(texelAt(9, 14))] = 1;
+  cells[0].around = &around;
   CellFeatures features;
   computeFeatures({&cells[0], &cells[1], &cells[2], &cells[3]}, features);
   double sum = 0, weighted = 0;
@@ -113,7 +130,7 @@ TEST(CellFeatures, StayWhatWeightsWereTrainedFor) {
     sum += features.scalars[i];
     weighted += double(i + 1) * features.scalars[i];
   }
-  EXPECT_EQ(kFeatureVersion, 1u);
+  EXPECT_EQ(kFeatureVersion, 2u);
   EXPECT_NEAR(sum, kGoldenSum, 1e-3);
   EXPECT_NEAR(weighted, kGoldenWeighted, 1e-2);
   double maps = 0;

@@ -36,7 +36,7 @@ CellStatistics brightCell() {
 }
 
 TEST(Weights, AreTheSameAfterWritingAndReading) {
-  const Weights weights = constantBlend({0, 1, 2, 3, 4, 5, 6});
+  const Weights weights = constantBlend({0, 1, 2, 3, 4, 5, 6, 7, 8});
   const Weights again = Weights::parse("again", weights.bytes());
   EXPECT_EQ(again.about(), weights.about());
   ASSERT_EQ(again.tensors().size(), weights.tensors().size());
@@ -112,7 +112,7 @@ TEST(DirectionNetwork, BlendsTheMapsThatAreThere) {
               1e-6f);
 
   // Only the histogram, if all others have tiny shares.
-  const DirectionNetwork own(constantBlend({30, 0, 0, 0, 0, 0, 0}));
+  const DirectionNetwork own(constantBlend({30, 0, 0, 0, 0, 0, 0, 0, 0}));
   EXPECT_NEAR(own.predict({&cell}, nullptr).probability[bright], 1, 1e-6f);
   // A cell that has seen nothing has the lobe.
   const CellStatistics nothing;

@@ -85,7 +85,7 @@ void ExamplePool::draw(uint64_t seed, uint64_t step, size_t count, double shiftP
     const ViewExamples& view = m_views[viewIndex];
     const int variant = random.integer(0, kInputVariants - 1);
     const bool shift = random.chance(shiftProbability);
-    std::array<CellStatistics, kCellLevels> storage;
+    ViewExamples::Storage storage;
     CellFeatures features;
     computeFeatures(view.chain(variant, example, shift, storage), features);
     std::copy(features.scalars.begin(), features.scalars.end(), &batch.scalars[row * kCellScalars]);
@@ -116,7 +116,7 @@ void ExamplePool::draw(uint64_t seed, uint64_t step, size_t count, LightBatch& b
     Random random = stream.fork(fmt::format("{}", row));
     const auto [viewIndex, example] = random.pick(std::span(m_lit));
     const ViewExamples& view = m_views[viewIndex];
-    std::array<CellStatistics, kCellLevels> storage;
+    ViewExamples::Storage storage;
     LightFeatures features;
     computeFeatures(view.chain(random.integer(0, kInputVariants - 1), example, false, storage),
                     uint32_t(view.groups), features);
@@ -144,7 +144,7 @@ void ExamplePool::draw(uint64_t seed, uint64_t step, size_t count, double shiftP
     const ViewExamples& view = m_views[viewIndex];
     const int variant = random.integer(0, kInputVariants - 1);
     const bool shift = random.chance(shiftProbability);
-    std::array<CellStatistics, kCellLevels> storage;
+    ViewExamples::Storage storage;
     ContinuationFeatures features;
     computeFeatures(view.chain(variant, example, shift, storage), features);
     std::copy(features.scalars.begin(), features.scalars.end(), &batch.scalars[row * kContinuationScalars]);

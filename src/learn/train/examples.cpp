@@ -64,6 +64,16 @@ void addInput(const CellStore& store, std::span<const CellStatistics> cells, con
     chain = chainOf(cells, cell);
     break;
   }
+  // What lies around the finest cell, and around its parent.
+  const auto addNormalized = [](const Histogram& histogram, std::vector<Half>& to) {
+    float sum = 0;
+    for (const float value : histogram) sum += value;
+    for (const float value : histogram) to.push_back(toHalf(sum > 0 ? value / sum : 0));
+  };
+  static constexpr Surroundings kNowhere{};
+  for (size_t first = 0; first < 2; ++first)
+    for (const Histogram& map : chain[first] ? *chain[first]->around : kNowhere)
+      addNormalized(map, examples.around);
   const auto scaled = [&](double value, int power) { return float(value * std::pow(1.0 / unit, power)); };
   for (const CellStatistics* cell : chain) {
     static constexpr CellStatistics kNothing{};
@@ -81,9 +91,7 @@ void addInput(const CellStore& store, std::span<const CellStatistics> cells, con
     kept.normal[1] = s.normal.y;
     kept.normal[2] = s.normal.z;
     examples.statistics.push_back(kept);
-    float sum = 0;
-    for (const float value : s.histogram) sum += value;
-    for (const float value : s.histogram) examples.histograms.push_back(toHalf(sum > 0 ? value / sum : 0));
+    addNormalized(s.histogram, examples.histograms);
     for (size_t g = 0; g < examples.groups; ++g)
       examples.lightSquares.push_back(scaled(s.lightSquares[g], 2));
   }
@@ -121,7 +129,8 @@ ViewExamples examplesOf(const ShardReader& shard, size_t view, size_t pilotCount
     for (const size_t pilot : pilotsOf(variant, view, pilots.size()))
       parts.emplace_back(pilots[pilot].vertices);
     store.add(parts, 0);
-    const std::vector<CellStatistics> cells = store.rollUp();
+    std::vector<CellStatistics> cells = store.rollUp();
+    const std::unique_ptr<Surroundings[]> around = store.lookAround(cells);
     for (const PilotVertex* vertex : vertices) addInput(store, cells, *vertex, frame.unit, examples);
   }
   return examples;
@@ -137,15 +146,14 @@ std::vector<ViewExamples> makeExamples(const ShardReader& shard) {
   return views;
 }
 
-CellChain ViewExamples::chain(int variant, size_t example, bool shift,
-                              std::array<CellStatistics, kCellLevels>& storage) const {
+CellChain ViewExamples::chain(int variant, size_t example, bool shift, Storage& storage) const {
   CellChain chain{};
   size_t length = 0;
   for (size_t level = shift ? 1 : 0; level < kCellLevels; ++level) {
     const size_t at = (size_t(variant) * count + example) * kCellLevels + level;
     const KeptStatistics& kept = statistics[at];
     if (!(kept.count > 0)) break;
-    CellStatistics& cell = storage[length];
+    CellStatistics& cell = storage.cells[length];
     cell.level = int(kept.level);
     cell.count = kept.count;
     cell.sum = kept.sum;
@@ -159,6 +167,10 @@ CellChain ViewExamples::chain(int variant, size_t example, bool shift,
     for (size_t g = 0; g < groups; ++g) cell.lightSquares[g] = lightSquares[at * groups + g];
     chain[length++] = &cell;
   }
+  size_t from = ((size_t(variant) * count + example) * 2 + shift) * storage.around.size() * kTexels;
+  for (Histogram& map : storage.around)
+    for (float& value : map) value = float(around[from++]);
+  storage.cells[0].around = &storage.around;
   return chain;
 }
 
@@ -170,6 +182,7 @@ void addColumns(ShardWriter& writer, const std::string& prefix, const ViewExampl
       std::span(reinterpret_cast<const float*>(e.statistics.data()), e.statistics.size() * kKeptNumbers);
   writer.add(prefix + "statistics", {kInputVariants, e.count, kCellLevels, kKeptNumbers}, floats);
   add("histograms", {kInputVariants, e.count, kCellLevels, kTexels}, e.histograms);
+  add("around", {kInputVariants, e.count, 2, 2, kTexels}, e.around);
   add("lightSquares", {kInputVariants, e.count, kCellLevels, e.groups}, e.lightSquares);
   add("mass", {e.count, kTexels}, e.mass);
   add("square", {e.count, kTexels}, e.square);
@@ -189,6 +202,7 @@ ViewExamples readExamples(const ShardReader& reader, const std::string& prefix) 
   e.statistics.resize(e.count * kChains);
   std::copy(numbers.begin(), numbers.end(), reinterpret_cast<float*>(e.statistics.data()));
   e.histograms = readColumn<Half>(reader, prefix + "histograms", e.count, kChains * kTexels);
+  e.around = readColumn<Half>(reader, prefix + "around", e.count, kInputVariants * 4 * kTexels);
   e.lightSquares = readColumn<float>(reader, prefix + "lightSquares", e.count, kChains * e.groups);
   e.mass = readColumn<Half>(reader, prefix + "mass", e.count, kTexels);
   e.square = readColumn<Half>(reader, prefix + "square", e.count, kTexels);

@@ -29,6 +29,7 @@ struct ViewExamples {
   // For each variant and example: its chain, finest first. A level that is not there has a count of zero.
   std::vector<KeptStatistics> statistics;  // [variant][example][level]
   std::vector<Half> histograms;            // [variant][example][level][texel], with the sum 1 or 0
+  std::vector<Half> around;                // [variant][example][first level: 0, 1][2][texel], likewise
   std::vector<float> lightSquares;         // [variant][example][level][group], sums
 
   // What arrives at a cell and next-event estimation does not cover, times the cosine: its mean and its mean square for
@@ -41,8 +42,11 @@ struct ViewExamples {
   std::vector<float> lightRms, lightProbability;  // [example][group]
 
   // The chain of an example, `storage` holding what it points to. With `shift` it begins at the parent.
-  CellChain chain(int variant, size_t example, bool shift,
-                  std::array<CellStatistics, kCellLevels>& storage) const;
+  struct Storage {
+    std::array<CellStatistics, kCellLevels> cells;
+    Surroundings around;
+  };
+  CellChain chain(int variant, size_t example, bool shift, Storage& storage) const;
 };
 
 // The examples of each view of a shard. Throws ShardError.

@@ -21,6 +21,7 @@ class Unseen : public DirectionModel {
     result.sensitivity = 0;
     return result;
   }
+  bool looksAround() const override { return m_model->looksAround(); }
 
  private:
   std::shared_ptr<const DirectionModel> m_model;

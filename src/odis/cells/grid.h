@@ -23,6 +23,21 @@ class CellGrid {
                 dominantAxis(normal), level);
   }
 
+  // The middle of a cell's cube.
+  Float3 middle(uint64_t key) const {
+    const float edge = float(1 << (key >> 60)) / m_inverseEdge;
+    const auto along = [&](int shift) {
+      return (float(int((key >> shift) & 0x7ffff) - (1 << 18)) + 0.5f) * edge;
+    };
+    return m_origin + Float3{along(0), along(19), along(38)};
+  }
+
+  // The key of the cell of the same level so many cells away.
+  static uint64_t neighbour(uint64_t key, int x, int y, int z) {
+    const auto moved = [&](int shift, int by) { return int((key >> shift) & 0x7ffff) - (1 << 18) + by; };
+    return pack(moved(0, x), moved(19, y), moved(38, z), uint32_t(key >> 57) & 7, int(key >> 60));
+  }
+
   // The key of the cell around a cell, one level coarser.
   static uint64_t parent(uint64_t key) {
     const auto halved = [&](int shift) { return (int((key >> shift) & 0x7ffff) - (1 << 18)) >> 1; };

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "odis/cells/surroundings.h"
+
 namespace odis {
 
 int wrappedTexel(int x, int y) {
@@ -33,6 +35,20 @@ Float3 reaim(const Float3& position, const Float3& wi, float distance, const Flo
   const Float3 direction = position + wi * distance - centroid;
   const float squared = dot(direction, direction);
   return squared > 1e-20f && dot(direction, wi) > 0 ? direction * (1 / std::sqrt(squared)) : wi;
+}
+
+struct CellStore::Field {
+  Float3 middle;
+  std::vector<uint32_t> children;
+  LightField light;
+};
+
+CellStore::CellStore(float clamp) : m_clamp(clamp) {}
+CellStore::~CellStore() = default;
+
+uint64_t CellStore::bytes() const {
+  return m_cells.capacity() * sizeof(CellStatistics) + m_links.capacity() * sizeof(Link) +
+         m_fields.capacity() * sizeof(Field) + m_fieldOf.capacity() * sizeof(uint32_t) + m_index.bytes();
 }
 
 // The grid spans what the pilot saw, not what the scene holds: a huge ground plane must not make the cells
@@ -79,7 +95,7 @@ uint32_t CellStore::insert(uint64_t key) {
     const uint32_t before = m_index.size();
     const uint32_t cell = m_index.insert(key);
     if (level == 0) finest = cell;
-    if (cell == before) m_links.push_back({kNoCell, level});
+    if (cell == before) m_links.push_back({kNoCell, level, key});
     if (child != kNoCell) m_links[child].parent = cell;
     if (cell != before) break;  // its ancestors are known
     child = cell;
@@ -137,12 +153,18 @@ void CellStore::add(std::span<const BatchSamples* const> batches) {
     cells[b].cellOf = batches[b]->cellOf;
     m_transientBytes += batches[b]->bytes();
   }
-  size_t known = m_cells.size();
+  const size_t known = m_cells.size();
   m_cells.resize(m_links.size());
-  for (; known < m_cells.size(); ++known) {
-    m_cells[known].parent = m_links[known].parent;
-    m_cells[known].level = m_links[known].level;
+  m_fieldOf.resize(m_links.size(), kNoCell);
+  for (size_t c = known; c < m_cells.size(); ++c) {
+    m_cells[c].parent = m_links[c].parent;
+    m_cells[c].level = m_links[c].level;
+    if (m_links[c].level != 1) continue;
+    m_fieldOf[c] = uint32_t(m_fields.size());
+    m_fields.push_back({m_grid.middle(m_links[c].key), {}, {}});
   }
+  for (size_t c = known; c < m_cells.size(); ++c)
+    if (m_links[c].level == 0) m_fields[m_fieldOf[m_links[c].parent]].children.push_back(uint32_t(c));
 
   // Values are clamped to a multiple of the mean over the next coarser cell, so that no single path rules a
   // map.
@@ -159,14 +181,18 @@ void CellStore::add(std::span<const BatchSamples* const> batches) {
       sortByCell<CellSample>(cells, uint32_t(m_cells.size()),
                              [&](size_t b, size_t i) -> const CellSample& { return batches[b]->samples[i]; });
   m_transientBytes += order.bytes();
-  tbb::parallel_for(tbb::blocked_range<size_t>(0, m_cells.size(), 16),
+  tbb::parallel_for(tbb::blocked_range<size_t>(0, m_fields.size(), 4),
                     [&](const tbb::blocked_range<size_t>& range) {
-                      for (size_t c = range.begin(); c < range.end(); ++c) {
-                        if (order.of(c).empty()) continue;
-                        const uint32_t parent = m_cells[c].parent;
-                        accumulate(m_cells[c], m_clamp * float(parentSum[parent] / parentCount[parent]),
-                                   m_grid.finestEdge(), order.of(c));
-                      }
+                      for (size_t f = range.begin(); f < range.end(); ++f)
+                        for (const uint32_t c : m_fields[f].children) {
+                          if (order.of(c).empty()) continue;
+                          const uint32_t parent = m_cells[c].parent;
+                          const float limit = m_clamp * float(parentSum[parent] / parentCount[parent]);
+                          accumulate(m_cells[c], limit, m_grid.finestEdge(), order.of(c));
+                          forEachItem(order.of(c), [&](const CellSample& sample) {
+                            m_fields[f].light.add(sample, limit, m_fields[f].middle);
+                          });
+                        }
                     });
 }
 
@@ -178,6 +204,9 @@ std::vector<CellStatistics> CellStore::rollUp() const {
       if (child.level != level) continue;
       CellStatistics& parent = cells[child.parent];
       parent.count += child.count;
+      if (parent.count > 0)
+        parent.centroid =
+            parent.centroid + (child.centroid - parent.centroid) * float(child.count / parent.count);
       parent.sum += child.sum;
       parent.sumSquares += child.sumSquares;
       for (size_t i = 0; i < 3; ++i) parent.outgoing[i] += child.outgoing[i];
@@ -189,6 +218,49 @@ std::vector<CellStatistics> CellStore::rollUp() const {
       for (int t = 0; t < kMapTexels; ++t) parent.histogram[t] += child.histogram[t];
     }
   return cells;
+}
+
+std::unique_ptr<Surroundings[]> CellStore::lookAround(std::span<CellStatistics> cells) const {
+  // The fields of coarser levels are put together from their children's.
+  LightPoints points;
+  std::vector<uint32_t> pointsOf(cells.size(), kNoCell);
+  std::vector<LightField> fields;
+  std::vector<uint32_t> fieldOf = m_fieldOf;
+  for (const Field& field : m_fields) fields.push_back(field.light);
+  for (int level = 1; level < kCellLevels; ++level)
+    for (size_t c = 0; c < cells.size(); ++c) {
+      if (cells[c].level != level) continue;
+      pointsOf[c] = points.add(fields[fieldOf[c]], m_grid.middle(m_links[c].key));
+      const uint32_t parent = cells[c].parent;
+      if (parent == kNoCell) continue;
+      if (fieldOf[parent] == kNoCell) {
+        fieldOf[parent] = uint32_t(fields.size());
+        fields.emplace_back();
+      }
+      points.addTo(fields[fieldOf[parent]], pointsOf[c], m_grid.middle(m_links[parent].key));
+    }
+
+  // The threads that fill it are the first to touch it.
+  auto result = std::make_unique_for_overwrite<Surroundings[]>(cells.size());
+  tbb::parallel_for(tbb::blocked_range<size_t>(0, cells.size(), 16),
+                    [&](const tbb::blocked_range<size_t>& range) {
+                      for (size_t c = range.begin(); c < range.end(); ++c) {
+                        uint64_t key = m_links[c].key;
+                        int level = cells[c].level;
+                        for (Histogram& map : result[c]) {
+                          map.fill(0);
+                          if (++level >= kCellLevels) continue;
+                          key = CellGrid::parent(key);
+                          for (int i = 0; i < 27; ++i) {
+                            const uint32_t near =
+                                m_index.find(CellGrid::neighbour(key, i % 3 - 1, i / 3 % 3 - 1, i / 9 - 1));
+                            if (near != kNoCell) points.addTo(map, pointsOf[near], cells[c].centroid);
+                          }
+                        }
+                        cells[c].around = &result[c];
+                      }
+                    });
+  return result;
 }
 
 }  // namespace odis

@@ -6,6 +6,7 @@
 #include <tbb/parallel_for.h>
 
 #include <array>
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -27,6 +28,12 @@ struct Splat {
 };
 Splat splat(const Float3& wi);
 
+// What the cells around a cell have seen, re-aimed at its centroid: of its parent's level, of the parent's parent's. Sums of
+// values, zeros beyond the coarsest level.
+using Surroundings = std::array<Histogram, 2>;
+
+struct LightField;
+
 struct CellStatistics {
   uint32_t parent = kNoCell;
   int level = 0;
@@ -37,10 +44,12 @@ struct CellStatistics {
   double outgoingSquares = 0;        // sum of its squares, as luminance
   double rays = 0;                   // traced at the vertices and beyond
   double nearness = 0;               // sum of e / (e + distance to what was seen), e the finest cells' edge
-  Float3 centroid;                   // of the first batch's positions; directions are re-aimed from here
-  Float3 normal;                     // sum of unit normals
+  // Of the first batch's positions, and directions are re-aimed from here; of coarser cells the mean of their children's.
+  Float3 centroid;
+  Float3 normal;                                        // sum of unit normals
   std::array<double, kMostLightGroups> lightSquares{};  // sums of CellSample::lightSquare, for each group
   Histogram histogram{};                                // of values by direction
+  const Surroundings* around = nullptr;                 // CellStore::lookAround
 };
 
 // A cell and its ancestors, finest first; null beyond the coarsest.
@@ -67,7 +76,8 @@ void forEachFromCoarse(std::span<const CellStatistics> cells, const Body& body) 
 // The cells at every level. A coarser cell's statistics are the sums of its children's, formed by `rollUp`.
 class CellStore {
  public:
-  explicit CellStore(float clamp) : m_clamp(clamp) {}
+  explicit CellStore(float clamp);
+  ~CellStore();
 
   // Places the grid; otherwise the first call of `add` does.
   void place(const CellGrid& grid);
@@ -78,12 +88,12 @@ class CellStore {
   void add(std::span<const BatchSamples* const> batches);
   // The cells with the coarser levels filled in.
   std::vector<CellStatistics> rollUp() const;
+  // What lies around each of the cells that rollUp() gave, who point to it.
+  std::unique_ptr<Surroundings[]> lookAround(std::span<CellStatistics> cells) const;
 
   const CellGrid& grid() const { return m_grid; }
   const CellIndex& index() const { return m_index; }
-  uint64_t bytes() const {
-    return m_cells.capacity() * sizeof(CellStatistics) + m_links.capacity() * sizeof(Link) + m_index.bytes();
-  }
+  uint64_t bytes() const;
   // What the last `add` needed on top of the cells.
   uint64_t transientBytes() const { return m_transientBytes; }
   float clamp() const { return m_clamp; }
@@ -99,9 +109,14 @@ class CellStore {
   struct Link {
     uint32_t parent;
     int level;
+    uint64_t key;
   };
   std::vector<Link> m_links;  // of all cells that have numbers
   std::vector<CellStatistics> m_cells;
+  // What arrives in the cells one level above the finest.
+  struct Field;
+  std::vector<Field> m_fields;
+  std::vector<uint32_t> m_fieldOf;  // of each cell: an index of m_fields, or kNoCell
   uint64_t m_transientBytes = 0;
 };
 

@@ -22,6 +22,8 @@ class DirectionModel {
   // coarsest level). Called for parents before their children; thread-safe.
   virtual DirectionDistribution predict(const CellChain& chain,
                                         const DirectionDistribution* parent) const = 0;
+  // Whether it asks for CellStatistics::around.
+  virtual bool looksAround() const { return false; }
 };
 
 // Histogram of the cell, shrunk towards its parent's by how many samples the cell has, down to a uniform

@@ -26,12 +26,12 @@ float sumOver(const F& f) {
   return sum;
 }
 
-// The map with the sum 1, or nothing where it has none; returns which.
-ODIS_WIDE bool normalize(const Histogram& from, Histogram& to) {
+// The map with the sum 1, or nothing where it has none; returns the sum, or 0.
+ODIS_WIDE float normalize(const Histogram& from, Histogram& to) {
   const float sum = sumOver([&](int t) { return from[t]; });
   const float scale = sum > 0 && sum < INFINITY ? 1 / sum : 0;
   for (int t = 0; t < kMapTexels; ++t) to[t] = scale > 0 ? from[t] * scale : 0;
-  return scale > 0;
+  return scale > 0 ? sum : 0;
 }
 
 // In bits, of a distribution.
@@ -78,20 +78,24 @@ ODIS_WIDE Histogram blurred(const Histogram& map) {
 
 Histogram basisMap(const CellFeatures& features, int map) {
   if (map < kCellLevels) return features.levels[size_t(map)];
-  if (map == kCellLevels) return blurred(blurred(features.levels[0]));
-  return map == kCellLevels + 1 ? blurred(features.levels[1]) : features.lobe;
+  if (map == kOwnBlurred) return blurred(blurred(features.levels[0]));
+  if (map == kParentBlurred) return blurred(features.levels[1]);
+  return map == kLobe ? features.lobe : blurred(features.around[size_t(map - kAround)]);
 }
 
 ODIS_WIDE Histogram blendMaps(const CellFeatures& features, const std::array<float, kBasisMaps>& shares) {
   const auto& levels = features.levels;
+  const auto& around = features.around;
   Histogram twice, once, result;
-  for (int t = 0; t < kMapTexels; ++t) twice[t] = shares[kCellLevels] * levels[0][t];
+  for (int t = 0; t < kMapTexels; ++t) twice[t] = shares[kOwnBlurred] * levels[0][t];
   twice = blurred(twice);
-  for (int t = 0; t < kMapTexels; ++t) once[t] = twice[t] + shares[kCellLevels + 1] * levels[1][t];
+  for (int t = 0; t < kMapTexels; ++t)
+    once[t] = (twice[t] + shares[kParentBlurred] * levels[1][t]) +
+              (shares[kAround] * around[0][t] + shares[kAround + 1] * around[1][t]);
   once = blurred(once);
   for (int t = 0; t < kMapTexels; ++t)
     result[t] = once[t] + shares[0] * levels[0][t] + shares[1] * levels[1][t] + shares[2] * levels[2][t] +
-                shares[3] * levels[3][t] + shares[kCellLevels + 2] * features.lobe[t];
+                shares[3] * levels[3][t] + shares[kLobe] * features.lobe[t];
   return result;
 }
 
@@ -104,9 +108,15 @@ void computeFeatures(const CellChain& chain, CellFeatures& features) {
   // The maps.
   auto& maps = features.levels;
   auto& there = features.there;
-  for (int l = 0; l < kCellLevels; ++l) there[l] = normalize(levels[l]->histogram, maps[l]);
-  there[kCellLevels] = there[0];
-  there[kCellLevels + 1] = there[1];
+  for (int l = 0; l < kCellLevels; ++l) there[l] = normalize(levels[l]->histogram, maps[l]) > 0;
+  there[kOwnBlurred] = there[0];
+  there[kParentBlurred] = there[1];
+  static constexpr Surroundings kNowhere{};
+  const Surroundings& around = own.around ? *own.around : kNowhere;
+  for (size_t i = 0; i < around.size(); ++i) {
+    features.aroundSums[i] = normalize(around[i], features.around[i]);
+    there[kAround + i] = features.aroundSums[i] > 0;
+  }
   const float length = std::sqrt(dot(own.normal, own.normal));
   const Float3 normal = length > 0 ? own.normal * (1 / length) : Float3{0, 0, 1};
   Histogram lobe;
@@ -115,7 +125,7 @@ void computeFeatures(const CellChain& chain, CellFeatures& features) {
                           kTexelDirections.z[t] * normal.z;
     lobe[t] = std::max(features.cosines[t], 0.05f);
   }
-  there[kCellLevels + 2] = normalize(lobe, features.lobe);
+  there[kLobe] = normalize(lobe, features.lobe) > 0;
 
   // Of each level: how many samples it has, how many of them matter, how spread the light is, how flat the surface.
   float* next = features.scalars.data();

@@ -8,11 +8,13 @@
 namespace odis {
 
 // Counts up whenever a feature changes its meaning: weights made for other features are refused.
-inline constexpr uint32_t kFeatureVersion = 1;
+inline constexpr uint32_t kFeatureVersion = 2;
 
-// Maps that a cell's distribution is put together from: of each level its histogram, of the finest also blurred twice, of the
-// next blurred once, and a cosine lobe with a little of everything.
-inline constexpr int kBasisMaps = kCellLevels + 3;
+// Maps that a cell's distribution is put together from: of each level its histogram; that of the finest blurred twice, of the
+// next blurred once; a cosine lobe with a little of everything; and what lies around, twice, blurred once.
+inline constexpr int kOwnBlurred = kCellLevels, kParentBlurred = kCellLevels + 1, kLobe = kCellLevels + 2,
+                     kAround = kCellLevels + 3;
+inline constexpr int kBasisMaps = kAround + 2;
 // Numbers for each level, of one level beside the next coarser, and of the cell.
 inline constexpr int kCellScalars = 4 * kCellLevels + 2 * (kCellLevels - 1) + 3;
 
@@ -22,6 +24,8 @@ struct CellFeatures {
   // Distributions over texels of radiance times cosine: the levels' histograms with the sum 1, or all zeros where nothing
   // was seen; the lobe.
   std::array<Histogram, kCellLevels> levels;
+  Surroundings around;              // likewise
+  std::array<float, 2> aroundSums;  // of them before
   Histogram lobe;
   std::array<bool, kBasisMaps> there;  // whether something was seen
   // To the texels' centres, of the cell's mean normal, with its sign.

@@ -1,0 +1,90 @@
+#include "odis/cells/surroundings.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "odis/decisions/texel_directions.h"
+#include "odis/instruction_sets.h"
+
+namespace odis {
+
+namespace {
+
+// Points are looked at so many at a time: all of a field.
+constexpr size_t kChunk = kMapTexels;
+
+// The texels in which points lie, and what their 1 / distance is to be multiplied by, as seen from elsewhere: what they were
+// seen from lies at `offset` from there.
+ODIS_WIDE void lookFrom(const float* x, const float* y, const float* z, const float* inverse, size_t count,
+                        const Float3& offset, uint8_t* texels, float* nearer) {
+  for (size_t i = 0; i < count; ++i) {
+    const float px = x[i] + inverse[i] * offset.x, py = y[i] + inverse[i] * offset.y,
+                pz = z[i] + inverse[i] * offset.z;
+    const float squared = px * px + py * py + pz * pz;
+    const bool there = squared > 1e-12f;  // not where one looks from
+    const float scale = 1 / std::sqrt(there ? squared : 1.0f);
+    const Float2 square =
+        directionToSquare({there ? px * scale : x[i], there ? py * scale : y[i], there ? pz * scale : z[i]});
+    const int column = std::clamp(int(square.x * kMapSize), 0, kMapSize - 1),
+              row = std::clamp(int(square.y * kMapSize), 0, kMapSize - 1);
+    texels[i] = uint8_t(texelAt(column, row));
+    nearer[i] = scale;
+  }
+}
+
+}  // namespace
+
+void LightField::add(const CellSample& sample, float limit, const Float3& middle) {
+  const float amount = std::min(sample.value, limit);
+  if (!(amount > 0)) return;
+  Float3 direction = sample.wi;
+  float nearness = 0;
+  if (std::isfinite(sample.distance)) {
+    const Float3 to = sample.position + sample.wi * sample.distance - middle;
+    const float squared = dot(to, to);
+    if (squared > 0 && squared < INFINITY) {
+      nearness = 1 / std::sqrt(squared);
+      direction = to * nearness;
+    }
+  }
+  const auto texel = size_t(texelOf(direction));
+  value[texel] += amount;
+  inverse[texel] += amount * nearness;
+}
+
+uint32_t LightPoints::add(const LightField& field, const Float3& middle) {
+  for (size_t t = 0; t < kMapTexels; ++t) {
+    if (!(field.value[t] > 0)) continue;
+    m_x.push_back(kTexelDirections.x[t]);
+    m_y.push_back(kTexelDirections.y[t]);
+    m_z.push_back(kTexelDirections.z[t]);
+    m_inverse.push_back(field.inverse[t] / field.value[t]);
+    m_value.push_back(field.value[t]);
+  }
+  m_middle.push_back(middle);
+  m_begin.push_back(uint32_t(m_value.size()));
+  return uint32_t(m_middle.size() - 1);
+}
+
+template <class Body>
+void LightPoints::forEachSeenFrom(uint32_t field, const Float3& middle, const Body& body) const {
+  uint8_t texels[kChunk];
+  float nearer[kChunk];
+  const size_t first = m_begin[field], count = m_begin[field + 1] - first;
+  lookFrom(&m_x[first], &m_y[first], &m_z[first], &m_inverse[first], count, m_middle[field] - middle, texels,
+           nearer);
+  for (size_t i = 0; i < count; ++i) body(texels[i], m_value[first + i], m_inverse[first + i] * nearer[i]);
+}
+
+void LightPoints::addTo(LightField& other, uint32_t field, const Float3& middle) const {
+  forEachSeenFrom(field, middle, [&](size_t texel, float value, float inverse) {
+    other.value[texel] += value;
+    other.inverse[texel] += value * inverse;
+  });
+}
+
+void LightPoints::addTo(Histogram& histogram, uint32_t field, const Float3& middle) const {
+  forEachSeenFrom(field, middle, [&](size_t texel, float value, float) { histogram[texel] += value; });
+}
+
+}  // namespace odis
