@@ -39,18 +39,6 @@ ODIS_WIDE float entropy(const Histogram& p) {
   return -sumOver([&](int t) { return p[t] * fastLog2(p[t] > 1e-12f ? p[t] : 1e-12f); });
 }
 
-// The share of two distributions that they have in common, from 0 to 1.
-ODIS_WIDE float overlap(const Histogram& a, const Histogram& b) {
-  return sumOver([&](int t) { return a[t] < b[t] ? a[t] : b[t]; });
-}
-
-// How much brighter the cell is than the one around it, in octaves.
-float brightness(const CellStatistics& cell, const CellStatistics& around) {
-  if (!(cell.sum > 0) || !(around.sum > 0)) return 0;
-  return std::clamp(float(std::log2(cell.sum / cell.count) - std::log2(around.sum / around.count)), -8.0f,
-                    8.0f);
-}
-
 }  // namespace
 
 ODIS_WIDE Histogram blurred(const Histogram& map) {
@@ -127,24 +115,15 @@ void computeFeatures(const CellChain& chain, CellFeatures& features) {
   }
   there[kLobe] = normalize(lobe, features.lobe) > 0;
 
-  // Of each level: how many samples it has, how many of them matter, how spread the light is, how flat the surface.
+  // Of each level: how many samples it has, how many of them matter, how spread the light is. What tells scenes from each
+  // other beside that (flatness, distances, brightness) was of no use in others.
   float* next = features.scalars.data();
   for (int l = 0; l < kCellLevels; ++l) {
     const CellStatistics& cell = *levels[l];
     *next++ = float(std::log2(1 + cell.count));
     *next++ = float(std::log2(1 + effectiveSamples(cell)));
     *next++ = entropy(maps[l]);
-    *next++ = cell.count > 0 ? std::sqrt(dot(cell.normal, cell.normal)) / float(cell.count) : 0;
   }
-  // Beside the next coarser: brighter or darker, and how alike.
-  for (int l = 0; l + 1 < kCellLevels; ++l) {
-    *next++ = brightness(*levels[l], *levels[l + 1]);
-    *next++ = overlap(maps[l], maps[l + 1]);
-  }
-  // How near is what the cell sees, and the cell around it; how large they are.
-  *next++ = own.count > 0 ? float(own.nearness / own.count) : 0;
-  *next++ = levels[1]->count > 0 ? float(levels[1]->nearness / levels[1]->count) : 0;
-  *next++ = float(own.level);
 }
 
 }  // namespace odis

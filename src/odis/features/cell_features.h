@@ -15,11 +15,11 @@ inline constexpr uint32_t kFeatureVersion = 2;
 inline constexpr int kOwnBlurred = kCellLevels, kParentBlurred = kCellLevels + 1, kLobe = kCellLevels + 2,
                      kAround = kCellLevels + 3;
 inline constexpr int kBasisMaps = kAround + 2;
-// Numbers for each level, of one level beside the next coarser, and of the cell.
-inline constexpr int kCellScalars = 4 * kCellLevels + 2 * (kCellLevels - 1) + 3;
+// Numbers for each level.
+inline constexpr int kCellScalars = 3 * kCellLevels;
 
 struct CellFeatures {
-  // Logarithms and shares, mostly within [-8, 16]: see cell_features.cpp for each.
+  // Logarithms, within [0, 32]: see cell_features.cpp for each.
   std::array<float, kCellScalars> scalars;
   // Distributions over texels of radiance times cosine: the levels' histograms with the sum 1, or all zeros where nothing
   // was seen; the lobe.
