@@ -131,8 +131,8 @@ void GuideBuilder::add(std::span<const PilotDigest> digests) {
 }
 uint64_t GuideBuilder::bytes() const {
   // What `build` makes beside the cells' statistics: a copy of them, distributions, sums for the selection.
-  constexpr uint64_t kPerCell =
-      sizeof(CellStatistics) + sizeof(Surroundings) + sizeof(DirectionDistribution) + 2 * sizeof(CellSelection);
+  constexpr uint64_t kPerCell = sizeof(CellStatistics) + sizeof(Surroundings) +
+                                sizeof(DirectionDistribution) + 2 * sizeof(CellSelection);
   const CellStore& store = m_data->store;
   return store.bytes() + std::max(store.transientBytes(), store.index().size() * kPerCell);
 }
