@@ -16,7 +16,7 @@ constexpr size_t kChunk = kMapTexels;
 // The texels in which points lie, and what their 1 / distance is to be multiplied by, as seen from elsewhere: what they were
 // seen from lies at `offset` from there.
 ODIS_WIDE void lookFrom(const float* x, const float* y, const float* z, const float* inverse, size_t count,
-                        const Float3& offset, uint8_t* texels, float* nearer) {
+                        const Float3& offset, int32_t* texels, float* nearer) {
   for (size_t i = 0; i < count; ++i) {
     const float px = x[i] + inverse[i] * offset.x, py = y[i] + inverse[i] * offset.y,
                 pz = z[i] + inverse[i] * offset.z;
@@ -27,7 +27,7 @@ ODIS_WIDE void lookFrom(const float* x, const float* y, const float* z, const fl
         directionToSquare({there ? px * scale : x[i], there ? py * scale : y[i], there ? pz * scale : z[i]});
     const int column = std::clamp(int(square.x * kMapSize), 0, kMapSize - 1),
               row = std::clamp(int(square.y * kMapSize), 0, kMapSize - 1);
-    texels[i] = uint8_t(texelAt(column, row));
+    texels[i] = texelAt(column, row);
     nearer[i] = scale;
   }
 }
@@ -68,12 +68,12 @@ uint32_t LightPoints::add(const LightField& field, const Float3& middle) {
 
 template <class Body>
 void LightPoints::forEachSeenFrom(uint32_t field, const Float3& middle, const Body& body) const {
-  uint8_t texels[kChunk];
+  int32_t texels[kChunk];
   float nearer[kChunk];
   const size_t first = m_begin[field], count = m_begin[field + 1] - first;
   lookFrom(&m_x[first], &m_y[first], &m_z[first], &m_inverse[first], count, m_middle[field] - middle, texels,
            nearer);
-  for (size_t i = 0; i < count; ++i) body(texels[i], m_value[first + i], m_inverse[first + i] * nearer[i]);
+  for (size_t i = 0; i < count; ++i) body(size_t(texels[i]), m_value[first + i], m_inverse[first + i] * nearer[i]);
 }
 
 void LightPoints::addTo(LightField& other, uint32_t field, const Float3& middle) const {
