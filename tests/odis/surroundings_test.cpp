@@ -133,6 +133,20 @@ TEST(Surroundings, WhatIsInfinitelyFarStaysWhereItIs) {
     for (const Histogram& map : *cell.around) EXPECT_EQ(map[size_t(texelOf(sun))], sumOf(map));
 }
 
+TEST(Surroundings, NothingIsAroundWhereAllIsDark) {
+  // The last cell to be asked has no light, and lies beside one that saw light next to itself, at no distance at all.
+  std::vector<PilotVertex> vertices{vertexAt({0.5f, 0.5f, 0.5f}, {0, 0, 1}, 1e-30f),
+                                    vertexAt({200.5f, 0.5f, 0.5f}, {0, 0, 1}, 1)};
+  vertices.back().radiance = {0, 0, 0};
+  const Cells cells(vertices);
+  for (const Histogram& map : *cells.at({200.5f, 0.5f, 0.5f}).around) EXPECT_EQ(sumOf(map), 0);
+  for (const Histogram& map : *cells.at({0.5f, 0.5f, 0.5f}).around) EXPECT_EQ(sumOf(map), 1);
+  vertices.erase(vertices.begin());
+  const Cells dark(vertices);
+  for (const CellStatistics& cell : dark.cells)
+    for (const Histogram& map : *cell.around) EXPECT_EQ(sumOf(map), 0);
+}
+
 TEST(Surroundings, DoNotDependOnHowSamplesCame) {
   std::vector<PilotVertex> vertices;
   std::mt19937 engine(3);

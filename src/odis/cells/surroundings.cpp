@@ -21,7 +21,7 @@ ODIS_WIDE void lookFrom(const float* x, const float* y, const float* z, const fl
     const float px = x[i] + inverse[i] * offset.x, py = y[i] + inverse[i] * offset.y,
                 pz = z[i] + inverse[i] * offset.z;
     const float squared = px * px + py * py + pz * pz;
-    const bool there = squared > 1e-12f;  // not where one looks from
+    const bool there = (squared > 1e-12f) & (squared < INFINITY);  // not where one looks from
     const float scale = 1 / std::sqrt(there ? squared : 1.0f);
     const Float2 square =
         directionToSquare({there ? px * scale : x[i], there ? py * scale : y[i], there ? pz * scale : z[i]});
@@ -71,9 +71,10 @@ void LightPoints::forEachSeenFrom(uint32_t field, const Float3& middle, const Bo
   int32_t texels[kChunk];
   float nearer[kChunk];
   const size_t first = m_begin[field], count = m_begin[field + 1] - first;
-  lookFrom(&m_x[first], &m_y[first], &m_z[first], &m_inverse[first], count, m_middle[field] - middle, texels,
-           nearer);
-  for (size_t i = 0; i < count; ++i) body(size_t(texels[i]), m_value[first + i], m_inverse[first + i] * nearer[i]);
+  lookFrom(m_x.data() + first, m_y.data() + first, m_z.data() + first, m_inverse.data() + first, count,
+           m_middle[field] - middle, texels, nearer);
+  for (size_t i = 0; i < count; ++i)
+    body(size_t(texels[i]), m_value[first + i], m_inverse[first + i] * nearer[i]);
 }
 
 void LightPoints::addTo(LightField& other, uint32_t field, const Float3& middle) const {
