@@ -9,8 +9,9 @@ namespace odis {
 
 namespace {
 
-// Selection probabilities are made from about so many vertices: one pixel of `stride`, all of its path.
-constexpr size_t kSelectionVertices = 50000;
+// Selection probabilities are made from a quarter of the vertices, within these bounds: one pixel of `stride`, all of its
+// path. A pilot that is a small part of the image is worth as little time.
+constexpr size_t kShare = 4, kFewestVertices = 50000, kMostVertices = 200000;
 bool isChosen(const PilotVertex& vertex, uint32_t stride) {
   return ((vertex.pixel * 0x9e3779b9u) >> 8) % stride == 0;
 }
@@ -105,7 +106,9 @@ AlphaPrediction chooseAlphas(std::vector<Cell>& result, const CellStore& store,
                              std::span<const DirectionDistribution> distributions, PilotParts parts,
                              std::span<const float> pixelValues) {
   // Choose vertices and sort them by cell.
-  const uint32_t stride = uint32_t(std::max<size_t>(1, countVertices(parts) / kSelectionVertices));
+  const size_t count = countVertices(parts);
+  const uint32_t stride =
+      uint32_t(std::max<size_t>(1, count / std::clamp(count / kShare, kFewestVertices, kMostVertices)));
   const PixelScale scale(pixelValues);
   const std::vector<PilotBatch> pilot = makeBatches(parts);
   std::vector<BatchSelection> batches(pilot.size());
