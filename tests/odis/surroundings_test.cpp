@@ -59,7 +59,7 @@ Float3 meanOf(const Histogram& map) {
 }
 
 TEST(Surroundings, NeighboursTellWhereALampIs) {
-  // A lamp two cells above a floor; the cell asked has seen nothing of it, its neighbours have.
+  // A lamp two and a half cells above a floor; the cell asked has seen nothing of it, its neighbours have.
   const Float3 lamp{4.5f, 4.5f, 3};
   std::vector<PilotVertex> vertices;
   std::mt19937 engine(1);

@@ -280,28 +280,25 @@ class TorchLearner : public Learner {
   }
 
   std::vector<Tensor> tensors() const override {
-    return {toTensor("directions.cell.mean", m_modules.directions->mean),
-            toTensor("directions.cell.scale", m_modules.directions->scale),
-            toTensor("directions.cell.0.weight", m_modules.directions->cell0->weight),
-            toTensor("directions.cell.0.bias", m_modules.directions->cell0->bias),
-            toTensor("directions.cell.1.weight", m_modules.directions->cell1->weight),
-            toTensor("directions.cell.1.bias", m_modules.directions->cell1->bias),
-            toTensor("directions.blend.weight", m_modules.directions->blend->weight),
-            toTensor("directions.blend.bias", m_modules.directions->blend->bias),
-            toTensor("lights.0.weight", m_modules.lights->layer0->weight),
-            toTensor("lights.0.bias", m_modules.lights->layer0->bias),
-            toTensor("lights.1.weight", m_modules.lights->layer1->weight),
-            toTensor("lights.1.bias", m_modules.lights->layer1->bias),
-            toTensor("lights.2.weight", m_modules.lights->layer2->weight),
-            toTensor("lights.2.bias", m_modules.lights->layer2->bias),
-            toTensor("continuations.cell.mean", m_modules.continuations->mean),
-            toTensor("continuations.cell.scale", m_modules.continuations->scale),
-            toTensor("continuations.cell.0.weight", m_modules.continuations->cell0->weight),
-            toTensor("continuations.cell.0.bias", m_modules.continuations->cell0->bias),
-            toTensor("continuations.cell.1.weight", m_modules.continuations->cell1->weight),
-            toTensor("continuations.cell.1.bias", m_modules.continuations->cell1->bias),
-            toTensor("continuations.worth.weight", m_modules.continuations->worth->weight),
-            toTensor("continuations.worth.bias", m_modules.continuations->worth->bias)};
+    std::vector<Tensor> result;
+    const auto add = [&](const std::string& name, const torch::nn::Linear& layer) {
+      result.push_back(toTensor(name + ".weight", layer->weight));
+      result.push_back(toTensor(name + ".bias", layer->bias));
+    };
+    const auto addTrunk = [&](const std::string& name, const auto& module) {
+      result.push_back(toTensor(name + ".mean", module.mean));
+      result.push_back(toTensor(name + ".scale", module.scale));
+      add(name + ".0", module.cell0);
+      add(name + ".1", module.cell1);
+    };
+    addTrunk("directions.cell", *m_modules.directions);
+    add("directions.blend", m_modules.directions->blend);
+    add("lights.0", m_modules.lights->layer0);
+    add("lights.1", m_modules.lights->layer1);
+    add("lights.2", m_modules.lights->layer2);
+    addTrunk("continuations.cell", *m_modules.continuations);
+    add("continuations.worth", m_modules.continuations->worth);
+    return result;
   }
 
   std::string state() const override {

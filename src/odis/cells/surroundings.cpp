@@ -23,11 +23,7 @@ ODIS_WIDE void lookFrom(const float* x, const float* y, const float* z, const fl
     const float squared = px * px + py * py + pz * pz;
     const bool there = (squared > 1e-12f) & (squared < INFINITY);  // not where one looks from
     const float scale = 1 / std::sqrt(there ? squared : 1.0f);
-    const Float2 square =
-        directionToSquare({there ? px * scale : x[i], there ? py * scale : y[i], there ? pz * scale : z[i]});
-    const int column = std::clamp(int(square.x * kMapSize), 0, kMapSize - 1),
-              row = std::clamp(int(square.y * kMapSize), 0, kMapSize - 1);
-    texels[i] = texelAt(column, row);
+    texels[i] = texelOf({there ? px * scale : x[i], there ? py * scale : y[i], there ? pz * scale : z[i]});
     nearer[i] = scale;
   }
 }

@@ -2,11 +2,8 @@
 // it, and parallax is what a histogram of the neighbours gets wrong.
 #pragma once
 
-#include <memory>
-#include <span>
 #include <vector>
 
-#include "odis/cells/grid.h"
 #include "odis/cells/statistics.h"
 
 namespace odis {
