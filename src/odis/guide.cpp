@@ -103,10 +103,15 @@ PilotDigest::PilotDigest(PilotDigest&&) noexcept = default;
 PilotDigest& PilotDigest::operator=(PilotDigest&&) noexcept = default;
 
 struct GuideBuilder::Data {
-  explicit Data(const GuideOptions& o) : options(o), store(o.clamp) {
-    if (!options.model) options.model = std::make_shared<HistogramModel>(o);
+  explicit Data(const GuideOptions& o)
+      : options(withFormulas(o)), store(o.clamp, options.model->looksAround()) {}
+
+  // Formulas where there is no model.
+  static GuideOptions withFormulas(GuideOptions options) {
+    if (!options.model) options.model = std::make_shared<HistogramModel>(options);
     if (!options.continuations) options.continuations = std::make_shared<ShrunkMoments>();
     if (!options.lights) options.lights = std::make_shared<ShrunkLightSquares>();
+    return options;
   }
   GuideOptions options;
   CellStore store;
@@ -130,24 +135,11 @@ void GuideBuilder::add(std::span<const PilotDigest> digests) {
   m_data->store.add(batches);
 }
 uint64_t GuideBuilder::bytes() const {
-  // What `build` makes beside the cells' statistics: a copy of them, distributions, sums for the selection.
-  constexpr uint64_t kPerCell = sizeof(CellStatistics) + sizeof(Surroundings) +
-                                sizeof(DirectionDistribution) + 2 * sizeof(CellSelection);
+  // What `build` makes beside the cells' statistics: distributions, sums for the selection.
+  constexpr uint64_t kPerCell = sizeof(DirectionDistribution) + 2 * sizeof(CellSelection);
   const CellStore& store = m_data->store;
   return store.bytes() + std::max(store.transientBytes(), store.index().size() * kPerCell);
 }
-
-namespace {
-
-// The cells, and what lies around them where that is asked for.
-struct RolledUp {
-  RolledUp(const CellStore& store, bool lookAround)
-      : cells(store.rollUp()), around(lookAround ? store.lookAround(cells) : nullptr) {}
-  std::vector<CellStatistics> cells;
-  std::unique_ptr<Surroundings[]> around;
-};
-
-}  // namespace
 
 // A guide of maps alone, made for coarse levels first; leaves the distributions that they were made from.
 Guide GuideBuilder::buildMaps(const std::vector<CellStatistics>& cells,
@@ -181,8 +173,7 @@ void GuideBuilder::addRouletteAndLights(Guide& guide, const std::vector<CellStat
 
 Guide GuideBuilder::build(PilotParts parts, std::span<const float> pixelValues) const {
   const GuideOptions& options = m_data->options;
-  const RolledUp rolledUp(m_data->store, m_data->options.model->looksAround());
-  const std::vector<CellStatistics>& cells = rolledUp.cells;
+  const std::vector<CellStatistics>& cells = m_data->store.rollUp();
   std::vector<DirectionDistribution> distributions;
   Guide guide = buildMaps(cells, distributions);
   std::vector<Cell>& result = guide.m_data->cells;
@@ -201,8 +192,7 @@ Guide GuideBuilder::build(PilotParts parts, std::span<const float> pixelValues) 
 }
 
 Guide GuideBuilder::rebuild(const Guide& previous) const {
-  const RolledUp rolledUp(m_data->store, m_data->options.model->looksAround());
-  const std::vector<CellStatistics>& cells = rolledUp.cells;
+  const std::vector<CellStatistics>& cells = m_data->store.rollUp();
   std::vector<DirectionDistribution> distributions;
   Guide guide = buildMaps(cells, distributions);
   std::vector<Cell>& result = guide.m_data->cells;

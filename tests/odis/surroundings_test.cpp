@@ -32,19 +32,17 @@ PilotVertex seeing(const Float3& position, const Float3& point) {
 }
 
 struct Cells {
-  explicit Cells(const std::vector<PilotVertex>& vertices, float edge = 1) : store(kFar) {
+  explicit Cells(const std::vector<PilotVertex>& vertices, float edge = 1) : store(kFar, true) {
     store.place(CellGrid({0, 0, 0}, edge));
     const std::span<const PilotVertex> part(vertices);
     store.add(PilotParts(&part, 1), 0);
     cells = store.rollUp();
-    around = store.lookAround(cells);
   }
   const CellStatistics& at(const Float3& position, int level = 0) const {
     return cells[store.index().find(store.grid().key(position, {0, 0, 1}, level))];
   }
   CellStore store;
   std::vector<CellStatistics> cells;
-  std::unique_ptr<Surroundings[]> around;
 };
 
 float sumOf(const Histogram& map) {
@@ -155,14 +153,43 @@ TEST(Surroundings, DoNotDependOnHowSamplesCame) {
     vertices.push_back(seeing({uniform(engine), uniform(engine), 0.5f}, {uniform(engine), 2, 3}));
   const Cells whole(vertices);
   // In two parts, at once.
-  CellStore store(kFar);
+  CellStore store(kFar, true);
   store.place(CellGrid({0, 0, 0}, 1));
   const std::span<const PilotVertex> all(vertices), parts[] = {all.first(1000), all.subspan(1000)};
   store.add(parts, 0);
-  std::vector<CellStatistics> cells = store.rollUp();
-  const auto around = store.lookAround(cells);
+  const std::vector<CellStatistics>& cells = store.rollUp();
   ASSERT_EQ(cells.size(), whole.cells.size());
   for (size_t c = 0; c < cells.size(); ++c) EXPECT_EQ(*cells[c].around, *whole.cells[c].around) << c;
+}
+
+TEST(Surroundings, WhatIsRolledUpIsNoPartOfWhatIsAddedLater) {
+  std::vector<PilotVertex> vertices;
+  std::mt19937 engine(4);
+  std::uniform_real_distribution<float> uniform(0, 6);
+  for (int i = 0; i < 3000; ++i)
+    vertices.push_back(seeing({uniform(engine), uniform(engine), 0.5f}, {uniform(engine), 2, 3}));
+  const std::span<const PilotVertex> all(vertices), parts[] = {all.first(500), all.subspan(500)};
+  CellStore stores[] = {CellStore(kFar, true), CellStore(kFar, true)};
+  for (CellStore& store : stores) {
+    store.place(CellGrid({0, 0, 0}, 1));
+    for (const auto& part : parts) {
+      store.add(PilotParts(&part, 1), 0);
+      if (&store == &stores[0]) store.rollUp();
+    }
+  }
+  const std::vector<CellStatistics>&cells = stores[0].rollUp(), &once = stores[1].rollUp();
+  ASSERT_EQ(cells.size(), once.size());
+  for (size_t c = 0; c < cells.size(); ++c) {
+    EXPECT_EQ(cells[c].count, once[c].count) << c;
+    EXPECT_EQ(cells[c].centroid.x, once[c].centroid.x) << c;
+    EXPECT_EQ(cells[c].histogram, once[c].histogram) << c;
+    EXPECT_EQ(*cells[c].around, *once[c].around) << c;
+  }
+  // All samples are in the coarsest level.
+  double count = 0;
+  for (const CellStatistics& cell : cells)
+    if (cell.level == kCellLevels - 1) count += cell.count;
+  EXPECT_EQ(count, double(vertices.size()));
 }
 
 }  // namespace

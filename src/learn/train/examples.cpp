@@ -123,14 +123,13 @@ ViewExamples examplesOf(const ShardReader& shard, size_t view, size_t pilotCount
     }
   }
   for (int variant = 0; variant < kInputVariants; ++variant) {
-    CellStore store(GuideOptions().clamp);
+    CellStore store(GuideOptions().clamp, true);
     store.place(CellGrid(frame.origin, frame.edge));
     std::vector<std::span<const PilotVertex>> parts;
     for (const size_t pilot : pilotsOf(variant, view, pilots.size()))
       parts.emplace_back(pilots[pilot].vertices);
     store.add(parts, 0);
-    std::vector<CellStatistics> cells = store.rollUp();
-    const std::unique_ptr<Surroundings[]> around = store.lookAround(cells);
+    const std::vector<CellStatistics>& cells = store.rollUp();
     for (const PilotVertex* vertex : vertices) addInput(store, cells, *vertex, frame.unit, examples);
   }
   return examples;

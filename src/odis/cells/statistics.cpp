@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "odis/cells/surroundings.h"
 
@@ -37,18 +38,13 @@ Float3 reaim(const Float3& position, const Float3& wi, float distance, const Flo
   return squared > 1e-20f && dot(direction, wi) > 0 ? direction * (1 / std::sqrt(squared)) : wi;
 }
 
-struct CellStore::Field {
-  Float3 middle;
-  std::vector<uint32_t> children;
-  LightField light;
-};
-
-CellStore::CellStore(float clamp) : m_clamp(clamp) {}
+CellStore::CellStore(float clamp, bool looksAround) : m_clamp(clamp), m_looksAround(looksAround) {}
 CellStore::~CellStore() = default;
 
 uint64_t CellStore::bytes() const {
   return m_cells.capacity() * sizeof(CellStatistics) + m_links.capacity() * sizeof(Link) +
-         m_fields.capacity() * sizeof(Field) + m_fieldOf.capacity() * sizeof(uint32_t) + m_index.bytes();
+         m_fields.capacity() * sizeof(LightField) + m_aroundSize * sizeof(Surroundings) + m_index.bytes() +
+         (m_fieldOf.capacity() + m_children.capacity() + m_firstChild.capacity()) * sizeof(uint32_t);
 }
 
 // The grid spans what the pilot saw, not what the scene holds: a huge ground plane must not make the cells
@@ -105,8 +101,9 @@ uint32_t CellStore::insert(uint64_t key) {
 
 namespace {
 
-// Adds a batch's samples to their cell, values clamped.
-void accumulate(CellStatistics& cell, float limit, float edge, std::span<const CellSample* const> samples) {
+// Adds samples to their cell, and to the light seen from the middle of its parent's cube if that is gathered; values clamped.
+void accumulate(CellStatistics& cell, LightField* field, const Float3& middle, float limit, float edge,
+                std::span<const CellSample* const> samples) {
   if (cell.count == 0) {
     forEachItem(samples, [&](const CellSample& s) { cell.centroid = cell.centroid + s.position; });
     cell.centroid = cell.centroid * (1.0f / float(samples.size()));
@@ -129,6 +126,7 @@ void accumulate(CellStatistics& cell, float limit, float edge, std::span<const C
     if (value <= 0) return;
     const Splat spread = splat(reaim(sample.position, sample.wi, sample.distance, cell.centroid));
     for (int k = 0; k < 4; ++k) cell.histogram[spread.texel[k]] += value * spread.weight[k];
+    if (field) field->add(sample, value, middle);
   });
 }
 
@@ -144,6 +142,29 @@ void CellStore::add(PilotParts parts, int cellsPerDiagonal) {
   add(batches);
 }
 
+// Makes room for the cells that got numbers.
+void CellStore::addNewCells() {
+  const size_t known = m_cells.size(), count = m_links.size();
+  m_cells.resize(count);
+  m_fieldOf.resize(count, kNoCell);
+  m_firstChild.assign(count + 1, 0);
+  for (size_t c = 0; c < count; ++c)
+    if (m_links[c].parent != kNoCell) ++m_firstChild[m_links[c].parent + 1];
+  std::partial_sum(m_firstChild.begin(), m_firstChild.end(), m_firstChild.begin());
+  m_children.resize(m_firstChild.back());
+  std::vector<uint32_t> free(m_firstChild.begin(), m_firstChild.end() - 1);
+  uint32_t fields = uint32_t(m_fields.size());
+  for (size_t c = 0; c < count; ++c) {
+    const Link& link = m_links[c];
+    if (link.parent != kNoCell) m_children[free[link.parent]++] = uint32_t(c);
+    if (c < known) continue;
+    m_cells[c].parent = link.parent;
+    m_cells[c].level = link.level;
+    if (m_looksAround && link.level == 1) m_fieldOf[c] = fields++;
+  }
+  m_fields.resize(fields);
+}
+
 void CellStore::add(std::span<const BatchSamples* const> batches) {
   // The cells get their numbers in the order of the vertices.
   std::vector<BatchCells> cells(batches.size());
@@ -153,18 +174,7 @@ void CellStore::add(std::span<const BatchSamples* const> batches) {
     cells[b].cellOf = batches[b]->cellOf;
     m_transientBytes += batches[b]->bytes();
   }
-  const size_t known = m_cells.size();
-  m_cells.resize(m_links.size());
-  m_fieldOf.resize(m_links.size(), kNoCell);
-  for (size_t c = known; c < m_cells.size(); ++c) {
-    m_cells[c].parent = m_links[c].parent;
-    m_cells[c].level = m_links[c].level;
-    if (m_links[c].level != 1) continue;
-    m_fieldOf[c] = uint32_t(m_fields.size());
-    m_fields.push_back({m_grid.middle(m_links[c].key), {}, {}});
-  }
-  for (size_t c = known; c < m_cells.size(); ++c)
-    if (m_links[c].level == 0) m_fields[m_fieldOf[m_links[c].parent]].children.push_back(uint32_t(c));
+  addNewCells();
 
   // Values are clamped to a multiple of the mean over the next coarser cell, so that no single path rules a
   // map.
@@ -181,86 +191,105 @@ void CellStore::add(std::span<const BatchSamples* const> batches) {
       sortByCell<CellSample>(cells, uint32_t(m_cells.size()),
                              [&](size_t b, size_t i) -> const CellSample& { return batches[b]->samples[i]; });
   m_transientBytes += order.bytes();
-  tbb::parallel_for(tbb::blocked_range<size_t>(0, m_fields.size(), 4),
-                    [&](const tbb::blocked_range<size_t>& range) {
-                      for (size_t f = range.begin(); f < range.end(); ++f)
-                        for (const uint32_t c : m_fields[f].children) {
-                          if (order.of(c).empty()) continue;
-                          const uint32_t parent = m_cells[c].parent;
-                          const float limit = m_clamp * float(parentSum[parent] / parentCount[parent]);
-                          accumulate(m_cells[c], limit, m_grid.finestEdge(), order.of(c));
-                          forEachItem(order.of(c), [&](const CellSample& sample) {
-                            m_fields[f].light.add(sample, limit, m_fields[f].middle);
-                          });
-                        }
-                    });
+  forEachCell(m_cells.size(), [&](size_t parent) {
+    if (m_links[parent].level != 1) return;
+    LightField* field = m_looksAround ? &m_fields[m_fieldOf[parent]] : nullptr;
+    const float limit = m_clamp * float(parentSum[parent] / parentCount[parent]);
+    for (const uint32_t c : childrenOf(parent))
+      if (!order.of(c).empty())
+        accumulate(m_cells[c], field, m_grid.middle(m_links[parent].key), limit, m_grid.finestEdge(),
+                   order.of(c));
+  });
 }
 
-std::vector<CellStatistics> CellStore::rollUp() const {
-  std::vector<CellStatistics> cells = m_cells;
-  for (int level = 0; level + 1 < kCellLevels; ++level)
-    for (size_t i = 0; i < cells.size(); ++i) {
-      const CellStatistics& child = cells[i];
-      if (child.level != level) continue;
-      CellStatistics& parent = cells[child.parent];
-      parent.count += child.count;
-      if (parent.count > 0)
-        parent.centroid =
-            parent.centroid + (child.centroid - parent.centroid) * float(child.count / parent.count);
-      parent.sum += child.sum;
-      parent.sumSquares += child.sumSquares;
-      for (size_t i = 0; i < 3; ++i) parent.outgoing[i] += child.outgoing[i];
-      parent.outgoingSquares += child.outgoingSquares;
-      parent.rays += child.rays;
-      parent.nearness += child.nearness;
-      for (size_t g = 0; g < parent.lightSquares.size(); ++g) parent.lightSquares[g] += child.lightSquares[g];
-      parent.normal = parent.normal + child.normal;
-      for (int t = 0; t < kMapTexels; ++t) parent.histogram[t] += child.histogram[t];
-    }
-  return cells;
+namespace {
+
+void addChild(CellStatistics& parent, const CellStatistics& child) {
+  parent.count += child.count;
+  if (parent.count > 0)
+    parent.centroid =
+        parent.centroid + (child.centroid - parent.centroid) * float(child.count / parent.count);
+  parent.sum += child.sum;
+  parent.sumSquares += child.sumSquares;
+  for (size_t i = 0; i < 3; ++i) parent.outgoing[i] += child.outgoing[i];
+  parent.outgoingSquares += child.outgoingSquares;
+  parent.rays += child.rays;
+  parent.nearness += child.nearness;
+  for (size_t g = 0; g < parent.lightSquares.size(); ++g) parent.lightSquares[g] += child.lightSquares[g];
+  parent.normal = parent.normal + child.normal;
+  for (int t = 0; t < kMapTexels; ++t) parent.histogram[t] += child.histogram[t];
 }
 
-std::unique_ptr<Surroundings[]> CellStore::lookAround(std::span<CellStatistics> cells) const {
-  // The fields of coarser levels are put together from their children's.
-  LightPoints points;
-  std::vector<uint32_t> pointsOf(cells.size(), kNoCell);
-  std::vector<LightField> fields;
-  std::vector<uint32_t> fieldOf = m_fieldOf;
-  for (const Field& field : m_fields) fields.push_back(field.light);
+}  // namespace
+
+const std::vector<CellStatistics>& CellStore::rollUp() {
   for (int level = 1; level < kCellLevels; ++level)
-    for (size_t c = 0; c < cells.size(); ++c) {
-      if (cells[c].level != level) continue;
-      pointsOf[c] = points.add(fields[fieldOf[c]], m_grid.middle(m_links[c].key));
-      const uint32_t parent = cells[c].parent;
-      if (parent == kNoCell) continue;
-      if (fieldOf[parent] == kNoCell) {
-        fieldOf[parent] = uint32_t(fields.size());
-        fields.emplace_back();
+    forEachCell(m_cells.size(), [&](size_t c) {
+      if (m_links[c].level != level) return;
+      CellStatistics& cell = m_cells[c];
+      cell = {};
+      cell.parent = m_links[c].parent;
+      cell.level = level;
+      for (const uint32_t child : childrenOf(c)) addChild(cell, m_cells[child]);
+    });
+  if (m_looksAround) lookAround();
+  return m_cells;
+}
+
+// Puts the light of coarser cells together from their children's, then lets all cells look at it.
+void CellStore::lookAround() {
+  LightPoints points;
+  std::vector<uint32_t> pointsOf(m_cells.size(), kNoCell);
+  for (int level = 1; level < kCellLevels; ++level)
+    for (size_t c = 0; c < m_cells.size(); ++c) {
+      if (m_links[c].level != level) continue;
+      const Float3 middle = m_grid.middle(m_links[c].key);
+      if (level == 1) {
+        pointsOf[c] = points.add(m_fields[m_fieldOf[c]], middle);
+        continue;
       }
-      points.addTo(fields[fieldOf[parent]], pointsOf[c], m_grid.middle(m_links[parent].key));
+      LightField light;
+      for (const uint32_t child : childrenOf(c)) points.addTo(light, pointsOf[child], middle);
+      pointsOf[c] = points.add(light, middle);
     }
 
   // The threads that fill it are the first to touch it.
-  auto result = std::make_unique_for_overwrite<Surroundings[]>(cells.size());
-  tbb::parallel_for(tbb::blocked_range<size_t>(0, cells.size(), 16),
-                    [&](const tbb::blocked_range<size_t>& range) {
-                      for (size_t c = range.begin(); c < range.end(); ++c) {
-                        uint64_t key = m_links[c].key;
-                        int level = cells[c].level;
-                        for (Histogram& map : result[c]) {
-                          map.fill(0);
-                          if (++level >= kCellLevels) continue;
-                          key = CellGrid::parent(key);
-                          for (int i = 0; i < 27; ++i) {
-                            const uint32_t near =
-                                m_index.find(CellGrid::neighbour(key, i % 3 - 1, i / 3 % 3 - 1, i / 9 - 1));
-                            if (near != kNoCell) points.addTo(map, pointsOf[near], cells[c].centroid);
-                          }
-                        }
-                        cells[c].around = &result[c];
-                      }
-                    });
-  return result;
+  if (m_aroundSize < m_cells.size()) {
+    m_around = std::make_unique_for_overwrite<Surroundings[]>(m_cells.size());
+    m_aroundSize = m_cells.size();
+  }
+  fillSurroundings(points, pointsOf);
+}
+
+// Cells of one parent, and of one grandparent, have the same cells around them: what those have seen is put together once, as
+// from the parent's centroid, and each child looks at that.
+void CellStore::fillSurroundings(const LightPoints& points, std::span<const uint32_t> pointsOf) {
+  const auto clear = [&](size_t cell, size_t map) { m_around[cell][map].fill(0); };
+  forEachCell(m_cells.size(), [&](size_t c) {
+    CellStatistics& cell = m_cells[c];
+    cell.around = &m_around[c];
+    if (cell.parent == kNoCell) clear(c, 0);
+    if (cell.parent == kNoCell || m_links[cell.parent].parent == kNoCell) clear(c, 1);
+    if (cell.level == 0) return;
+
+    LightField seen;
+    for (int i = 0; i < 27; ++i) {
+      const uint32_t near =
+          m_index.find(CellGrid::neighbour(m_links[c].key, i % 3 - 1, i / 3 % 3 - 1, i / 9 - 1));
+      if (near != kNoCell) points.addTo(seen, pointsOf[near], cell.centroid);
+    }
+    thread_local LightPoints around;
+    around.clear();
+    around.add(seen, cell.centroid);
+    const auto look = [&](size_t from, size_t map) {
+      clear(from, map);
+      around.addTo(m_around[from][map], 0, m_cells[from].centroid);
+    };
+    for (const uint32_t child : childrenOf(c)) {
+      look(child, 0);
+      for (const uint32_t grandchild : childrenOf(child)) look(grandchild, 1);
+    }
+  });
 }
 
 }  // namespace odis

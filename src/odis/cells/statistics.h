@@ -32,6 +32,7 @@ Splat splat(const Float3& wi);
 // values, zeros beyond the coarsest level.
 using Surroundings = std::array<Histogram, 2>;
 
+class LightPoints;
 struct LightField;
 
 struct CellStatistics {
@@ -49,7 +50,7 @@ struct CellStatistics {
   Float3 normal;                                        // sum of unit normals
   std::array<double, kMostLightGroups> lightSquares{};  // sums of CellSample::lightSquare, for each group
   Histogram histogram{};                                // of values by direction
-  const Surroundings* around = nullptr;                 // CellStore::lookAround
+  const Surroundings* around = nullptr;                 // null where nobody asked
 };
 
 // A cell and its ancestors, finest first; null beyond the coarsest.
@@ -62,21 +63,28 @@ inline CellChain chainOf(std::span<const CellStatistics> cells, size_t cell) {
   return chain;
 }
 
+// Calls `body` with the index of each cell, by many threads at once.
+template <class Body>
+void forEachCell(size_t count, const Body& body) {
+  tbb::parallel_for(tbb::blocked_range<size_t>(0, count, 16), [&](const tbb::blocked_range<size_t>& range) {
+    for (size_t cell = range.begin(); cell < range.end(); ++cell) body(cell);
+  });
+}
+
 // Calls `body` with the index of each cell: parents before their children, those of a level by many threads at once.
 template <class Body>
 void forEachFromCoarse(std::span<const CellStatistics> cells, const Body& body) {
   for (int level = kCellLevels - 1; level >= 0; --level)
-    tbb::parallel_for(tbb::blocked_range<size_t>(0, cells.size(), 16),
-                      [&](const tbb::blocked_range<size_t>& range) {
-                        for (size_t c = range.begin(); c < range.end(); ++c)
-                          if (cells[c].level == level) body(c);
-                      });
+    forEachCell(cells.size(), [&](size_t c) {
+      if (cells[c].level == level) body(c);
+    });
 }
 
 // The cells at every level. A coarser cell's statistics are the sums of its children's, formed by `rollUp`.
 class CellStore {
  public:
-  explicit CellStore(float clamp);
+  // `clamp` as in GuideOptions. What lies around the cells is gathered only if it is asked for.
+  explicit CellStore(float clamp, bool looksAround = false);
   ~CellStore();
 
   // Places the grid; otherwise the first call of `add` does.
@@ -86,10 +94,8 @@ class CellStore {
   // The same in two steps, once there is a grid: many threads take samples, one call adds them up.
   BatchSamples take(const PilotBatch& batch) const { return takeSamples(batch, m_grid); }
   void add(std::span<const BatchSamples* const> batches);
-  // The cells with the coarser levels filled in.
-  std::vector<CellStatistics> rollUp() const;
-  // What lies around each of the cells that rollUp() gave, who point to it.
-  std::unique_ptr<Surroundings[]> lookAround(std::span<CellStatistics> cells) const;
+  // The cells, with the coarser levels and what lies around filled in. They stay as they are until more is added.
+  const std::vector<CellStatistics>& rollUp();
 
   const CellGrid& grid() const { return m_grid; }
   const CellIndex& index() const { return m_index; }
@@ -101,8 +107,15 @@ class CellStore {
  private:
   void place(PilotParts parts, int cellsPerDiagonal);
   uint32_t insert(uint64_t key);
+  void addNewCells();
+  void lookAround();
+  void fillSurroundings(const LightPoints& points, std::span<const uint32_t> pointsOf);
+  std::span<const uint32_t> childrenOf(size_t cell) const {
+    return std::span(m_children).subspan(m_firstChild[cell], m_firstChild[cell + 1] - m_firstChild[cell]);
+  }
 
   float m_clamp;
+  bool m_looksAround;
   bool m_placed = false;
   CellGrid m_grid;
   CellIndex m_index;
@@ -113,10 +126,11 @@ class CellStore {
   };
   std::vector<Link> m_links;  // of all cells that have numbers
   std::vector<CellStatistics> m_cells;
-  // What arrives in the cells one level above the finest.
-  struct Field;
-  std::vector<Field> m_fields;
-  std::vector<uint32_t> m_fieldOf;  // of each cell: an index of m_fields, or kNoCell
+  std::vector<uint32_t> m_children, m_firstChild;  // of all cells, and where each cell's begin
+  std::vector<LightField> m_fields;                // what arrives in the cells one level above the finest
+  std::vector<uint32_t> m_fieldOf;                 // of each cell: an index of m_fields, or kNoCell
+  std::unique_ptr<Surroundings[]> m_around;        // of each cell
+  size_t m_aroundSize = 0;
   uint64_t m_transientBytes = 0;
 };
 

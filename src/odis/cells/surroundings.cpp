@@ -30,9 +30,7 @@ ODIS_WIDE void lookFrom(const float* x, const float* y, const float* z, const fl
 
 }  // namespace
 
-void LightField::add(const CellSample& sample, float limit, const Float3& middle) {
-  const float amount = std::min(sample.value, limit);
-  if (!(amount > 0)) return;
+void LightField::add(const CellSample& sample, float value, const Float3& middle) {
   Float3 direction = sample.wi;
   float nearness = 0;
   if (std::isfinite(sample.distance)) {
@@ -44,8 +42,14 @@ void LightField::add(const CellSample& sample, float limit, const Float3& middle
     }
   }
   const auto texel = size_t(texelOf(direction));
-  value[texel] += amount;
-  inverse[texel] += amount * nearness;
+  this->value[texel] += value;
+  inverse[texel] += value * nearness;
+}
+
+void LightPoints::clear() {
+  m_middle.clear();
+  m_begin.resize(1);
+  for (std::vector<float>* of : {&m_x, &m_y, &m_z, &m_inverse, &m_value}) of->clear();
 }
 
 uint32_t LightPoints::add(const LightField& field, const Float3& middle) {

@@ -12,12 +12,14 @@ namespace odis {
 // values over the distance from there.
 struct LightField {
   Histogram value{}, inverse{};
-  void add(const CellSample& sample, float limit, const Float3& middle);
+  // `value` is the sample's, clamped, and positive.
+  void add(const CellSample& sample, float value, const Float3& middle);
 };
 
 // Fields as points, one for each texel that is not dark, at its mean distance.
 class LightPoints {
  public:
+  void clear();
   // Adds the points of a field; returns its number.
   uint32_t add(const LightField& field, const Float3& middle);
 

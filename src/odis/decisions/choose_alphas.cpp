@@ -1,8 +1,5 @@
 #include "odis/decisions/choose_alphas.h"
 
-#include <tbb/blocked_range.h>
-#include <tbb/parallel_for.h>
-
 #include "odis/decisions/selection.h"
 
 namespace odis {
@@ -90,13 +87,6 @@ SecondMoments addJudged(CellSelection& sums, const PilotVertex& v, float scale, 
     if (v.lightPdf > 0) lightMapPdf = vertexMap.pdf(v.lightDirection);
   }
   return addVertex(sums, v, mapPdf, lightMapPdf, scale);
-}
-
-template <class Body>
-void forEachCell(size_t count, const Body& body) {
-  tbb::parallel_for(tbb::blocked_range<size_t>(0, count, 16), [&](const tbb::blocked_range<size_t>& range) {
-    for (size_t cell = range.begin(); cell < range.end(); ++cell) body(cell);
-  });
 }
 
 }  // namespace

@@ -26,17 +26,33 @@ float sumOver(const F& f) {
   return sum;
 }
 
-// The map with the sum 1, or nothing where it has none; returns the sum, or 0.
-ODIS_WIDE float normalize(const Histogram& from, Histogram& to) {
-  const float sum = sumOver([&](int t) { return from[t]; });
-  const float scale = sum > 0 && sum < INFINITY ? 1 / sum : 0;
-  for (int t = 0; t < kMapTexels; ++t) to[t] = scale > 0 ? from[t] * scale : 0;
-  return scale > 0 ? sum : 0;
+// 1 / sum of a map, 0 where that is no number to work with.
+ODIS_WIDE float inverseSum(const Histogram& map) {
+  const float sum = sumOver([&](int t) { return map[t]; });
+  return sum > 1e-30f && sum < INFINITY ? 1 / sum : 0;
 }
 
-// In bits, of a distribution.
-ODIS_WIDE float entropy(const Histogram& p) {
-  return -sumOver([&](int t) { return p[t] * fastLog2(p[t] > 1e-12f ? p[t] : 1e-12f); });
+// In bits, of a map that `perSum` makes a distribution of.
+ODIS_WIDE float entropy(const Histogram& map, float perSum) {
+  return -sumOver([&](int t) {
+    const float p = map[t] * perSum;
+    return p * fastLog2(p > 1e-12f ? p : 1e-12f);
+  });
+}
+
+// A distribution that goes with the cosine where that is not small.
+ODIS_WIDE Histogram lobeOf(const Histogram& cosines) {
+  Histogram lobe;
+  for (int t = 0; t < kMapTexels; ++t) lobe[t] = cosines[t] > 0.05f ? cosines[t] : 0.05f;
+  const float perSum = inverseSum(lobe);
+  for (float& value : lobe) value *= perSum;
+  return lobe;
+}
+
+ODIS_WIDE void cosinesTo(const Float3& normal, Histogram& cosines) {
+  for (int t = 0; t < kMapTexels; ++t)
+    cosines[t] = kTexelDirections.x[t] * normal.x + kTexelDirections.y[t] * normal.y +
+                 kTexelDirections.z[t] * normal.z;
 }
 
 }  // namespace
@@ -65,25 +81,33 @@ ODIS_WIDE Histogram blurred(const Histogram& map) {
 }
 
 Histogram basisMap(const CellFeatures& features, int map) {
-  if (map < kCellLevels) return features.levels[size_t(map)];
-  if (map == kOwnBlurred) return blurred(blurred(features.levels[0]));
-  if (map == kParentBlurred) return blurred(features.levels[1]);
-  return map == kLobe ? features.lobe : blurred(features.around[size_t(map - kAround)]);
+  if (map == kLobe) return features.lobe;
+  const auto of = size_t(map == kOwnBlurred ? 0 : map == kParentBlurred ? 1 : map);
+  Histogram result = *features.seen[of];
+  for (float& value : result) value *= features.perSum[of];
+  if (map == kOwnBlurred) result = blurred(result);
+  return map < kAround ? result : blurred(result);
 }
 
 ODIS_WIDE Histogram blendMaps(const CellFeatures& features, const std::array<float, kBasisMaps>& shares) {
-  const auto& levels = features.levels;
-  const auto& around = features.around;
-  Histogram twice, once, result;
-  for (int t = 0; t < kMapTexels; ++t) twice[t] = shares[kOwnBlurred] * levels[0][t];
+  const auto& seen = features.seen;
+  std::array<float, kHistograms> factors;
+  for (size_t m = 0; m < factors.size(); ++m) factors[m] = shares[m] * features.perSum[m];
+  const float ownBlurred = shares[kOwnBlurred] * features.perSum[0],
+              parentBlurred = shares[kParentBlurred] * features.perSum[1];
+  static_assert(kHistograms == 6);
+  const Histogram &own = *seen[0], &parent = *seen[1], &level2 = *seen[2], &level3 = *seen[3],
+                  &near = *seen[kAround], &far = *seen[kAround + 1];
+  Histogram twice, once;
+  for (int t = 0; t < kMapTexels; ++t) twice[t] = ownBlurred * own[t];
   twice = blurred(twice);
   for (int t = 0; t < kMapTexels; ++t)
-    once[t] = (twice[t] + shares[kParentBlurred] * levels[1][t]) +
-              (shares[kAround] * around[0][t] + shares[kAround + 1] * around[1][t]);
-  once = blurred(once);
+    once[t] =
+        (twice[t] + parentBlurred * parent[t]) + (factors[kAround] * near[t] + factors[kAround + 1] * far[t]);
+  Histogram result = blurred(once);
   for (int t = 0; t < kMapTexels; ++t)
-    result[t] = once[t] + shares[0] * levels[0][t] + shares[1] * levels[1][t] + shares[2] * levels[2][t] +
-                shares[3] * levels[3][t] + shares[kLobe] * features.lobe[t];
+    result[t] += (factors[0] * own[t] + factors[1] * parent[t]) +
+                 (factors[2] * level2[t] + factors[3] * level3[t]) + shares[kLobe] * features.lobe[t];
   return result;
 }
 
@@ -94,35 +118,29 @@ void computeFeatures(const CellChain& chain, CellFeatures& features) {
   const CellStatistics& own = *levels[0];
 
   // The maps.
-  auto& maps = features.levels;
-  auto& there = features.there;
-  for (int l = 0; l < kCellLevels; ++l) there[l] = normalize(levels[l]->histogram, maps[l]) > 0;
-  there[kOwnBlurred] = there[0];
-  there[kParentBlurred] = there[1];
-  static constexpr Surroundings kNowhere{};
-  const Surroundings& around = own.around ? *own.around : kNowhere;
-  for (size_t i = 0; i < around.size(); ++i) {
-    features.aroundSums[i] = normalize(around[i], features.around[i]);
-    there[kAround + i] = features.aroundSums[i] > 0;
+  auto& [scalars, seen, perSum, lobe, there, cosines] = features;
+  for (int l = 0; l < kCellLevels; ++l) seen[l] = &levels[l]->histogram;
+  for (size_t i = 0; i < 2; ++i) seen[kAround + i] = own.around ? &(*own.around)[i] : &kNothing.histogram;
+  for (size_t m = 0; m < seen.size(); ++m) {
+    perSum[m] = inverseSum(*seen[m]);
+    there[m] = perSum[m] > 0;
+    if (!there[m]) seen[m] = &kNothing.histogram;
   }
   const float length = std::sqrt(dot(own.normal, own.normal));
-  const Float3 normal = length > 0 ? own.normal * (1 / length) : Float3{0, 0, 1};
-  Histogram lobe;
-  for (int t = 0; t < kMapTexels; ++t) {
-    features.cosines[t] = kTexelDirections.x[t] * normal.x + kTexelDirections.y[t] * normal.y +
-                          kTexelDirections.z[t] * normal.z;
-    lobe[t] = std::max(features.cosines[t], 0.05f);
-  }
-  there[kLobe] = normalize(lobe, features.lobe) > 0;
+  cosinesTo(length > 0 ? own.normal * (1 / length) : Float3{0, 0, 1}, cosines);
+  lobe = lobeOf(cosines);
+  there[kOwnBlurred] = there[0];
+  there[kParentBlurred] = there[1];
+  there[kLobe] = true;
 
   // Of each level: how many samples it has, how many of them matter, how spread the light is. What tells scenes from each
   // other beside that (flatness, distances, brightness) was of no use in others.
-  float* next = features.scalars.data();
+  float* next = scalars.data();
   for (int l = 0; l < kCellLevels; ++l) {
     const CellStatistics& cell = *levels[l];
     *next++ = float(std::log2(1 + cell.count));
     *next++ = float(std::log2(1 + effectiveSamples(cell)));
-    *next++ = entropy(maps[l]);
+    *next++ = entropy(*seen[l], perSum[l]);
   }
 }
 

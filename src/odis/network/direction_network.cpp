@@ -44,17 +44,13 @@ DirectionDistribution DirectionNetwork::predict(const CellChain& chain, const Di
   for (int t = 0; t < kMapTexels; ++t)
     result.perCosine[t] = 1 / std::max(std::abs(features.cosines[t]), 0.1f);
 
-  // A sample stands in the histograms of its cell and of the ancestors, in those that are blurred, and in what lies around.
-  for (int level = 0; level < kCellLevels; ++level)
-    if (features.there[level]) {
-      float share = shares[level];
-      if (level == 0) share += kStaysTwice * shares[kOwnBlurred];
-      if (level == 1) share += kStaysOnce * shares[kParentBlurred];
-      result.sensitivity += share / float(chain[level]->sum);
-    }
-  for (size_t i = 0; i < features.around.size(); ++i)
-    if (features.there[kAround + i])
-      result.sensitivity += kStaysOnce * shares[kAround + i] / features.aroundSums[i];
+  // A sample stands in the histograms of its cell and of the ancestors, and in what lies around.
+  for (size_t m = 0; m < kHistograms; ++m) {
+    float share = m < kAround ? shares[m] : kStaysOnce * shares[m];
+    if (m == 0) share += kStaysTwice * shares[kOwnBlurred];
+    if (m == 1) share += kStaysOnce * shares[kParentBlurred];
+    result.sensitivity += share * features.perSum[m];
+  }
   return result;
 }
 
