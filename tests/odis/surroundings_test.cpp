@@ -31,6 +31,16 @@ PilotVertex seeing(const Float3& position, const Float3& point) {
   return vertexAt(position, to * (1 / distance), distance);
 }
 
+// Vertices all over a floor of 6 x 6, each of which sees some point of a line above it.
+std::vector<PilotVertex> floorBelowALine(unsigned seed) {
+  std::vector<PilotVertex> vertices;
+  std::mt19937 engine(seed);
+  std::uniform_real_distribution<float> uniform(0, 6);
+  for (int i = 0; i < 3000; ++i)
+    vertices.push_back(seeing({uniform(engine), uniform(engine), 0.5f}, {uniform(engine), 2, 3}));
+  return vertices;
+}
+
 struct Cells {
   explicit Cells(const std::vector<PilotVertex>& vertices, float edge = 1) : store(kFar, true) {
     store.place(CellGrid({0, 0, 0}, edge));
@@ -146,11 +156,7 @@ TEST(Surroundings, NothingIsAroundWhereAllIsDark) {
 }
 
 TEST(Surroundings, DoNotDependOnHowSamplesCame) {
-  std::vector<PilotVertex> vertices;
-  std::mt19937 engine(3);
-  std::uniform_real_distribution<float> uniform(0, 6);
-  for (int i = 0; i < 3000; ++i)
-    vertices.push_back(seeing({uniform(engine), uniform(engine), 0.5f}, {uniform(engine), 2, 3}));
+  const std::vector<PilotVertex> vertices = floorBelowALine(3);
   const Cells whole(vertices);
   // In two parts, at once.
   CellStore store(kFar, true);
@@ -163,11 +169,7 @@ TEST(Surroundings, DoNotDependOnHowSamplesCame) {
 }
 
 TEST(Surroundings, WhatIsRolledUpIsNoPartOfWhatIsAddedLater) {
-  std::vector<PilotVertex> vertices;
-  std::mt19937 engine(4);
-  std::uniform_real_distribution<float> uniform(0, 6);
-  for (int i = 0; i < 3000; ++i)
-    vertices.push_back(seeing({uniform(engine), uniform(engine), 0.5f}, {uniform(engine), 2, 3}));
+  const std::vector<PilotVertex> vertices = floorBelowALine(4);
   const std::span<const PilotVertex> all(vertices), parts[] = {all.first(500), all.subspan(500)};
   CellStore stores[] = {CellStore(kFar, true), CellStore(kFar, true)};
   for (CellStore& store : stores) {

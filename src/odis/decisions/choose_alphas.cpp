@@ -1,5 +1,7 @@
 #include "odis/decisions/choose_alphas.h"
 
+#include <tbb/parallel_for.h>
+
 #include "odis/decisions/selection.h"
 
 namespace odis {
