@@ -101,6 +101,7 @@ void writeLayers(const std::string& path, const Frame2D& frame, const FilmSettin
     planes.add("guide.entropy", frame.guideEntropy, true);
     planes.add("guide.survival", frame.guideSurvival, true);
     planes.add("guide.cell", frame.guideCell, false);
+    planes.add("guide.samples", frame.guideSamples, false);
   }
   writeExr(path, {film.width, film.height, frame.x, frame.y, frame.width, frame.height}, planes.channels(),
            metadata);

@@ -22,6 +22,13 @@ void MethodArguments::addTo(CLI::App& app) {
       ->check(CLI::IsMember({"path", "odis", "ppg", "openpgl", "restir"}))
       ->capture_default_str()
       ->group(group);
+  app.add_option("--samples", samples,
+                 "How samples are spread: as many for every pixel, or, for about as many rays, more where "
+                 "the first ones "
+                 "differ more; auto: adaptive for odis, even for others")
+      ->check(CLI::IsMember({"auto", "even", "adaptive"}))
+      ->capture_default_str()
+      ->group(group);
   app.add_option("--guide", guide,
                  "How the pilot is turned into maps: by the network, by the histogram formula, or by the "
                  "formula from "
@@ -119,6 +126,9 @@ void MethodArguments::apply(RenderOptions& options) const {
                        : integrator == "openpgl" ? IntegratorKind::openpgl
                        : integrator == "restir"  ? IntegratorKind::restir
                                                  : IntegratorKind::odis;
+  options.samples = samples == "even"       ? SampleSpread::even
+                    : samples == "adaptive" ? SampleSpread::adaptive
+                                            : SampleSpread::automatic;
   options.sampler = sampler == "sobol" ? SamplerKind::sobol : SamplerKind::independent;
   options.guide = guide == "oracle"      ? GuideKind::oracle
                   : guide == "histogram" ? GuideKind::histogram

@@ -17,7 +17,7 @@ namespace odis::app {
 // How a method differs from another: everything but the scene, the number of samples and the outputs.
 struct MethodArguments {
   std::string integrator = "odis", sampler = "sobol", guide = "network", weights, roulette = "formula",
-              endedPaths = "mean", lights = "network", shadowRays = "roulette";
+              endedPaths = "mean", lights = "network", shadowRays = "roulette", samples = "auto";
   int guideBounces = -1, refineSpp = 3, oracleSpp = 64;
   double pilotSpp = 0, pilotWeight = -1;
   GuideOptions cells;

@@ -44,6 +44,7 @@ TEST(GuideFeatures, SayWhatWasDecided) {
     EXPECT_NEAR(frame.guideEntropy[i], 8, 1e-3f) << "a map that is all floor is even";
     EXPECT_GE(frame.guideSurvival[i], 0.3f);
     EXPECT_LE(frame.guideSurvival[i], 1);
+    EXPECT_GE(frame.guideSamples[i], 2);
   }
   EXPECT_GT(known, 1000);
   EXPECT_GT(asTold, 980);

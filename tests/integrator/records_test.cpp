@@ -1,6 +1,7 @@
 // What the pilot records, and that images repeat to the bit.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cstring>
 
 #include "integrator/test_scenes.h"
@@ -96,15 +97,17 @@ TEST(Repeatable, ReplaysOfGuidedPathsAreTheirPixel) {
   options.spp = 5;
   options.pilotWeight = 0;
   options.guideOptions.controlVariate = false;
+  options.features = options.guideFeatures = true;  // they tell how many samples a pixel has
   const RenderResult result = test::renderScene(*scene, options);
   int kept = 0;  // vertices that roulette might have ended
   for (int x = 2; x < 22; ++x) {
     float mean = 0;
-    for (int sample = 1; sample < options.spp; ++sample) {
+    const int samples = int(result.frame.guideSamples[3 * 24 + x]);
+    for (int sample = 1; sample < samples; ++sample) {
       const std::string text = replay(*scene, options, {x, 3}, sample);
       float radiance = 0;
       ASSERT_EQ(std::sscanf(text.c_str(), "pixel %*d,3 sample %*d: radiance %*f %f", &radiance), 1) << text;
-      mean += radiance / float(options.spp - 1);
+      mean += radiance / float(samples - 1);
       float expected = radiance;  // what the next vertex scatters
       for (size_t at = text.find("  vertex"); at != std::string::npos; at = text.find("  vertex", at + 1)) {
         float weight = 0, direct = 0, arriving = 0;
@@ -131,9 +134,32 @@ TEST(Samples, EveryPixelGetsWhatWasAskedFor) {
       RenderOptions options;
       options.spp = spp;
       options.pilotSpp = pilot;
+      options.samples = SampleSpread::even;
       const RenderResult result = test::renderScene(*scene, options);
       EXPECT_EQ(result.stats.samples, uint64_t(24 * 24 * spp));
     }
+}
+
+TEST(Samples, AreSpreadForAboutAsManyRays) {
+  const auto scene = test::loadScene(test::indirectRoom(48));
+  for (const IntegratorKind kind : {IntegratorKind::path, IntegratorKind::odis}) {
+    RenderOptions options;
+    options.integrator = kind;
+    options.spp = 16;
+    options.samples = SampleSpread::even;
+    const RenderResult even = test::renderScene(*scene, options);
+    options.samples = SampleSpread::adaptive;
+    options.features = options.guideFeatures = true;
+    const RenderResult adaptive = test::renderScene(*scene, options);
+    EXPECT_NEAR(double(adaptive.stats.rays) / double(even.stats.rays), 1, 0.05);
+    if (kind == IntegratorKind::path) continue;
+    const auto [least, most] =
+        std::minmax_element(adaptive.frame.guideSamples.begin(), adaptive.frame.guideSamples.end());
+    EXPECT_GE(*least, 8);
+    EXPECT_LT(*least, 16);
+    EXPECT_GT(*most, 16);
+    EXPECT_LE(*most, 48);
+  }
 }
 
 TEST(Samples, OfThePilotDependOnTheImage) {

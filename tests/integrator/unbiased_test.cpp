@@ -78,7 +78,7 @@ struct IndirectRoom {
 };
 class UnbiasedTest : public test::AgainstPath<IndirectRoom> {};
 
-constexpr int kTests = 16;
+constexpr int kTests = 18;
 
 TEST_F(UnbiasedTest, Histogram) {
   expectUnbiased(guidedOptions(), 96, kTests);
@@ -114,6 +114,20 @@ TEST_F(UnbiasedTest, AdversarialMaps) {
     // Twice as many seeds as elsewhere: where a map hardly looks at the light, tails are heavy.
     expectUnbiased(options, 192, kTests);
   }
+}
+
+TEST_F(UnbiasedTest, AsManySamplesEverywhere) {
+  RenderOptions options = guidedOptions();
+  options.samples = SampleSpread::even;
+  expectUnbiased(options, 96, kTests);
+}
+
+TEST_F(UnbiasedTest, AdaptivePathTracing) {
+  RenderOptions options = guidedOptions();
+  options.integrator = IntegratorKind::path;
+  options.samples = SampleSpread::adaptive;
+  options.sampler = SamplerKind::independent;
+  expectUnbiased(options, 192, kTests);
 }
 
 TEST_F(UnbiasedTest, NeverRefined) {

@@ -53,4 +53,21 @@ std::vector<float> pixelEstimates(const std::vector<PixelSums>& image, int width
   return result;
 }
 
+std::vector<PixelNoise> pixelNoise(const std::vector<PixelSums>& a, const std::vector<PixelSums>& b) {
+  std::vector<PixelNoise> result(a.size());
+  for (size_t pixel = 0; pixel < result.size(); ++pixel) {
+    PixelSums all = a[pixel];
+    all.add(b[pixel]);
+    if (all.count == 0) continue;
+    const Rgbd mean = all.sum / double(all.count);
+    result[pixel].value = luminance(Rgb(float(mean.x), float(mean.y), float(mean.z)));
+    result[pixel].cost = float(all.rays) / float(all.count);
+    if (all.count < 2) continue;
+    const Rgbd deviations = all.sumSquares - mean * all.sum;
+    const double variance = (deviations.x + deviations.y + deviations.z) / 3 / (all.count - 1);
+    result[pixel].variance = float(std::max(variance, 0.0));
+  }
+  return result;
+}
+
 }  // namespace odis::render

@@ -1,6 +1,8 @@
 // Several images of the same scene made into one.
 #pragma once
 
+#include <odis/sample_counts.h>
+
 #include <span>
 #include <vector>
 
@@ -21,5 +23,8 @@ void combine(std::span<const WeightedImage> images, std::vector<Rgb>& color, std
 // An estimate of each pixel's luminance, to measure contributions by: the mean over a block of pixels, with a
 // little of the image's mean so that nothing is divided by almost nothing.
 std::vector<float> pixelEstimates(const std::vector<PixelSums>& image, int width);
+
+// What the samples of two images tell of the noise of one more.
+std::vector<PixelNoise> pixelNoise(const std::vector<PixelSums>& a, const std::vector<PixelSums>& b);
 
 }  // namespace odis::render

@@ -33,7 +33,7 @@ void deliver(const Pass& pass, const Path& path, uint32_t pixel, float filterWei
   // A path that is not a number (a broken normal, an overflow) would spoil its pixel for good: it counts as
   // black.
   const Rgb value = isFinite(path.radiance) ? path.radiance * filterWeight : Rgb(0, 0, 0);
-  if (pass.image) (*pass.image)[pixel].add(value);
+  if (pass.image) (*pass.image)[pixel].add(value, path.counts.rays + path.counts.shadowRays);
   if (pass.emitted) (*pass.emitted)[pixel] += path.emitted * filterWeight;
   if (pass.features) (*pass.features)[pixel].add(path.first);
 }

@@ -14,12 +14,17 @@ struct PixelSums {
   Rgbd sum{0, 0, 0};
   Rgbd sumSquares{0, 0, 0};
   uint32_t count = 0;
+  uint32_t rays = 0;  // of them all, shadow rays included
 
-  void add(const Rgb& value) {
+  void add(const Rgb& value, uint64_t raysOfSample) {
     const Rgbd v(value.x, value.y, value.z);
-    sum += v;
-    sumSquares += v * v;
-    ++count;
+    add({v, v * v, 1, uint32_t(raysOfSample)});
+  }
+  void add(const PixelSums& other) {
+    sum += other.sum;
+    sumSquares += other.sumSquares;
+    count += other.count;
+    rays += other.rays;
   }
 };
 
@@ -30,8 +35,7 @@ struct Pass {
   PathSettings path;
   SamplerKind sampler = SamplerKind::sobol;
   uint64_t seed = 0;
-  // The samples [first, first + count) of a pixel, given its index; must not depend on anything that was
-  // rendered.
+  // The samples [first, first + count) of a pixel, given its index; must not depend on what samples of that pixel brought.
   std::function<std::pair<uint32_t, uint32_t>(uint32_t pixel)> samples;
   Purposes redrawn = 0;  // independent numbers for these are others than without it
 

@@ -7,6 +7,7 @@
 
 #include <bit>
 #include <chrono>
+#include <limits>
 #include <memory>
 
 #include "render/integrator/combine.h"
@@ -30,6 +31,8 @@ double secondsSince(Clock::time_point start) {
 // A pilot of a quarter of a sample per pixel is for images of at least so many pixels and fewer samples than that.
 constexpr size_t kManyPixels = 200000;
 constexpr int kManySamples = 8;
+// Of fewer samples than this none are spread by what the first ones say.
+constexpr uint32_t kFewestToSpread = 4;
 // Seeds of passes that are no part of the image.
 constexpr uint64_t kOracleSeed = 0x6f7261636c65ull;
 constexpr uint64_t kSampleImageSeed = 0x73616d706c65ull;
@@ -66,6 +69,7 @@ class Renderer {
     if (options.integrator == IntegratorKind::odis)
       m_pilotCounts = pilotCounts(m_pixels, uint32_t(scene.film().crop.width), m_pilotSpp,
                                   uint32_t(options.spp), options.seed);
+    m_most = mostRemaining();
   }
 
   RenderResult run() {
@@ -78,7 +82,7 @@ class Renderer {
         runPilot();
         buildGuide();
       }
-      runRemaining(mostRemaining());
+      runRemaining(std::numeric_limits<uint32_t>::max());
     }
     RenderResult result;
     result.frame = combine();
@@ -185,6 +189,11 @@ class Renderer {
   // How many of the pixel's samples belong to the pilot.
   uint32_t pilotCount(uint32_t pixel) const { return m_pilotCounts.empty() ? 0 : m_pilotCounts[pixel]; }
 
+  // How many samples the pixel has in all.
+  uint32_t sampleCount(uint32_t pixel) const {
+    return m_counts.empty() ? uint32_t(m_options.spp) : m_counts[pixel];
+  }
+
   void runPilot() {
     const Clock::time_point start = Clock::now();
     Pass pass = basicPass();
@@ -290,24 +299,25 @@ class Renderer {
     return std::bit_floor(std::min(uint32_t(m_options.refineSpp), mostRemaining() / 2) + 1) - 1;
   }
 
-  // So many of the samples that the pilot left. The guide learns from the first of them, too.
-  void runRemaining(uint32_t count) {
+  // At most so many of the samples that the pilot left, in each pixel. The guide learns from the first of them, too, and
+  // after the first of all it is settled how many there are.
+  void runRemaining(uint32_t limit) {
     const Clock::time_point start = Clock::now();
     const double building = m_stats.secondsBuild;
     const bool guided = m_options.integrator == IntegratorKind::odis;
-    const uint32_t spp = uint32_t(m_options.spp), learning = lastRefinement();
-    m_progress.begin(guided ? "guided" : "path", m_pixels * uint64_t(count));
-    for (uint32_t done = 0, next; done < count && !stop(); done = next) {
+    const uint32_t learning = lastRefinement(), probing = samplesToProbe();
+    m_progress.begin(guided ? "guided" : "path", m_pixels * uint64_t(std::min(m_most, limit)));
+    for (uint32_t done = 0, next; done < std::min(m_most, limit) && !stop(); done = next) {
       const bool learns = done < learning;
-      next = std::min(count, done + (learns ? 1 : kSamplesPerPass));
+      next = std::min({m_most, limit, done + (learns ? 1 : done < probing ? probing : kSamplesPerPass)});
       Pass pass = basicPass();
       if (guided) {
         useGuide(pass.path);
         pass.pixelValues = m_pixelValues;
       }
-      pass.samples = [this, done, next, spp](uint32_t pixel) {
-        const uint32_t first = std::min(pilotCount(pixel) + done, spp);
-        return std::pair(first, std::min(spp - first, next - done));
+      pass.samples = [this, done, next](uint32_t pixel) {
+        const uint32_t end = sampleCount(pixel), first = std::min(pilotCount(pixel) + done, end);
+        return std::pair(first, std::min(end - first, next - done));
       };
       pass.image = &m_guided;
       std::vector<PilotDigest> digests;
@@ -316,10 +326,37 @@ class Renderer {
         pass.digests = &digests;
       }
       run(pass);
-      if (learns && !stop()) refineGuide(digests, next);
+      if (stop()) break;
+      if (next == probing) spreadSamples();
+      if (learns) refineGuide(digests, next);
     }
     m_progress.end();
     m_stats.secondsGuided = secondsSince(start) - (m_stats.secondsBuild - building);
+  }
+
+  // How many of the samples that the pilot left are rendered before it is settled how many each pixel has; 0: all have as
+  // many. Two samples of a pixel are needed to tell.
+  uint32_t samplesToProbe() const {
+    const bool guided = m_options.integrator == IntegratorKind::odis;
+    const bool adaptive = m_options.samples == SampleSpread::adaptive ||
+                          (m_options.samples == SampleSpread::automatic && guided);
+    if (!adaptive || uint32_t(m_options.spp) < kFewestToSpread || m_pilotSpp + 2 >= m_options.spp) return 0;
+    return guided ? 1 : 2;
+  }
+
+  // Settles how many samples each pixel has. Guided samples are told apart from those that they are counted by, the pilot's
+  // can't be, since all that comes after them depends on them: so their share in the image stays what it would have been.
+  void spreadSamples() {
+    const uint32_t spp = uint32_t(m_options.spp);
+    m_counts = sampleCounts(pixelNoise(m_pilot, m_guided), m_scene.film().crop.width, m_options.spp);
+    m_most = 0;
+    for (uint32_t pixel = 0; pixel < m_pixels; ++pixel) {
+      const uint32_t pilot = pilotCount(pixel);
+      m_counts[pixel] = std::max(m_counts[pixel], pilot + m_guided[pixel].count);
+      const uint32_t remaining = m_counts[pixel] - pilot;
+      if (pilot > 0) m_pilotWeights[pixel] *= float(remaining) / float(spp - pilot);
+      m_most = std::max(m_most, remaining);
+    }
   }
 
   // Learns from the vertices of a guided pass, and rebuilds the guide where it is time.
@@ -439,6 +476,9 @@ class Renderer {
     m_stats.spp = double(m_stats.samples) / double(std::max<size_t>(m_pixels, 1));
     const bool guide = m_options.guideFeatures && m_options.integrator == IntegratorKind::odis;
     if (m_options.features) writeFeatures(m_features, guide, frame);
+    if (m_options.features && guide)
+      for (size_t pixel = 0; pixel < m_pixels; ++pixel)
+        frame.guideSamples.push_back(float(m_pilot[pixel].count + m_guided[pixel].count));
     return frame;
   }
 
@@ -467,6 +507,8 @@ class Renderer {
   std::vector<Rgb> m_emitted;
   std::vector<float> m_pixelValues;  // as the pilot sees them
   std::vector<float> m_pilotWeights;
+  std::vector<uint32_t> m_counts;  // samples of each pixel; empty: options' everywhere
+  uint32_t m_most = 0;             // that the pilot left in a pixel
   std::unique_ptr<GuideBuilder> m_builder;
   Guide m_guide;
   std::unique_ptr<Rival> m_rival;                    // null: path, odis

@@ -23,15 +23,19 @@ enum class GuideKind { network, histogram, oracle };
 enum class RouletteKind { throughput, formula, network };
 enum class LightChoiceKind { hierarchy, formula, network };
 enum class ShadowRayKind { all, roulette };
+enum class SampleSpread { automatic, even, adaptive };
 
 struct RenderOptions {
   IntegratorKind integrator = IntegratorKind::odis;
   SamplerKind sampler = SamplerKind::sobol;
   int spp = 4;
   uint64_t seed = 0;
-  int threads = 0;        // 0: one a core
-  int maxDepth = -1;      // -1: unlimited; 1 is directly visible emission, as Mitsuba counts
-  int rrDepth = 5;        // Russian roulette from this depth on
+  int threads = 0;    // 0: one a core
+  int maxDepth = -1;  // -1: unlimited; 1 is directly visible emission, as Mitsuba counts
+  int rrDepth = 5;    // Russian roulette from this depth on
+  // How the samples are spread over the pixels: as many for each, or more where the first ones differ more, for about as
+  // many rays (odis/sample_counts.h). Automatic: adaptive for odis, even for others. Adaptive needs 4 samples per pixel.
+  SampleSpread samples = SampleSpread::automatic;
   double timeLimit = 0;   // seconds; 0: none. The image then has as many whole passes as fitted in.
   bool variance = false;  // also estimate the variance of each pixel
   bool features = false;  // also write albedo, normals, position, depth, roughness
@@ -77,9 +81,9 @@ struct Frame2D {
   std::vector<Rgb> albedo;    // features at the first non-delta vertex; empty unless asked for
   std::vector<Vec3> normal, geometricNormal, position;
   std::vector<float> depth, roughness;
-  // What the guide has decided at that vertex: share of the BSDF, entropy of the map in bits, survival, cell. Empty unless
-  // asked for.
-  std::vector<float> guideAlpha, guideEntropy, guideSurvival, guideCell;
+  // What the guide has decided at that vertex: share of the BSDF, entropy of the map in bits, survival, cell; and how many
+  // samples the pixel has. Empty unless asked for.
+  std::vector<float> guideAlpha, guideEntropy, guideSurvival, guideCell, guideSamples;
 };
 
 struct RenderStats {

@@ -54,10 +54,7 @@ std::vector<WeightedImage> weighByVariance(std::span<const std::vector<PixelSums
   if (images.empty()) return {};
   std::vector<PixelSums> all(images.front().size());
   for (const std::vector<PixelSums>& image : images)
-    for (size_t pixel = 0; pixel < all.size(); ++pixel) {
-      all[pixel].sum += image[pixel].sum;
-      all[pixel].count += image[pixel].count;
-    }
+    for (size_t pixel = 0; pixel < all.size(); ++pixel) all[pixel].add(image[pixel]);
   const std::vector<float> estimates = pixelEstimates(all, width);
   std::vector<std::array<double, 2>> ofColour;
   for (size_t i = 0; i < images.size(); ++i) {

@@ -153,7 +153,7 @@ RayCounts renderRestirFrame(const Pass& pass, const RestirOptions& options, uint
 
   std::vector<RayCounts> counts(frame.pixelCount());
   tbb::parallel_for(all, [&](const tbb::blocked_range<size_t>& range) {
-    for (size_t i = range.begin(); i < range.end(); ++i) (*pass.image)[i].add(frame.gather(i, counts[i]));
+    for (size_t i = range.begin(); i < range.end(); ++i) (*pass.image)[i].add(frame.gather(i, counts[i]), 0);
   });
   for (size_t i = 0; i < counts.size(); ++i) {
     total.rays += frame.counts(i).rays;
