@@ -186,6 +186,7 @@ TEST_P(Models, StaysFiniteAtTheEdges) {
           const BsdfFeatures features = bsdf().features(m_at, wo);
           EXPECT_TRUE(isFinite(features.albedo) && features.roughness >= 0 && features.roughness <= 1);
           EXPECT_TRUE(features.albedo == clampUnit(features.albedo));
+          EXPECT_EQ(bsdf().roughness(m_at, wo), features.roughness);
         }
 }
 

@@ -73,6 +73,8 @@ class Bsdf {
   // draws.
   virtual float guidableProbability(const SurfacePoint& at, const Vec3& wo) const = 0;
   virtual BsdfFeatures features(const SurfacePoint& at, const Vec3& wo) const = 0;
+  // That of features() alone, for those that know it without looking at textures.
+  virtual float roughness(const SurfacePoint& at, const Vec3& wo) const { return features(at, wo).roughness; }
 
   const BsdfTraits& traits() const { return m_traits; }
 

@@ -31,6 +31,7 @@ class Diffuse final : public Bsdf {
   BsdfFeatures features(const SurfacePoint& at, const Vec3&) const override {
     return {clampUnit(m_reflectance(at)), 1};
   }
+  float roughness(const SurfacePoint&, const Vec3&) const override { return 1; }
 
  private:
   RgbParameter m_reflectance;

@@ -33,6 +33,7 @@ class RoughDiffuse final : public Bsdf {
   BsdfFeatures features(const SurfacePoint& at, const Vec3&) const override {
     return {clampUnit(m_reflectance(at)), 1};
   }
+  float roughness(const SurfacePoint&, const Vec3&) const override { return 1; }
 
  private:
   // pi f, in the notation of the paper: alpha and beta are the larger and the smaller of the polar angles.

@@ -31,6 +31,9 @@ class TwoSided final : public Bsdf {
   BsdfFeatures features(const SurfacePoint& at, const Vec3& wo) const override {
     return wo.z >= 0 ? m_front->features(at, wo) : m_back->features(at, flipped(wo));
   }
+  float roughness(const SurfacePoint& at, const Vec3& wo) const override {
+    return wo.z >= 0 ? m_front->roughness(at, wo) : m_back->roughness(at, flipped(wo));
+  }
 
  private:
   static Vec3 flipped(const Vec3& w) { return {w.x, w.y, -w.z}; }

@@ -66,7 +66,7 @@ class VertexGuide {
       m_active = m_alpha < 1;
       return;
     }
-    m_alpha = cell->alpha[int(materialClass(bsdf.features(at, wo).roughness))];
+    m_alpha = cell->alpha[int(materialClass(bsdf.roughness(at, wo)))];
     if (m_alpha >= 1) return;
     m_map.prepare(cell->map, toOdis(normal), sides);
     m_active = !m_map.empty();
@@ -230,7 +230,7 @@ void record(const PathSettings& settings, Path& path, Batch& batch, const Surfac
   v.guidablePdf = next.guidablePdf;
   v.guidableProbability = bsdf.guidableProbability(at, wo);
   v.distance = kInfinity;
-  v.roughness = bsdf.features(at, wo).roughness;
+  v.roughness = bsdf.roughness(at, wo);
   v.cosine = std::abs(next.wi.z);
   v.light = luminance(path.throughput * light.radiance);
   if (!isBlack(direct)) {
