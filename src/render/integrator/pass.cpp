@@ -38,7 +38,8 @@ void deliver(const Pass& pass, const Path& path, uint32_t pixel, float filterWei
   if (pass.features) (*pass.features)[pixel].add(path.first);
 }
 
-// All samples of a tile, one of each pixel at a time; appends their vertices to `records` if it is given.
+// All samples of a tile, one of each pixel at a time, or several where few pixels are left that have one; appends their vertices
+// to `records` if it is given.
 // Returns how many samples they were.
 uint64_t renderTile(const Pass& pass, const PathSettings& settings, int x0, int y0,
                     std::vector<PilotVertex>* records, RayCounts& counts) {
@@ -48,8 +49,7 @@ uint64_t renderTile(const Pass& pass, const PathSettings& settings, int x0, int 
   std::vector<Path> paths;
   std::vector<std::pair<uint32_t, float>> targets;  // pixel and weight of each path
   for (uint32_t round = 0;; ++round) {
-    paths.clear();
-    targets.clear();
+    const size_t before = paths.size();
     for (const uint32_t index : pixels) {
       const auto [first, count] = pass.samples(index);
       if (round >= count) continue;
@@ -63,7 +63,8 @@ uint64_t renderTile(const Pass& pass, const PathSettings& settings, int x0, int 
       if (!pass.pixelValues.empty()) paths.back().pixelValue = pass.pixelValues[index];
       targets.emplace_back(index, filterWeight);
     }
-    if (paths.empty()) return done;
+    const bool last = paths.size() == before;
+    if (!last && paths.size() < pixels.size()) continue;
     size_t vertex = records ? records->size() : 0;
     tracePaths(settings, paths, records);
     for (size_t i = 0; i < paths.size(); ++i) {
@@ -77,6 +78,9 @@ uint64_t renderTile(const Pass& pass, const PathSettings& settings, int x0, int 
       }
     }
     done += paths.size();
+    if (last) return done;
+    paths.clear();
+    targets.clear();
   }
 }
 
