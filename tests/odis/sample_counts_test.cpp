@@ -39,13 +39,13 @@ TEST(SampleCounts, GoWhereNoiseIsForAboutTheSameCost) {
   const std::vector<uint32_t> counts = sampleCounts(noise, kSize, 100);
   double cost = 0, before = 0;
   for (size_t i = 0; i < noise.size(); ++i) {
-    cost += counts[i] * (noise[i].cost + 1.0);
-    before += 100 * (noise[i].cost + 1.0);
+    cost += counts[i] * noise[i].cost;
+    before += 100 * noise[i].cost;
   }
   EXPECT_NEAR(cost / before, 1, 0.02);
-  // Far from the border: (variance / cost)^0.4 with a ray's worth for what a sample costs besides its rays.
+  // Far from the border: (variance / cost)^0.4.
   const double ratio = counts[at(0, 32)] / double(counts[at(kSize - 1, 32)]);
-  EXPECT_NEAR(ratio, std::pow(16.0 / 3.0, 0.4), 0.05);
+  EXPECT_NEAR(ratio, std::pow(4.0, 0.4), 0.05);
 }
 
 TEST(SampleCounts, AreRelativeToWhatPixelsAreWorth) {

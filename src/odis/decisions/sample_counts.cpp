@@ -16,10 +16,9 @@ constexpr double kPriorSamples = 1;
 constexpr double kLeastValue = 0.1;
 // No pixel counts for more: a single path that finds rare light says little of the pixels around it.
 constexpr double kMostVariance = 20;
+constexpr double kLeastCost = 1e-3;
 // Blocks that see no noise at all are taken to have this share of the image's.
 constexpr double kLeastVariance = 0.001;
-// What a sample costs besides its rays, in rays.
-constexpr double kFixedCost = 1;
 constexpr double kLeastShare = 0.5, kGreatestShare = 3;
 // Of variance over cost. For independent samples 1/2 leaves the least error; stratified ones gain more where they vary little,
 // and what pixels around have seen is but an estimate.
@@ -106,7 +105,7 @@ SumTable seenBy(const Board& board, int color, std::span<const PixelNoise> noise
     board.forEachPixel(x, y, [&](size_t pixel) {
       ++sums.pixels;
       sums.value += noise[pixel].value;
-      sums.cost += noise[pixel].cost + kFixedCost;
+      sums.cost += noise[pixel].cost;
     });
   });
   const SumTable values(board, blocks);
@@ -139,7 +138,7 @@ Demand demandOf(const Sums& around, const Sums& image) {
   const double variance =
       (samples * around.meanVariance() + kPriorSamples * prior) / (samples + kPriorSamples);
   const Sums& costs = around.empty() ? image : around;
-  const double cost = costs.cost / costs.pixels;
+  const double cost = std::max(costs.cost / costs.pixels, kLeastCost);
   return {std::pow(std::max(variance, kLeastVariance * prior) / cost, kExponent), cost};
 }
 
