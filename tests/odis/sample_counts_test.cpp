@@ -48,6 +48,15 @@ TEST(SampleCounts, GoWhereNoiseIsForAboutTheSameCost) {
   EXPECT_NEAR(ratio, std::pow(4.0, 0.4), 0.05);
 }
 
+TEST(SampleCounts, AreFewestWhereThereIsNoNoise) {
+  std::vector<PixelNoise> noise = evenNoise();
+  for (int y = 0; y < kSize; ++y)
+    for (int x = 0; x < kSize / 2; ++x) noise[at(x, y)].variance = 0;
+  const std::vector<uint32_t> counts = sampleCounts(noise, kSize, 16);
+  EXPECT_EQ(counts[at(4, 32)], 8u);
+  EXPECT_GE(counts[at(60, 32)], 22u);
+}
+
 TEST(SampleCounts, AreRelativeToWhatPixelsAreWorth) {
   std::vector<PixelNoise> noise = evenNoise();
   for (int y = 0; y < kSize; ++y)

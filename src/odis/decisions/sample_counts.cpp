@@ -132,8 +132,9 @@ struct Demand {
 };
 
 Demand demandOf(const Sums& around, const Sums& image) {
-  const bool sees = around.squares > 1e-12 * image.squares;
-  const double samples = sees ? around.variance * around.variance / around.squares : 0;
+  // Many samples of which one has all the variance are but one; those that have none agree.
+  const bool noisy = around.squares > 1e-12 * image.squares;
+  const double samples = noisy ? around.variance * around.variance / around.squares : around.known;
   const double prior = image.meanVariance();
   const double variance =
       (samples * around.meanVariance() + kPriorSamples * prior) / (samples + kPriorSamples);
