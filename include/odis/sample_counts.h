@@ -10,8 +10,8 @@ namespace odis {
 // What the first samples of a pixel tell of one more.
 struct PixelNoise {
   float value = 0;  // luminance of their mean
-  float variance =
-      -1;  // of a sample, a mean over channels: half the squared difference of two, say. Negative: not known.
+  // Of a sample, a mean over channels: half the squared difference of two, say. Negative: not known.
+  float variance = -1;
   float cost = 1;  // of a sample: its rays, camera ray and shadow rays included
 };
 
