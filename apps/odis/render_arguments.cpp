@@ -23,9 +23,8 @@ void MethodArguments::addTo(CLI::App& app) {
       ->capture_default_str()
       ->group(group);
   app.add_option("--samples", samples,
-                 "How samples are spread: as many for every pixel, or, for about as many rays, more where "
-                 "the first ones "
-                 "differ more; auto: adaptive for odis, even for others")
+                 "How samples are spread: as many for every pixel, or more where the first ones differ more, "
+                 "for about as many rays; auto: adaptive for odis, even for others")
       ->check(CLI::IsMember({"auto", "even", "adaptive"}))
       ->capture_default_str()
       ->group(group);

@@ -21,7 +21,7 @@ struct PixelNoise {
 //
 // Blocks of 2 x 2 pixels are coloured like a chessboard, and what a white block is given is made of what the black ones
 // around it have seen, and the other way round. So, if samples of different pixels are independent, a pixel's count does
-// not depend on its own samples, and their mean is unbiased although their number is random. 120 bytes a block.
+// not depend on its own samples, and their mean is unbiased although their number is random. 150 bytes a block.
 std::vector<uint32_t> sampleCounts(std::span<const PixelNoise> noise, int width, double mean);
 
 }  // namespace odis

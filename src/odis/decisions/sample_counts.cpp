@@ -148,7 +148,7 @@ Demand demandOf(const Sums& around, const Sums& image) {
 std::vector<uint32_t> sampleCounts(std::span<const PixelNoise> noise, int width, double mean) {
   if (noise.empty()) return {};
   const Board board{width, int(noise.size() / size_t(width))};
-  std::vector<double> shares(board.size(), 1.0);
+  std::vector<uint32_t> counts(noise.size(), uint32_t(std::lround(mean)));
   for (const int color : {0, 1}) {
     const SumTable others = seenBy(board, 1 - color, noise);
     if (!(others.all().meanVariance() > 0)) continue;
@@ -165,14 +165,11 @@ std::vector<uint32_t> sampleCounts(std::span<const PixelNoise> noise, int width,
       scale *= cost / scaled;
     }
     auto demand = demands.begin();
-    board.forEach(color, [&](int x, int y) { shares[board.index(x, y)] = (demand++)->share(scale); });
-  }
-  std::vector<uint32_t> counts(noise.size());
-  for (const int color : {0, 1})
     board.forEach(color, [&](int x, int y) {
-      const uint32_t count = uint32_t(std::lround(mean * shares[board.index(x, y)]));
+      const uint32_t count = uint32_t(std::lround(mean * (demand++)->share(scale)));
       board.forEachPixel(x, y, [&](size_t pixel) { counts[pixel] = count; });
     });
+  }
   return counts;
 }
 

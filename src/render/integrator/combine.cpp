@@ -53,6 +53,11 @@ std::vector<float> pixelEstimates(const std::vector<PixelSums>& image, int width
   return result;
 }
 
+double sampleVariance(const PixelSums& s) {
+  const Rgbd deviations = s.sumSquares - s.sum * s.sum / double(s.count);
+  return (deviations.x + deviations.y + deviations.z) / 3 / (s.count - 1);
+}
+
 std::vector<PixelNoise> pixelNoise(const std::vector<PixelSums>& a, const std::vector<PixelSums>& b) {
   std::vector<PixelNoise> result(a.size());
   for (size_t pixel = 0; pixel < result.size(); ++pixel) {
@@ -62,10 +67,7 @@ std::vector<PixelNoise> pixelNoise(const std::vector<PixelSums>& a, const std::v
     const Rgbd mean = all.sum / double(all.count);
     result[pixel].value = luminance(Rgb(float(mean.x), float(mean.y), float(mean.z)));
     result[pixel].cost = float(all.rays) / float(all.count);
-    if (all.count < 2) continue;
-    const Rgbd deviations = all.sumSquares - mean * all.sum;
-    const double variance = (deviations.x + deviations.y + deviations.z) / 3 / (all.count - 1);
-    result[pixel].variance = float(std::max(variance, 0.0));
+    if (all.count >= 2) result[pixel].variance = float(std::max(sampleVariance(all), 0.0));
   }
   return result;
 }

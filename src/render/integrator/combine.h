@@ -24,6 +24,9 @@ void combine(std::span<const WeightedImage> images, std::vector<Rgb>& color, std
 // little of the image's mean so that nothing is divided by almost nothing.
 std::vector<float> pixelEstimates(const std::vector<PixelSums>& image, int width);
 
+// The unbiased estimate of a sample's variance, a mean over channels; at least two samples.
+double sampleVariance(const PixelSums& sums);
+
 // What the samples of two images tell of the noise of one more.
 std::vector<PixelNoise> pixelNoise(const std::vector<PixelSums>& a, const std::vector<PixelSums>& b);
 

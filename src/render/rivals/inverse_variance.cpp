@@ -18,11 +18,6 @@ double average(const Rgbd& c) {
   return (c.x + c.y + c.z) / 3;
 }
 
-// The unbiased estimate of a sample's variance; at least two samples.
-double sampleVariance(const PixelSums& s) {
-  return average(s.sumSquares - s.sum * s.sum / double(s.count)) / (s.count - 1);
-}
-
 // The variance of a sample of `image`, relative to the pixels' values squared, over the pixels of either
 // colour. Not a number where there is nothing to tell it by.
 std::array<double, 2> relativeVariance(const std::vector<PixelSums>& image,

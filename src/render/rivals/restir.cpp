@@ -153,11 +153,15 @@ RayCounts renderRestirFrame(const Pass& pass, const RestirOptions& options, uint
 
   std::vector<RayCounts> counts(frame.pixelCount());
   tbb::parallel_for(all, [&](const tbb::blocked_range<size_t>& range) {
-    for (size_t i = range.begin(); i < range.end(); ++i) (*pass.image)[i].add(frame.gather(i, counts[i]), 0);
+    for (size_t i = range.begin(); i < range.end(); ++i) {
+      counts[i] = frame.counts(i);
+      const Rgb value = frame.gather(i, counts[i]);
+      (*pass.image)[i].add(value, counts[i].rays + counts[i].shadowRays);
+    }
   });
-  for (size_t i = 0; i < counts.size(); ++i) {
-    total.rays += frame.counts(i).rays;
-    total.shadowRays += frame.counts(i).shadowRays + counts[i].shadowRays;
+  for (const RayCounts& pixel : counts) {
+    total.rays += pixel.rays;
+    total.shadowRays += pixel.shadowRays;
   }
   return total;
 }
