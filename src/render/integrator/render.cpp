@@ -1,11 +1,9 @@
 #include "render/integrator/render.h"
-#include "render/integrator/pilot_counts.h"
 
 #include <fmt/format.h>
 #include <tbb/global_control.h>
 #include <tbb/info.h>
 
-#include <bit>
 #include <chrono>
 #include <limits>
 #include <memory>
@@ -14,6 +12,7 @@
 #include "render/integrator/path_text.h"
 #include "render/integrator/pilot_pass.h"
 #include "render/integrator/sample_image.h"
+#include "render/integrator/schedule.h"
 #include "render/rivals/inverse_variance.h"
 #include "render/rivals/open_pgl.h"
 #include "render/rivals/ppg.h"
@@ -28,15 +27,10 @@ double secondsSince(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();
 }
 
-// A pilot of a quarter of a sample per pixel is for images of at least so many pixels and fewer samples than that.
-constexpr size_t kManyPixels = 200000;
-constexpr int kManySamples = 8;
-// Of fewer samples than this none are spread by what the first ones say.
-constexpr uint32_t kFewestToSpread = 4;
 // Seeds of passes that are no part of the image.
 constexpr uint64_t kOracleSeed = 0x6f7261636c65ull;
 constexpr uint64_t kSampleImageSeed = 0x73616d706c65ull;
-// How many samples per pixel a pass takes at most, so that there is progress and an end in sight.
+// How many samples per pixel a rival's pass takes at most, so that there is progress and an end in sight.
 constexpr uint32_t kSamplesPerPass = 8;
 // How many iterations of a rival are combined by their variances, as Müller 2019 does.
 constexpr size_t kIterationsCombined = 4;
@@ -58,18 +52,12 @@ class Renderer {
         m_lights(scene.emitters()),
         m_start(Clock::now()),
         m_pixels(size_t(scene.film().crop.width) * scene.film().crop.height),
-        m_pilotSpp(options.pilotSpp > 0                                    ? std::max(options.pilotSpp, 1e-3)
-                   : m_pixels >= kManyPixels && options.spp < kManySamples ? 0.25
-                                                                           : 1.0),
+        m_schedule(options, m_pixels, uint32_t(scene.film().crop.width)),
         m_pilot(m_pixels),
         m_guided(m_pixels) {
     if (options.features) m_features.resize(m_pixels);
     if (options.records) m_emitted.assign(m_pixels, Rgb(0, 0, 0));
     m_rival = makeRival(options);
-    if (options.integrator == IntegratorKind::odis)
-      m_pilotCounts = pilotCounts(m_pixels, uint32_t(scene.film().crop.width), m_pilotSpp,
-                                  uint32_t(options.spp), options.seed);
-    m_most = mostRemaining();
   }
 
   RenderResult run() {
@@ -129,7 +117,7 @@ class Renderer {
   void samples(const std::function<void(const SampleRenderer&)>& use) {
     if (m_options.integrator == IntegratorKind::restir)
       throw OptionError("--integrator restir: a pixel is made of many paths, it has no samples of its own");
-    if (m_options.integrator == IntegratorKind::odis && m_pilotSpp >= m_options.spp)
+    if (m_options.integrator == IntegratorKind::odis && m_schedule.pilotSpp() >= m_options.spp)
       throw OptionError("--pilot-spp: all samples are the pilot's, expected fewer");
     Pass pass = basicPass();
     pass.path = settingsOf(0, uint32_t(m_options.spp) - 1);
@@ -147,10 +135,10 @@ class Renderer {
     if (m_rival) {
       runRival(sample);
       settings.rival = m_rival.get();
-    } else if (m_options.integrator == IntegratorKind::odis && sample >= pilotCount(pixel)) {
+    } else if (m_options.integrator == IntegratorKind::odis && sample >= m_schedule.pilotCount(pixel)) {
       runPilot();
       buildGuide();
-      runRemaining(std::min(sample - pilotCount(pixel), lastRefinement()));
+      runRemaining(std::min(sample - m_schedule.pilotCount(pixel), m_schedule.lastRefinement()));
       useGuide(settings);
     }
     return settings;
@@ -186,22 +174,15 @@ class Renderer {
     m_stats.shadowRays += counts.shadowRays;
   }
 
-  // How many of the pixel's samples belong to the pilot.
-  uint32_t pilotCount(uint32_t pixel) const { return m_pilotCounts.empty() ? 0 : m_pilotCounts[pixel]; }
-
-  // How many samples the pixel has in all.
-  uint32_t sampleCount(uint32_t pixel) const {
-    return m_counts.empty() ? uint32_t(m_options.spp) : m_counts[pixel];
-  }
-
   void runPilot() {
     const Clock::time_point start = Clock::now();
     Pass pass = basicPass();
-    pass.samples = [this](uint32_t pixel) { return std::pair(0u, pilotCount(pixel)); };
+    pass.samples = [this](uint32_t pixel) { return std::pair(0u, m_schedule.pilotCount(pixel)); };
     pass.image = &m_pilot;
     pass.records = &m_records;
     pass.emitted = m_options.records ? &m_emitted : nullptr;
-    m_progress.begin("pilot", uint64_t(double(m_pixels) * std::min(double(m_options.spp), m_pilotSpp)));
+    m_progress.begin("pilot",
+                     uint64_t(double(m_pixels) * std::min(double(m_options.spp), m_schedule.pilotSpp())));
     run(pass);
     m_progress.end();
     m_stats.secondsPilot = secondsSince(start);
@@ -286,17 +267,7 @@ class Renderer {
     m_stats.cells = m_guide.cellCount();
     m_stats.bytesMaps = m_guide.bytes();
     m_stats.bytesBuild = std::max(m_stats.bytesBuild, m_builder->bytes() + bytesVertices);
-    if (guidedSamples >= lastRefinement()) m_builder.reset();
-  }
-
-  // How many samples per pixel the pilot left at most: all of them for the path tracer.
-  uint32_t mostRemaining() const { return uint32_t(m_options.spp) - (m_pilotSpp >= 1 ? pilotCount(0) : 0); }
-
-  // After how many guided samples per pixel the guide is built for the last time: one less than a power of two, and at
-  // least as many samples must be left. 0: after the pilot only.
-  uint32_t lastRefinement() const {
-    if (m_options.integrator != IntegratorKind::odis || m_options.guide == GuideKind::oracle) return 0;
-    return std::bit_floor(std::min(uint32_t(m_options.refineSpp), mostRemaining() / 2) + 1) - 1;
+    if (guidedSamples >= m_schedule.lastRefinement()) m_builder.reset();
   }
 
   // At most so many of the samples that the pilot left, in each pixel. The guide learns from the first of them, too, and
@@ -305,20 +276,17 @@ class Renderer {
     const Clock::time_point start = Clock::now();
     const double building = m_stats.secondsBuild;
     const bool guided = m_options.integrator == IntegratorKind::odis;
-    const uint32_t learning = lastRefinement(), probing = samplesToProbe();
-    m_progress.begin(guided ? "guided" : "path", m_pixels * uint64_t(std::min(m_most, limit)));
-    for (uint32_t done = 0, next; done < std::min(m_most, limit) && !stop(); done = next) {
-      const bool learns = done < learning;
-      next = std::min({m_most, limit, done + (learns ? 1 : done < probing ? probing : kSamplesPerPass)});
+    const auto most = [&] { return std::min(m_schedule.mostRemaining(), limit); };
+    m_progress.begin(guided ? "guided" : "path", m_pixels * uint64_t(most()));
+    for (uint32_t done = 0, next; done < most() && !stop(); done = next) {
+      const bool learns = done < m_schedule.lastRefinement();
+      next = std::min(m_schedule.passEnd(done), limit);
       Pass pass = basicPass();
       if (guided) {
         useGuide(pass.path);
         pass.pixelValues = m_pixelValues;
       }
-      pass.samples = [this, done, next](uint32_t pixel) {
-        const uint32_t end = sampleCount(pixel), first = std::min(pilotCount(pixel) + done, end);
-        return std::pair(first, std::min(end - first, next - done));
-      };
+      pass.samples = [this, done, next](uint32_t pixel) { return m_schedule.remaining(pixel, done, next); };
       pass.image = &m_guided;
       std::vector<PilotDigest> digests;
       if (learns) {
@@ -327,36 +295,19 @@ class Renderer {
       }
       run(pass);
       if (stop()) break;
-      if (next == probing) spreadSamples();
+      if (next == m_schedule.spreadAfter()) spreadSamples();
       if (learns) refineGuide(digests, next);
     }
     m_progress.end();
     m_stats.secondsGuided = secondsSince(start) - (m_stats.secondsBuild - building);
   }
 
-  // How many of the samples that the pilot left are rendered before it is settled how many each pixel has; 0: all have as
-  // many. Two samples of a pixel are needed to tell.
-  uint32_t samplesToProbe() const {
-    const bool guided = m_options.integrator == IntegratorKind::odis;
-    const bool adaptive = m_options.samples == SampleSpread::adaptive ||
-                          (m_options.samples == SampleSpread::automatic && guided);
-    if (!adaptive || uint32_t(m_options.spp) < kFewestToSpread || m_pilotSpp + 2 >= m_options.spp) return 0;
-    return guided ? 1 : 2;
-  }
-
   // Settles how many samples each pixel has. Guided samples are told apart from those that they are counted by, the pilot's
   // can't be, since all that comes after them depends on them: so their share in the image stays what it would have been.
   void spreadSamples() {
-    const uint32_t spp = uint32_t(m_options.spp);
-    m_counts = sampleCounts(pixelNoise(m_pilot, m_guided), m_scene.film().crop.width, m_options.spp);
-    m_most = 0;
-    for (uint32_t pixel = 0; pixel < m_pixels; ++pixel) {
-      const uint32_t pilot = pilotCount(pixel);
-      m_counts[pixel] = std::max(m_counts[pixel], pilot + m_guided[pixel].count);
-      const uint32_t remaining = m_counts[pixel] - pilot;
-      if (pilot > 0) m_pilotWeights[pixel] *= float(remaining) / float(spp - pilot);
-      m_most = std::max(m_most, remaining);
-    }
+    m_schedule.spread(sampleCounts(pixelNoise(m_pilot, m_guided), m_scene.film().crop.width, m_options.spp));
+    for (uint32_t pixel = 0; pixel < m_pilotWeights.size(); ++pixel)
+      m_pilotWeights[pixel] *= m_schedule.remainingRatio(pixel);
   }
 
   // Learns from the vertices of a guided pass, and rebuilds the guide where it is time.
@@ -499,16 +450,13 @@ class Renderer {
   LightSampler m_lights;
   Clock::time_point m_start;
   size_t m_pixels;
-  double m_pilotSpp;                    // m_options' or its default
-  std::vector<uint32_t> m_pilotCounts;  // samples of the pilot in each pixel; empty: none
+  Schedule m_schedule;
   std::vector<PixelSums> m_pilot, m_guided;
   std::vector<FeatureSums> m_features;
   Records m_records;
   std::vector<Rgb> m_emitted;
   std::vector<float> m_pixelValues;  // as the pilot sees them
   std::vector<float> m_pilotWeights;
-  std::vector<uint32_t> m_counts;  // samples of each pixel; empty: options' everywhere
-  uint32_t m_most = 0;             // that the pilot left in a pixel
   std::unique_ptr<GuideBuilder> m_builder;
   Guide m_guide;
   std::unique_ptr<Rival> m_rival;                    // null: path, odis
