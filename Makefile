@@ -52,8 +52,8 @@ format:              ## Format the C++ sources in place
 format-check:        ## Fail if `make format` would change anything
 	@scripts/format --check
 
-lint: build          ## Run clang-tidy on all sources
-	@scripts/lint $(BUILD)
+lint:                ## Run clang-tidy on all sources
+	@scripts/lint
 
 clean:               ## Remove what was built and what the demo wrote
 	@rm -rf build out

@@ -39,7 +39,7 @@ int merge(const Arguments& a) {
 }
 
 int check(const Arguments& a) {
-  const learn::Inspection found = learn::checkShards(a.folder, countingOn(a.quiet));
+  const learn::FolderReport found = learn::checkShards(a.folder, countingOn(a.quiet));
   if (const int code = complain(found.complaints); code != kOk) {
     say(fmt::format("error: {} faults\n", found.complaints.size()));
     return code;

@@ -26,7 +26,7 @@ int complain(const std::vector<std::string>& complaints) {
 
 int collectManifest(const std::string& folder, const std::vector<learn::ShardSource>& expected, bool quiet) {
   learn::removeLeftOvers(folder);
-  learn::Inspection found = learn::describeShards(folder, countingOn(quiet));
+  learn::FolderReport found = learn::describeShards(folder, countingOn(quiet));
   for (const std::string& name : learn::missingShards(expected, found.manifest))
     found.complaints.push_back(learn::shardFile(folder, name) + ": is missing");
   // A manifest of less than all would make the rest look as if it did not belong.

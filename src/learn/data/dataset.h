@@ -35,7 +35,7 @@ void makeShards(const std::vector<ShardSource>& sources, const DataSettings& set
 std::vector<std::string> shardsIn(const std::string& folder);
 
 // What a folder holds, and what there is to complain about.
-struct Inspection {
+struct FolderReport {
   nlohmann::ordered_json manifest;
   std::vector<std::string> complaints;  // each names the file
 };
@@ -50,10 +50,10 @@ void gatherShards(const std::vector<std::string>& folders, const std::string& in
 void removeLeftOvers(const std::string& folder);
 // Reads and unpacks all shards of a folder and describes them in a manifest. Shards that are damaged or were made with
 // other settings than the first are complained about, and left out.
-Inspection describeShards(const std::string& folder, const CountProgress& progress);
+FolderReport describeShards(const std::string& folder, const CountProgress& progress);
 // Compares the shards with the folder's manifest: size and CRC-32, too few and too many, files left half-made. Throws
 // ShardError if there is no manifest.
-Inspection checkShards(const std::string& folder, const CountProgress& progress);
+FolderReport checkShards(const std::string& folder, const CountProgress& progress);
 
 // Throws ShardError if there is none or if it is not one.
 nlohmann::ordered_json readManifest(const std::string& folder);

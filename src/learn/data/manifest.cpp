@@ -118,7 +118,7 @@ void removeLeftOvers(const std::string& folder) {
     if (fs::exists(wholeOf(half))) fs::remove(half, ignored);
 }
 
-Inspection describeShards(const std::string& folder, const CountProgress& progress) {
+FolderReport describeShards(const std::string& folder, const CountProgress& progress) {
   const std::vector<std::string> names = shardsIn(folder);
   std::vector<Json> shards(names.size());
   std::vector<nlohmann::json> settings(names.size());
@@ -139,7 +139,7 @@ Inspection describeShards(const std::string& folder, const CountProgress& progre
     }
   });
 
-  Inspection result;
+  FolderReport result;
   Json all = Json::array();
   std::set<std::string> versions;
   const nlohmann::json* common = nullptr;
@@ -164,8 +164,8 @@ Inspection describeShards(const std::string& folder, const CountProgress& progre
   return result;
 }
 
-Inspection checkShards(const std::string& folder, const CountProgress& progress) {
-  Inspection result;
+FolderReport checkShards(const std::string& folder, const CountProgress& progress) {
+  FolderReport result;
   result.manifest = readManifest(folder);
   const Json& shards = result.manifest.at("shards");
   std::vector<std::string> faults(shards.size());

@@ -30,8 +30,6 @@ double secondsSince(Clock::time_point start) {
 // Seeds of passes that are no part of the image.
 constexpr uint64_t kOracleSeed = 0x6f7261636c65ull;
 constexpr uint64_t kSampleImageSeed = 0x73616d706c65ull;
-// How many samples per pixel a rival's pass takes at most, so that there is progress and an end in sight.
-constexpr uint32_t kSamplesPerPass = 8;
 // How many iterations of a rival are combined by their variances, as Müller 2019 does.
 constexpr size_t kIterationsCombined = 4;
 // The oracle's selection probabilities come from this many of its passes.

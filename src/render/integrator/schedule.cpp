@@ -16,8 +16,6 @@ constexpr size_t kManyPixels = 200000;
 constexpr int kManySamples = 8;
 // Of fewer samples than this none are spread by what the first ones say.
 constexpr int kFewestToSpread = 4;
-// How many samples per pixel a pass takes at most, so that there is progress and an end in sight.
-constexpr uint32_t kSamplesPerPass = 8;
 
 double pilotSppOf(const RenderOptions& options, size_t pixels) {
   if (options.integrator != IntegratorKind::odis) return 0;
@@ -53,11 +51,10 @@ Schedule::Schedule(const RenderOptions& options, size_t pixels, uint32_t width)
     m_pilotCounts = pilotCounts(pixels, width, m_pilotSpp, m_spp, options.seed);
     if (m_pilotSpp >= 1) m_mostRemaining -= pilotCount(0);
     if (options.guide != GuideKind::oracle)
-      m_lastRefinement =
-          std::bit_floor(std::min(uint32_t(options.refineSpp), m_mostRemaining / 2) + 1) - 1;
+      m_lastRefinement = std::bit_floor(std::min(uint32_t(options.refineSpp), m_mostRemaining / 2) + 1) - 1;
   }
-  const bool adaptive = options.samples == SampleSpread::adaptive ||
-                        (options.samples == SampleSpread::automatic && guided);
+  const bool adaptive =
+      options.samples == SampleSpread::adaptive || (options.samples == SampleSpread::automatic && guided);
   // Two samples of a pixel tell how much they differ; a pilot's may be the first.
   if (adaptive && options.spp >= kFewestToSpread && m_pilotSpp + 2 < options.spp)
     m_spreadAfter = guided ? 1 : 2;

@@ -10,6 +10,9 @@ namespace odis::render {
 
 struct RenderOptions;
 
+// How many samples per pixel a pass takes at most, so that there is progress and an end in sight.
+inline constexpr uint32_t kSamplesPerPass = 8;
+
 // A pixel's first samples are the pilot's, where there is one; what remains is guided. The guide learns from the first
 // samples that remain, too, and after some of them it may be settled how many each pixel has. 8 bytes a pixel.
 class Schedule {
