@@ -9,18 +9,27 @@ namespace odis {
 
 namespace {
 
-constexpr size_t kVector = 8;
+constexpr size_t kVector = 8, kBlock = 4 * kVector;
 static_assert(kWidestLayer % kVector == 0);
 
-// Column by column, so that all outputs grow together.
+// The next `Width` outputs, column by column: in registers, where all of them grow together.
+template <size_t Width>
+[[gnu::always_inline]] inline void accumulateNext(const float* columns, const float* bias, const float* x,
+                                                  size_t inputs, size_t outputs, float* y) {
+  float sums[Width];
+  std::copy_n(bias, Width, sums);
+  for (size_t i = 0; i < inputs; ++i)
+    for (size_t k = 0; k < Width; ++k) sums[k] += columns[i * outputs + k] * x[i];
+  std::copy_n(sums, Width, y);
+}
+
 ODIS_WIDE void accumulate(const float* columns, const float* bias, const float* x, size_t inputs,
                           size_t outputs, float* y) {
-  std::copy_n(bias, outputs, y);
-  for (size_t i = 0; i < inputs; ++i) {
-    const float* column = columns + i * outputs;
-    for (size_t o = 0; o < outputs; o += kVector)
-      for (size_t k = o; k < o + kVector; ++k) y[k] += column[k] * x[i];
-  }
+  size_t o = 0;
+  for (; o + kBlock <= outputs; o += kBlock)
+    accumulateNext<kBlock>(columns + o, bias + o, x, inputs, outputs, y + o);
+  for (; o < outputs; o += kVector)
+    accumulateNext<kVector>(columns + o, bias + o, x, inputs, outputs, y + o);
 }
 
 ODIS_WIDE void accumulateLanes(const float* rows, const float* bias, const float* x, size_t inputs,
