@@ -28,8 +28,7 @@ ODIS_WIDE void accumulate(const float* columns, const float* bias, const float* 
   size_t o = 0;
   for (; o + kBlock <= outputs; o += kBlock)
     accumulateNext<kBlock>(columns + o, bias + o, x, inputs, outputs, y + o);
-  for (; o < outputs; o += kVector)
-    accumulateNext<kVector>(columns + o, bias + o, x, inputs, outputs, y + o);
+  for (; o < outputs; o += kVector) accumulateNext<kVector>(columns + o, bias + o, x, inputs, outputs, y + o);
 }
 
 ODIS_WIDE void accumulateLanes(const float* rows, const float* bias, const float* x, size_t inputs,
