@@ -186,7 +186,7 @@ class Inspector {
       LevelView& level = m_result.levels.emplace_back();
       level.cell = c;
       level.edge = m_store.grid().finestEdge() * float(1 << cell.level);
-      level.effective = cell.sumSquares > 0 ? cell.sum * cell.sum / cell.sumSquares : 0;
+      level.effective = effectiveSamples(cell.sum, cell.sumSquares);
       level.own = level.effective / (level.effective + m_pilot.guideOptions.trust[cell.level]);
       level.statistics = cell;
       level.histogram = squareOf(cell.histogram);

@@ -6,6 +6,7 @@
 #include <tbb/parallel_for.h>
 
 #include <array>
+#include <cmath>
 #include <memory>
 #include <span>
 #include <vector>
@@ -52,6 +53,17 @@ struct CellStatistics {
   Histogram histogram{};                                // of values by direction
   const Surroundings* around = nullptr;                 // null where nobody asked
 };
+
+// The samples of equal size that a sum and a sum of squares could be of.
+inline double effectiveSamples(double sum, double squares) {
+  return squares > 0 ? sum * sum / squares : 0;
+}
+
+// Of a cell's vertices, unit; upwards where there is none.
+inline Float3 meanNormal(const CellStatistics& cell) {
+  const float length = std::sqrt(dot(cell.normal, cell.normal));
+  return length > 0 ? cell.normal * (1 / length) : Float3{0, 0, 1};
+}
 
 // A cell and its ancestors, finest first; null beyond the coarsest.
 using CellChain = std::array<const CellStatistics*, kCellLevels>;

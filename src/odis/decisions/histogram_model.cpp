@@ -7,13 +7,7 @@ DirectionDistribution HistogramModel::predict(const CellChain& chain,
                                               const DirectionDistribution* parent) const {
   const CellStatistics& cell = *chain[0];
   DirectionDistribution result;
-  const float length = std::sqrt(dot(cell.normal, cell.normal));
-  const Float3 normal = length > 0 ? cell.normal * (1 / length) : Float3{0, 0, 1};
-
-  Histogram cosines;  // to the texels' centres
-  for (int t = 0; t < kMapTexels; ++t)
-    cosines[t] = kTexelDirections.x[t] * normal.x + kTexelDirections.y[t] * normal.y +
-                 kTexelDirections.z[t] * normal.z;
+  const Histogram cosines = cosinesTo(meanNormal(cell));
 
   // What is believed before the cell has seen anything: its parent's map, or a cosine lobe on top of a little
   // of everything (surfaces that transmit light receive it from both sides).
@@ -25,7 +19,7 @@ DirectionDistribution HistogramModel::predict(const CellChain& chain,
   }
 
   // Trust is counted in effective samples: many samples of which one holds all the light are but one.
-  const double effective = cell.sumSquares > 0 ? cell.sum * cell.sum / cell.sumSquares : 0;
+  const double effective = effectiveSamples(cell.sum, cell.sumSquares);
   const float trust = m_options.trust[cell.level];
   const float own = float(effective / (effective + trust));
   const float perSample = cell.sum > 0 ? own / float(cell.sum) : 0;

@@ -1,6 +1,7 @@
 // The directions of the texels' centres, as three arrays.
 #pragma once
 
+#include "odis/cells/statistics.h"
 #include "odis/sampling.h"
 
 namespace odis {
@@ -17,5 +18,8 @@ struct TexelDirections {
   }
 };
 inline const TexelDirections kTexelDirections;
+
+// The cosines between a unit normal and the texels' centres.
+Histogram cosinesTo(const Float3& normal);
 
 }  // namespace odis

@@ -10,10 +10,6 @@ namespace odis {
 
 namespace {
 
-double effectiveSamples(const CellStatistics& cell) {
-  return cell.sumSquares > 0 ? cell.sum * cell.sum / cell.sumSquares : 0;
-}
-
 // The sum of f(texel), sixteen sums side by side: in this order the compiler may use vectors.
 template <class F>
 float sumOver(const F& f) {
@@ -47,12 +43,6 @@ ODIS_WIDE Histogram lobeOf(const Histogram& cosines) {
   const float perSum = inverseSum(lobe);
   for (float& value : lobe) value *= perSum;
   return lobe;
-}
-
-ODIS_WIDE void cosinesTo(const Float3& normal, Histogram& cosines) {
-  for (int t = 0; t < kMapTexels; ++t)
-    cosines[t] = kTexelDirections.x[t] * normal.x + kTexelDirections.y[t] * normal.y +
-                 kTexelDirections.z[t] * normal.z;
 }
 
 }  // namespace
@@ -126,8 +116,7 @@ void computeFeatures(const CellChain& chain, CellFeatures& features) {
     there[m] = perSum[m] > 0;
     if (!there[m]) seen[m] = &kNothing.histogram;
   }
-  const float length = std::sqrt(dot(own.normal, own.normal));
-  cosinesTo(length > 0 ? own.normal * (1 / length) : Float3{0, 0, 1}, cosines);
+  cosines = cosinesTo(meanNormal(own));
   lobe = lobeOf(cosines);
   there[kOwnBlurred] = there[0];
   there[kParentBlurred] = there[1];
@@ -139,7 +128,7 @@ void computeFeatures(const CellChain& chain, CellFeatures& features) {
   for (int l = 0; l < kCellLevels; ++l) {
     const CellStatistics& cell = *levels[l];
     *next++ = float(std::log2(1 + cell.count));
-    *next++ = float(std::log2(1 + effectiveSamples(cell)));
+    *next++ = float(std::log2(1 + effectiveSamples(cell.sum, cell.sumSquares)));
     *next++ = entropy(*seen[l], perSum[l]);
   }
 }

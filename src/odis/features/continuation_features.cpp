@@ -10,11 +10,6 @@ namespace {
 // Ratios lie between 2 to the minus and to the plus this; nothing at all is as little as there can be.
 constexpr float kMostOctaves = 8;
 
-// The samples of equal size that a sum and a sum of squares could be of.
-double effectiveSamples(double sum, double squares) {
-  return squares > 0 ? sum * sum / squares : 0;
-}
-
 float octaves(double ratio, float most) {
   return ratio > 0 ? std::clamp(float(std::log2(ratio)), -most, most) : -most;
 }
