@@ -21,6 +21,17 @@ std::vector<PixelPrediction> halfHelped() {
   return predictions;
 }
 
+// So many cells of the coarsest level, each of which has seen 100 samples for 500 rays.
+std::vector<CellStatistics> coarsestCells(size_t count) {
+  std::vector<CellStatistics> cells(count);
+  for (CellStatistics& cell : cells) {
+    cell.level = kCellLevels - 1;
+    cell.count = 100;
+    cell.rays = 500;
+  }
+  return cells;
+}
+
 TEST(Roulette, SurvivalFollowsWorthAndNeverEndsAll) {
   Cell cell;
   EXPECT_EQ(survivalProbability(cell, 0.5f), 1);  // nothing known
@@ -37,12 +48,7 @@ TEST(Roulette, SurvivalFollowsWorthAndNeverEndsAll) {
 
 TEST(Roulette, WorthIsTheRootOfWhatComesBackOverItsRays) {
   // Two cells, of which one sends back four times the radiance for as many rays.
-  std::vector<CellStatistics> cells(2);
-  for (CellStatistics& cell : cells) {
-    cell.level = kCellLevels - 1;
-    cell.count = 100;
-    cell.rays = 500;
-  }
+  std::vector<CellStatistics> cells = coarsestCells(2);
   cells[0].outgoingSquares = 100;
   cells[1].outgoingSquares = 1600;
   const SelectionTotals totals{40, 180, 10};  // of 10 samples: variance 4 each, 20 rays each
@@ -60,13 +66,8 @@ TEST(Roulette, WorthIsTheRootOfWhatComesBackOverItsRays) {
 
 TEST(Roulette, WhatTheMeanExplainsIsWorthNoRays) {
   // Vertices that scatter back 1 or 3, always 2, or mostly nothing.
-  std::vector<CellStatistics> cells(3);
-  for (CellStatistics& cell : cells) {
-    cell.level = kCellLevels - 1;
-    cell.count = 100;
-    cell.rays = 500;
-    cell.outgoing = {200, 200, 200};
-  }
+  std::vector<CellStatistics> cells = coarsestCells(3);
+  for (CellStatistics& cell : cells) cell.outgoing = {200, 200, 200};
   cells[0].outgoingSquares = 500;
   cells[1].outgoingSquares = 400;
   cells[2].outgoingSquares = 4000;
@@ -235,5 +236,6 @@ TEST(Selection, SecondMomentOfTheMixtureIsPredicted) {
     EXPECT_NEAR(sums[0].secondMoment[a] / 1000, 1 / q, 1e-3 / q);
   }
 }
+
 }  // namespace
 }  // namespace odis

@@ -10,6 +10,7 @@
 #include "learn/inspect/place.h"
 #include "learn/inspect/vertex_integral.h"
 #include "odis/decisions/pack.h"
+#include "odis/decisions/texel_directions.h"
 #include "render/integrator/pilot_pass.h"
 
 namespace odis::learn {
@@ -24,13 +25,10 @@ constexpr size_t kMostStarts = 256;
 
 // Its histogram alone, made into a map as the formula does it with what it blends.
 SamplingMap mapOfHistogram(const CellStatistics& cell, float floor) {
-  const float length = std::sqrt(dot(cell.normal, cell.normal));
+  const Histogram cosines = cosinesTo(meanNormal(cell));
   DirectionDistribution distribution;
   distribution.probability = cell.histogram;
-  for (int t = 0; t < kMapTexels; ++t) {
-    const float cosine = length > 0 ? std::abs(dot(texelDirection(t), cell.normal)) / length : 1;
-    distribution.perCosine[size_t(t)] = 1 / std::max(cosine, 0.1f);
-  }
+  for (size_t t = 0; t < kMapTexels; ++t) distribution.perCosine[t] = perCosine(cosines[t]);
   return pack(distribution, floor);
 }
 

@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "learn/scenes/random.h"
+#include "odis/decisions/texel_directions.h"
 
 namespace odis::learn {
 
@@ -98,7 +99,7 @@ void ExamplePool::draw(uint64_t seed, uint64_t step, size_t count, double shiftP
     for (const float cosine : features.cosines) cosines += std::max(cosine, 0.0f) + 1e-4f;
     for (size_t t = 0; t < kMapTexels; ++t) {
       const size_t at = row * kMapTexels + t;
-      batch.perCosine[at] = 1 / std::max(std::abs(features.cosines[t]), 0.1f);
+      batch.perCosine[at] = perCosine(features.cosines[t]);
       batch.diffuse[at] = (std::max(features.cosines[t], 0.0f) + 1e-4f) / cosines;
       batch.mass[at] = view.mass[example * kMapTexels + t];
       batch.square[at] = view.square[example * kMapTexels + t];

@@ -24,10 +24,9 @@ DirectionDistribution HistogramModel::predict(const CellChain& chain,
   const float own = float(effective / (effective + trust));
   const float perSample = cell.sum > 0 ? own / float(cell.sum) : 0;
   for (int t = 0; t < kMapTexels; ++t) {
-    const float cosine = std::max(std::abs(cosines[t]), 0.1f);
     result.probability[t] =
         (cell.sum > 0 ? 1 - own : 1) * prior[t] / priorSum + perSample * cell.histogram[t];
-    result.perCosine[t] = 1 / cosine;
+    result.perCosine[t] = perCosine(cosines[t]);
   }
   // A sample stands in its cell's histogram and in its ancestors'.
   result.sensitivity = perSample + (cell.sum > 0 ? 1 - own : 1) * (parent ? parent->sensitivity : 0);

@@ -1,6 +1,9 @@
 // The directions of the texels' centres, as three arrays.
 #pragma once
 
+#include <algorithm>
+#include <cmath>
+
 #include "odis/cells/statistics.h"
 #include "odis/sampling.h"
 
@@ -18,6 +21,11 @@ struct TexelDirections {
   }
 };
 inline const TexelDirections kTexelDirections;
+
+// What turns radiance * cos into radiance, at most tenfold.
+inline float perCosine(float cosine) {
+  return 1 / std::max(std::abs(cosine), 0.1f);
+}
 
 // The cosines between a unit normal and the texels' centres.
 Histogram cosinesTo(const Float3& normal);

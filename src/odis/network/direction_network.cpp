@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "odis/decisions/texel_directions.h"
+
 namespace odis {
 
 namespace {
@@ -41,8 +43,7 @@ DirectionDistribution DirectionNetwork::predict(const CellChain& chain, const Di
   const std::array<float, kBasisMaps> shares = blend(features);
   DirectionDistribution result;
   result.probability = blendMaps(features, shares);
-  for (int t = 0; t < kMapTexels; ++t)
-    result.perCosine[t] = 1 / std::max(std::abs(features.cosines[t]), 0.1f);
+  for (int t = 0; t < kMapTexels; ++t) result.perCosine[t] = perCosine(features.cosines[t]);
 
   // A sample stands in the histograms of its cell and of the ancestors, and in what lies around.
   for (size_t m = 0; m < kHistograms; ++m) {
