@@ -1,25 +1,73 @@
 #include "odis/guide.h"
 
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
 #include "odis/cells/statistics.h"
-#include "odis/decisions/choose_alphas.h"
-#include "odis/decisions/direction_model.h"
-#include "odis/decisions/lights.h"
-#include "odis/decisions/pack.h"
-#include "odis/decisions/roulette.h"
+#include "odis/maps/pack.h"
+#include "odis/maps/texel_directions.h"
+#include "odis/models/bsdf_fraction.h"
+#include "odis/models/direction_formula.h"
+#include "odis/models/lights.h"
+#include "odis/models/model_parts.h"
+#include "odis/models/returned_light.h"
 
 namespace odis {
 
+// Memory that begins at a cache line and is not touched before it is filled in.
+template <class T>
+class LineArray {
+ public:
+  explicit LineArray(size_t size = 0)
+      : m_size(size), m_data(static_cast<T*>(::operator new[](size * sizeof(T), kLine))) {}
+  T* at(size_t i) { return m_data.get() + i; }
+  const T* data() const { return m_data.get(); }
+  uint64_t bytes() const { return m_size * sizeof(T); }
+
+ private:
+  static constexpr std::align_val_t kLine{64};
+  struct Free {
+    void operator()(T* data) const { ::operator delete[](data, kLine); }
+  };
+  size_t m_size;
+  std::unique_ptr<T, Free> m_data;
+};
+
+namespace {
+
+void require(bool holds, const char* message) {
+  if (!holds) throw std::invalid_argument(std::string("GuideOptions::") + message);
+}
+
+void check(const GuideOptions& options) {
+  require(options.cellsPerDiagonal >= 1, "cellsPerDiagonal: expected at least 1");
+  for (const float samples : options.priorSamples)
+    require(samples >= 0 && std::isfinite(samples), "priorSamples: expected finite numbers from 0 on");
+  require(options.lightGroups <= kMaxLightGroups, "lightGroups: expected at most kMaxLightGroups");
+  require(options.floor >= 0 && options.floor <= 1, "floor: expected a number from 0 to 1");
+  require(options.clamp > 0, "clamp: expected a positive number");
+  require(options.fixedBsdfFraction >= 0 && options.fixedBsdfFraction <= 1,
+          "fixedBsdfFraction: expected a number from 0 to 1");
+}
+
+}  // namespace
+
 struct Guide::Data {
+  explicit Data(size_t cells) : sums(cells * kSumsPerMap), texels(cells * kMapTexels), decisions(cells) {}
+
+  MapArrays maps() const { return {texels.data(), sums.data(), texelDirections().x}; }
+
+  const void* builder = nullptr;  // the one that it comes from
   CellGrid grid;
   CellIndex index;
-  std::vector<Cell> cells;
-  std::vector<float> lights;  // tables of lightGroups + 1 entries for each cell
+  std::vector<uint64_t> keys;
+  LineArray<float> sums;
+  LineArray<uint16_t> texels;
+  std::vector<CellDecisions> decisions;
+  std::vector<float> lightTables;
   uint32_t lightGroups = 0;
-  AlphaPrediction predicted;
-
-  const float* lightTable(const Cell& cell) const {
-    return &lights[size_t(&cell - cells.data()) * size_t(lightGroups + 1)];
-  }
+  GuidingPrediction prediction;
 };
 
 Guide::Guide() = default;
@@ -27,186 +75,161 @@ Guide::~Guide() = default;
 Guide::Guide(Guide&&) noexcept = default;
 Guide& Guide::operator=(Guide&&) noexcept = default;
 
-const Cell* Guide::find(const Float3& position, const Float3& normal) const {
-  if (!m_data) return nullptr;
-  for (int level = 0; level < kCellLevels; ++level) {
-    const uint32_t index = m_data->index.find(m_data->grid.key(position, normal, level));
-    if (index != kNoCell) return &m_data->cells[index];
-  }
-  return nullptr;
+GuideView Guide::view() const {
+  GuideView view;
+  if (!m_data) return view;
+  view.cellCount = uint32_t(m_data->decisions.size());
+  view.lightGroups = m_data->lightGroups;
+  view.grid = m_data->grid;
+  view.slots = m_data->index.slots();
+  view.slotMask = m_data->index.mask();
+  view.keys = m_data->keys.data();
+  view.maps = m_data->maps();
+  view.decisions = m_data->decisions.data();
+  view.lightTables = m_data->lightTables.data();
+  return view;
 }
 
-void Guide::find(std::span<const Place> places, std::span<const Cell*> cells) const {
-  if (!m_data) {
-    std::fill_n(cells.begin(), places.size(), nullptr);
-    return;
-  }
-  thread_local std::vector<uint64_t> keys;
-  keys.clear();
-  for (const Place& place : places) {
-    keys.push_back(m_data->grid.key(place.position, place.normal, 0));
-    m_data->index.prefetch(keys.back());
-  }
-  for (size_t i = 0; i < places.size(); ++i) {
-    // Neighbours in the list are often neighbours in the scene; places with the same key share all coarser cells, too.
-    if (i > 0 && keys[i] == keys[i - 1]) {
-      cells[i] = cells[i - 1];
-      continue;
-    }
-    const uint32_t finest = m_data->index.find(keys[i]);
-    cells[i] = finest != kNoCell ? &m_data->cells[finest] : find(places[i].position, places[i].normal);
-  }
-}
-
-void Guide::prefetch(const Cell& cell) const {
-  constexpr size_t kLine = 64;
-  for (size_t byte = 0; byte < sizeof(Cell); byte += kLine)
-    __builtin_prefetch(reinterpret_cast<const char*>(&cell) + byte);
-  if (m_data->lights.empty()) return;
-  const float* table = m_data->lightTable(cell);
-  __builtin_prefetch(table);
-  __builtin_prefetch(table + m_data->lightGroups);
-}
-
-LearnedLights Guide::lights(const Cell& cell) const {
-  if (!(cell.lightShare > 0)) return {};
-  return {m_data->lightTable(cell), cell.lightShare};
-}
-
-uint32_t Guide::indexOf(const Cell& cell) const {
-  return uint32_t(&cell - m_data->cells.data());
-}
-
-uint64_t Guide::cellCount() const {
-  return m_data ? m_data->cells.size() : 0;
-}
 uint64_t Guide::bytes() const {
-  return m_data ? m_data->cells.size() * sizeof(Cell) + m_data->lights.size() * sizeof(float) +
-                      m_data->index.bytes()
-                : 0;
+  if (!m_data) return 0;
+  return m_data->index.bytes() + m_data->keys.size() * sizeof(uint64_t) + m_data->sums.bytes() +
+         m_data->texels.bytes() + m_data->decisions.size() * sizeof(CellDecisions) +
+         m_data->lightTables.size() * sizeof(float);
 }
 float Guide::predictedVarianceRatio() const {
-  return m_data ? m_data->predicted.varianceRatio : 1;
+  return m_data ? m_data->prediction.varianceRatio : 1;
 }
-std::span<const PixelPrediction> Guide::predictions() const {
-  return m_data ? std::span<const PixelPrediction>(m_data->predicted.pixels)
-                : std::span<const PixelPrediction>();
+ArrayView<const PixelPrediction> Guide::predictions() const {
+  if (!m_data) return {};
+  return m_data->prediction.pixels;
 }
 
-struct PilotDigest::Data {
+struct CellSamples::Data {
   BatchSamples samples;
 };
 
-PilotDigest::PilotDigest() = default;
-PilotDigest::~PilotDigest() = default;
-PilotDigest::PilotDigest(PilotDigest&&) noexcept = default;
-PilotDigest& PilotDigest::operator=(PilotDigest&&) noexcept = default;
+CellSamples::CellSamples() = default;
+CellSamples::~CellSamples() = default;
+CellSamples::CellSamples(CellSamples&&) noexcept = default;
+CellSamples& CellSamples::operator=(CellSamples&&) noexcept = default;
 
 struct GuideBuilder::Data {
   explicit Data(const GuideOptions& o)
-      : options(withFormulas(o)), store(o.clamp, options.model->looksAround()) {}
-
-  // Formulas where there is no model.
-  static GuideOptions withFormulas(GuideOptions options) {
-    if (!options.model) options.model = std::make_shared<HistogramModel>(options);
-    if (!options.continuations) options.continuations = std::make_shared<ShrunkMoments>();
-    if (!options.lights) options.lights = std::make_shared<ShrunkLightSquares>();
-    return options;
+      : options(o),
+        directions(o.model.parts().directions),
+        lights(o.model.parts().lights),
+        store(o.clamp, directions && directions->looksAround()) {
+    if (!directions) directions = std::make_shared<DirectionFormula>(o);
+    if (!lights) lights = std::make_shared<LightFormula>();
   }
+
+  Guide buildMaps(const std::vector<CellStatistics>& cells,
+                  std::vector<DirectionDistribution>& distributions) const;
+  void addRouletteAndLights(Guide::Data& guide, const std::vector<CellStatistics>& cells) const;
+
   GuideOptions options;
+  std::shared_ptr<const DirectionModel> directions;
+  std::shared_ptr<const LightModel> lights;
   CellStore store;
 };
 
-GuideBuilder::GuideBuilder(const GuideOptions& options) : m_data(std::make_unique<Data>(options)) {}
+GuideBuilder::GuideBuilder(const GuideOptions& options) {
+  check(options);
+  m_data = std::make_unique<Data>(options);
+}
 GuideBuilder::~GuideBuilder() = default;
+GuideBuilder::GuideBuilder(GuideBuilder&&) noexcept = default;
+GuideBuilder& GuideBuilder::operator=(GuideBuilder&&) noexcept = default;
 
-void GuideBuilder::add(PilotParts parts) {
+void GuideBuilder::add(VertexParts parts) {
   m_data->store.add(parts, m_data->options.cellsPerDiagonal);
 }
-PilotDigest GuideBuilder::digest(std::span<const PilotVertex> vertices) const {
-  PilotDigest digest;
-  digest.m_data = std::make_unique<PilotDigest::Data>(PilotDigest::Data{m_data->store.take({vertices})});
-  return digest;
+CellSamples GuideBuilder::take(ArrayView<const PathVertex> vertices) const {
+  CellSamples result;
+  result.m_data = std::make_unique<CellSamples::Data>(CellSamples::Data{m_data->store.take({vertices})});
+  return result;
 }
-void GuideBuilder::add(std::span<const PilotDigest> digests) {
+void GuideBuilder::add(ArrayView<const CellSamples> samples) {
   std::vector<const BatchSamples*> batches;
-  for (const PilotDigest& digest : digests)
-    if (digest.m_data) batches.push_back(&digest.m_data->samples);
+  for (const CellSamples& batch : samples)
+    if (batch.m_data) batches.push_back(&batch.m_data->samples);
   m_data->store.add(batches);
 }
+VertexCounts GuideBuilder::vertexCounts() const {
+  return m_data->store.vertexCounts();
+}
 uint64_t GuideBuilder::bytes() const {
-  // What `build` makes beside the cells' statistics: distributions, sums for the selection.
-  constexpr uint64_t kPerCell = sizeof(DirectionDistribution) + 2 * sizeof(CellSelection);
+  // What build() makes beside the cells' statistics: distributions, and sums for the BSDF sampling fraction.
+  constexpr uint64_t kPerCell = sizeof(DirectionDistribution) + 2 * sizeof(CellMoments);
   const CellStore& store = m_data->store;
   return store.bytes() + std::max(store.transientBytes(), store.index().size() * kPerCell);
 }
 
 // A guide of maps alone, made for coarse levels first; leaves the distributions that they were made from.
-Guide GuideBuilder::buildMaps(const std::vector<CellStatistics>& cells,
-                              std::vector<DirectionDistribution>& distributions) const {
-  const GuideOptions& options = m_data->options;
+Guide GuideBuilder::Data::buildMaps(const std::vector<CellStatistics>& cells,
+                                    std::vector<DirectionDistribution>& distributions) const {
   Guide guide;
-  guide.m_data = std::make_unique<Guide::Data>();
-  guide.m_data->grid = m_data->store.grid();
-  guide.m_data->index = m_data->store.index();
-  guide.m_data->cells.resize(cells.size());
+  guide.m_data = std::make_unique<Guide::Data>(cells.size());
+  Guide::Data& result = *guide.m_data;
+  result.builder = this;
+  result.grid = store.grid();
+  result.index = store.index();
+  result.keys = store.keys();
   distributions.resize(cells.size());
   forEachFromCoarse(cells, [&](size_t c) {
     const uint32_t parent = cells[c].parent;
     distributions[c] =
-        options.model->predict(chainOf(cells, c), parent == kNoCell ? nullptr : &distributions[parent]);
-    guide.m_data->cells[c].map = pack(distributions[c], options.floor);
+        directions->predict(chainOf(cells, c), parent == kNoCell ? nullptr : &distributions[parent]);
+    packMap(distributions[c].radiance(), options.floor, result.texels.at(c * kMapTexels),
+            result.sums.at(c * kSumsPerMap));
   });
   return guide;
 }
 
-void GuideBuilder::addRouletteAndLights(Guide& guide, const std::vector<CellStatistics>& cells) const {
-  const GuideOptions& options = m_data->options;
-  Guide::Data& result = *guide.m_data;
-  weighContinuations(result.cells, cells, *options.continuations, result.predicted.totals,
-                     options.controlVariate);
-  result.lightGroups = std::min(options.lightGroups, kMostLightGroups);
-  if (result.lightGroups > 0)
-    result.lights =
-        tabulateLights(result.cells, cells, *options.lights, result.lightGroups, options.lightParts);
+void GuideBuilder::Data::addRouletteAndLights(Guide::Data& guide,
+                                              const std::vector<CellStatistics>& cells) const {
+  fillRoulette(guide.decisions, cells, guide.prediction.image, options.controlVariate);
+  guide.lightGroups = options.lightGroups;
+  if (guide.lightGroups > 0)
+    guide.lightTables =
+        tabulateLights(guide.decisions, cells, *lights, guide.lightGroups, options.lightParts);
 }
 
-Guide GuideBuilder::build(PilotParts parts, std::span<const float> pixelValues) const {
-  const GuideOptions& options = m_data->options;
+Guide GuideBuilder::build(VertexParts parts, ArrayView<const float> pixelValues) const {
   const std::vector<CellStatistics>& cells = m_data->store.rollUp();
   std::vector<DirectionDistribution> distributions;
-  Guide guide = buildMaps(cells, distributions);
-  std::vector<Cell>& result = guide.m_data->cells;
-
-  // Selection probabilities.
-  AlphaPrediction& predicted = guide.m_data->predicted =
-      chooseAlphas(result, m_data->store, cells, distributions, parts, pixelValues);
-  if (options.fixedAlpha > 0) {
-    for (Cell& cell : result) std::fill(cell.alpha, cell.alpha + kMaterialClasses, options.fixedAlpha);
-    predicted.varianceRatio = 1;
-    predicted.pixels.clear();
+  Guide guide = m_data->buildMaps(cells, distributions);
+  Guide::Data& result = *guide.m_data;
+  result.prediction = chooseFractions(result.decisions, {m_data->store, cells, distributions, result.maps(),
+                                                         guide.view().rules, parts, pixelValues});
+  if (const float fixed = m_data->options.fixedBsdfFraction; fixed > 0) {
+    for (CellDecisions& cell : result.decisions) std::fill_n(cell.bsdfFraction, kRoughnessClasses, fixed);
+    result.prediction.varianceRatio = 1;
+    result.prediction.pixels.clear();
   }
-
-  addRouletteAndLights(guide, cells);
+  m_data->addRouletteAndLights(result, cells);
   return guide;
 }
 
 Guide GuideBuilder::rebuild(const Guide& previous) const {
+  if (!previous.m_data || previous.m_data->builder != m_data.get())
+    throw std::invalid_argument("GuideBuilder::rebuild: expected a guide that this builder built");
   const std::vector<CellStatistics>& cells = m_data->store.rollUp();
   std::vector<DirectionDistribution> distributions;
-  Guide guide = buildMaps(cells, distributions);
-  std::vector<Cell>& result = guide.m_data->cells;
+  Guide guide = m_data->buildMaps(cells, distributions);
+  Guide::Data& result = *guide.m_data;
 
   // Old cells keep their indices, new ones follow.
-  const std::vector<Cell>& old = previous.m_data->cells;
+  const std::vector<CellDecisions>& old = previous.m_data->decisions;
   forEachFromCoarse(cells, [&](size_t c) {
     if (c < old.size())
-      std::copy_n(old[c].alpha, kMaterialClasses, result[c].alpha);
+      std::copy_n(old[c].bsdfFraction, kRoughnessClasses, result.decisions[c].bsdfFraction);
     else if (cells[c].parent != kNoCell)
-      std::copy_n(result[cells[c].parent].alpha, kMaterialClasses, result[c].alpha);
+      std::copy_n(result.decisions[cells[c].parent].bsdfFraction, kRoughnessClasses,
+                  result.decisions[c].bsdfFraction);
   });
-  guide.m_data->predicted = previous.m_data->predicted;
-  addRouletteAndLights(guide, cells);
+  result.prediction = previous.m_data->prediction;
+  m_data->addRouletteAndLights(result, cells);
   return guide;
 }
 

@@ -1,7 +1,7 @@
-// Pilot vertices for tests of cells, guides and decisions.
+// Path vertices for tests of cells, guides and decisions.
 #pragma once
 
-#include <odis/pilot.h>
+#include <odis/path_vertex.h>
 
 #include <cmath>
 #include <random>
@@ -12,12 +12,12 @@ namespace odis {
 inline constexpr float kPi = 3.14159265f;
 
 // A floor of [0, 1]^2 under a small bright patch in direction `bright`, sampled by the cosine.
-inline std::vector<PilotVertex> floorUnderPatch(const Float3& bright, int count, uint32_t seed) {
+inline std::vector<PathVertex> floorUnderPatch(const Float3& bright, int count, uint32_t seed) {
   std::mt19937 engine(seed);
   std::uniform_real_distribution<float> uniform(0, 1);
-  std::vector<PilotVertex> vertices(count);
+  std::vector<PathVertex> vertices(count);
   for (int i = 0; i < count; ++i) {
-    PilotVertex& v = vertices[i];
+    PathVertex& v = vertices[i];
     v.position = {uniform(engine), uniform(engine), 0};
     v.normal = {0, 0, 1};
     v.wo = {0, 0, 1};
@@ -31,6 +31,7 @@ inline std::vector<PilotVertex> floorUnderPatch(const Float3& bright, int count,
     v.radiance = {radiance, radiance, radiance};
     v.weight = {0.5f, 0.5f, 0.5f};
     v.indirect = 0.5f * radiance / 2;
+    v.emission = v.light = 0;
     v.raysAfter = 3;
     v.depth = 1;
   }

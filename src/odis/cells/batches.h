@@ -1,4 +1,4 @@
-// Pilot vertices split into tasks for any number of threads, and items of such tasks sorted by cell. How a
+// Path vertices split into tasks for any number of threads, and items of such tasks sorted by cell. How a
 // list is split does not depend on the number of threads, so sums made batch by batch don't either.
 #pragma once
 
@@ -9,21 +9,21 @@
 #include <utility>
 #include <vector>
 
-#include "odis/guide.h"
+#include "odis/path_vertex.h"
 
 namespace odis {
 
 // A run of vertices, in pieces as they lie in memory.
-using PilotBatch = std::vector<std::span<const PilotVertex>>;
-std::vector<PilotBatch> makeBatches(PilotParts parts);
+using VertexBatch = std::vector<ArrayView<const PathVertex>>;
+std::vector<VertexBatch> makeBatches(VertexParts parts);
 
-size_t countVertices(PilotParts parts);
+size_t countVertices(VertexParts parts);
 
 // The items of each cell, in the order of batches and of items within them.
 template <class Item>
 struct CellOrder {
   std::vector<const Item*> items;
-  std::vector<uint32_t> begin;  // of each cell's items, and the end
+  std::vector<uint32_t> begin;  // where each cell's items begin, and where the last ones end
 
   std::span<const Item* const> of(size_t cell) const {
     return std::span(items).subspan(begin[cell], begin[cell + 1] - begin[cell]);

@@ -8,29 +8,6 @@
 
 namespace odis {
 
-int wrappedTexel(int x, int y) {
-  if (x < 0 || x >= kMapSize) {
-    x = x < 0 ? 0 : kMapSize - 1;
-    y = kMapSize - 1 - y;
-  }
-  if (y < 0 || y >= kMapSize) {
-    y = y < 0 ? 0 : kMapSize - 1;
-    x = kMapSize - 1 - x;
-  }
-  return texelAt(x, y);
-}
-
-Splat splat(const Float3& wi) {
-  const Float2 square = directionToSquare(wi);
-  const float x = square.x * kMapSize - 0.5f, y = square.y * kMapSize - 0.5f;
-  const int x0 = std::clamp(int(std::floor(x)), -1, kMapSize - 1),
-            y0 = std::clamp(int(std::floor(y)), -1, kMapSize - 1);
-  const float fx = std::clamp(x - x0, 0.0f, 1.0f), fy = std::clamp(y - y0, 0.0f, 1.0f);
-  return {{wrappedTexel(x0, y0), wrappedTexel(x0 + 1, y0), wrappedTexel(x0, y0 + 1),
-           wrappedTexel(x0 + 1, y0 + 1)},
-          {(1 - fx) * (1 - fy), fx * (1 - fy), (1 - fx) * fy, fx * fy}};
-}
-
 Float3 reaim(const Float3& position, const Float3& wi, float distance, const Float3& centroid) {
   if (!std::isfinite(distance)) return wi;
   const Float3 direction = position + wi * distance - centroid;
@@ -47,13 +24,20 @@ uint64_t CellStore::bytes() const {
          (m_fieldOf.capacity() + m_children.capacity() + m_firstChild.capacity()) * sizeof(uint32_t);
 }
 
+std::vector<uint64_t> CellStore::keys() const {
+  std::vector<uint64_t> keys;
+  keys.reserve(m_links.size());
+  for (const Link& link : m_links) keys.push_back(link.key);
+  return keys;
+}
+
 // The grid spans what the pilot saw, not what the scene holds: a huge ground plane must not make the cells
 // huge. A few vertices far out (0.5 % at either end of each axis) don't count.
-void CellStore::place(PilotParts parts, int cellsPerDiagonal) {
+void CellStore::place(VertexParts parts, int cellsPerDiagonal) {
   std::vector<float> axis[3];
   const size_t step = std::max<size_t>(1, countVertices(parts) / 20000);
   size_t next = 0;  // within the part
-  for (const std::span<const PilotVertex> part : parts) {
+  for (const ArrayView<const PathVertex>& part : parts) {
     for (; next < part.size(); next += step) {
       const Float3& p = part[next].position;
       if (!std::isfinite(p.x) || !std::isfinite(p.y) || !std::isfinite(p.z)) continue;
@@ -84,7 +68,8 @@ void CellStore::place(const CellGrid& grid) {
   m_placed = true;
 }
 
-// The number of the cell with this key, of the finest level; it and its ancestors get numbers if they have none.
+// The number of the cell with this key, of the finest level; it and its ancestors get numbers if they have
+// none.
 uint32_t CellStore::insert(uint64_t key) {
   uint32_t child = kNoCell, finest = kNoCell;
   for (int level = 0; level < kCellLevels; ++level, key = CellGrid::parent(key)) {
@@ -101,8 +86,9 @@ uint32_t CellStore::insert(uint64_t key) {
 
 namespace {
 
-// Adds samples to their cell, and to the light seen from the middle of its parent's cube if that is gathered; values clamped.
-void accumulate(CellStatistics& cell, LightField* field, const Float3& middle, float limit, float edge,
+// Adds samples to their cell, and to the light seen from the middle of its parent's cube if that is
+// gathered; values clamped.
+void accumulate(CellStatistics& cell, LightField* field, const Float3& middle, float limit,
                 std::span<const CellSample* const> samples) {
   if (cell.count == 0) {
     forEachItem(samples, [&](const CellSample& s) { cell.centroid = cell.centroid + s.position; });
@@ -120,7 +106,7 @@ void accumulate(CellStatistics& cell, LightField* field, const Float3& middle, f
     const double brightness = luminance(outgoing);
     cell.outgoingSquares += brightness * brightness;
     cell.rays += sample.rays;
-    cell.nearness += edge / (edge + sample.distance);
+    if (sample.lightSquare != kNoLights) cell.lightCount += 1;
     if (sample.lightSquare > 0) cell.lightSquares[sample.lightGroup] += sample.lightSquare;
     cell.normal = cell.normal + sample.normal;
     if (value <= 0) return;
@@ -132,9 +118,9 @@ void accumulate(CellStatistics& cell, LightField* field, const Float3& middle, f
 
 }  // namespace
 
-void CellStore::add(PilotParts parts, int cellsPerDiagonal) {
+void CellStore::add(VertexParts parts, int cellsPerDiagonal) {
   if (!m_placed) place(parts, cellsPerDiagonal);
-  const std::vector<PilotBatch> pilot = makeBatches(parts);
+  const std::vector<VertexBatch> pilot = makeBatches(parts);
   std::vector<BatchSamples> samples(pilot.size());
   tbb::parallel_for(size_t(0), pilot.size(), [&](size_t b) { samples[b] = take(pilot[b]); });
   std::vector<const BatchSamples*> batches;
@@ -173,6 +159,7 @@ void CellStore::add(std::span<const BatchSamples* const> batches) {
     for (const BatchSamples::Cell& cell : batches[b]->cells) cells[b].cells.push_back(insert(cell.key));
     cells[b].cellOf = batches[b]->cellOf;
     m_transientBytes += batches[b]->bytes();
+    m_vertexCounts.add(batches[b]->counts);
   }
   addNewCells();
 
@@ -197,8 +184,7 @@ void CellStore::add(std::span<const BatchSamples* const> batches) {
     const float limit = m_clamp * float(parentSum[parent] / parentCount[parent]);
     for (const uint32_t c : childrenOf(parent))
       if (!order.of(c).empty())
-        accumulate(m_cells[c], field, m_grid.middle(m_links[parent].key), limit, m_grid.finestEdge(),
-                   order.of(c));
+        accumulate(m_cells[c], field, m_grid.middle(m_links[parent].key), limit, order.of(c));
   });
 }
 
@@ -214,7 +200,7 @@ void addChild(CellStatistics& parent, const CellStatistics& child) {
   for (size_t i = 0; i < 3; ++i) parent.outgoing[i] += child.outgoing[i];
   parent.outgoingSquares += child.outgoingSquares;
   parent.rays += child.rays;
-  parent.nearness += child.nearness;
+  parent.lightCount += child.lightCount;
   for (size_t g = 0; g < parent.lightSquares.size(); ++g) parent.lightSquares[g] += child.lightSquares[g];
   parent.normal = parent.normal + child.normal;
   for (int t = 0; t < kMapTexels; ++t) parent.histogram[t] += child.histogram[t];
@@ -261,8 +247,8 @@ void CellStore::lookAround() {
   fillSurroundings(points, pointsOf);
 }
 
-// Cells of one parent, and of one grandparent, have the same cells around them: what those have seen is put together once, as
-// from the parent's centroid, and each child looks at that.
+// Cells of one parent, and of one grandparent, have the same cells around them: what those have seen is put
+// together once, as from the parent's centroid, and each child looks at that.
 void CellStore::fillSurroundings(const LightPoints& points, std::span<const uint32_t> pointsOf) {
   const auto clear = [&](size_t cell, size_t map) { m_around[cell][map].fill(0); };
   forEachCell(m_cells.size(), [&](size_t c) {

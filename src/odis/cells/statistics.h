@@ -1,5 +1,5 @@
-// What the cells have seen: for each, a histogram over directions of the radiance that arrived, and how much
-// there was.
+// What the cells have seen: for each cell a histogram over directions of the radiance that arrived, and
+// sums over its samples.
 #pragma once
 
 #include <tbb/blocked_range.h>
@@ -11,26 +11,14 @@
 #include <span>
 #include <vector>
 
+#include "odis/cells/cell_index.h"
 #include "odis/cells/samples.h"
-#include "odis/sampling.h"
+#include "odis/maps/histogram.h"
 
 namespace odis {
 
-using Histogram = std::array<float, kMapTexels>;
-
-// The texel in column x and row y, which may lie one step outside: the octahedral map continues across an edge
-// mirrored about the edge's middle.
-int wrappedTexel(int x, int y);
-
-// The four texels among which a direction is spread, bilinearly, across the seams of the octahedral map.
-struct Splat {
-  int texel[4];
-  float weight[4];
-};
-Splat splat(const Float3& wi);
-
-// What the cells around a cell have seen, re-aimed at its centroid: of its parent's level, of the parent's parent's. Sums of
-// values, zeros beyond the coarsest level.
+// What the cells around a cell have seen, re-aimed at its centroid: sums of values over the 27 cells around
+// its parent, and over those around its parent's parent; zeros beyond the coarsest level.
 using Surroundings = std::array<Histogram, 2>;
 
 class LightPoints;
@@ -39,27 +27,23 @@ struct LightField;
 struct CellStatistics {
   uint32_t parent = kNoCell;
   int level = 0;
-  double count = 0;  // samples
-  double sum = 0;    // of their values, radiance * cos / pdf as luminance
-  double sumSquares = 0;
+  double count = 0;                  // number of samples
+  double lightCount = 0;             // number of samples that tell of lights
+  double sum = 0;                    // sum of the samples' values, radiance * cos / pdf as luminance
+  double sumSquares = 0;             // sum of the squares of the values
   std::array<double, 3> outgoing{};  // sum of what the vertices scatter back, in red, green and blue
-  double outgoingSquares = 0;        // sum of its squares, as luminance
-  double rays = 0;                   // traced at the vertices and beyond
-  double nearness = 0;               // sum of e / (e + distance to what was seen), e the finest cells' edge
-  // Of the first batch's positions, and directions are re-aimed from here; of coarser cells the mean of their children's.
+  double outgoingSquares = 0;        // sum of the squares of its luminance
+  double rays = 0;                   // sum of the rays traced at the vertices and beyond
+  // Mean position of the first batch's samples, or of a coarser cell's children; directions are re-aimed
+  // from here.
   Float3 centroid;
-  Float3 normal;                                        // sum of unit normals
-  std::array<double, kMostLightGroups> lightSquares{};  // sums of CellSample::lightSquare, for each group
-  Histogram histogram{};                                // of values by direction
-  const Surroundings* around = nullptr;                 // null where nobody asked
+  Float3 normal;                                       // sum of the samples' unit normals
+  std::array<double, kMaxLightGroups> lightSquares{};  // sums of CellSample::lightSquare, for each group
+  Histogram histogram{};                               // sums of values by direction
+  const Surroundings* around = nullptr;                // null where nothing asked for it
 };
 
-// The samples of equal size that a sum and a sum of squares could be of.
-inline double effectiveSamples(double sum, double squares) {
-  return squares > 0 ? sum * sum / squares : 0;
-}
-
-// Of a cell's vertices, unit; upwards where there is none.
+// The mean unit normal of a cell's vertices; upwards where there is none.
 inline Float3 meanNormal(const CellStatistics& cell) {
   const float length = std::sqrt(dot(cell.normal, cell.normal));
   return length > 0 ? cell.normal * (1 / length) : Float3{0, 0, 1};
@@ -83,7 +67,8 @@ void forEachCell(size_t count, const Body& body) {
   });
 }
 
-// Calls `body` with the index of each cell: parents before their children, those of a level by many threads at once.
+// Calls `body` with the index of each cell: parents before their children, those of a level by many threads
+// at once.
 template <class Body>
 void forEachFromCoarse(std::span<const CellStatistics> cells, const Body& body) {
   for (int level = kCellLevels - 1; level >= 0; --level)
@@ -102,22 +87,27 @@ class CellStore {
   // Places the grid; otherwise the first call of `add` does.
   void place(const CellGrid& grid);
   // Sorts the vertices into cells and adds them up.
-  void add(PilotParts parts, int cellsPerDiagonal);
+  void add(VertexParts parts, int cellsPerDiagonal);
   // The same in two steps, once there is a grid: many threads take samples, one call adds them up.
-  BatchSamples take(const PilotBatch& batch) const { return takeSamples(batch, m_grid); }
+  BatchSamples take(const VertexBatch& batch) const { return takeSamples(batch, m_grid); }
   void add(std::span<const BatchSamples* const> batches);
-  // The cells, with the coarser levels and what lies around filled in. They stay as they are until more is added.
+  // The cells, with the coarser levels and what lies around filled in. They stay as they are until more is
+  // added.
   const std::vector<CellStatistics>& rollUp();
 
+  // How many vertices were taken and refused.
+  const VertexCounts& vertexCounts() const { return m_vertexCounts; }
   const CellGrid& grid() const { return m_grid; }
   const CellIndex& index() const { return m_index; }
+  // The key of each cell.
+  std::vector<uint64_t> keys() const;
   uint64_t bytes() const;
   // What the last `add` needed on top of the cells.
   uint64_t transientBytes() const { return m_transientBytes; }
   float clamp() const { return m_clamp; }
 
  private:
-  void place(PilotParts parts, int cellsPerDiagonal);
+  void place(VertexParts parts, int cellsPerDiagonal);
   uint32_t insert(uint64_t key);
   void addNewCells();
   void lookAround();
@@ -144,6 +134,7 @@ class CellStore {
   std::unique_ptr<Surroundings[]> m_around;        // of each cell
   size_t m_aroundSize = 0;
   uint64_t m_transientBytes = 0;
+  VertexCounts m_vertexCounts;
 };
 
 // The direction in which a cell's centroid sees what a vertex at `position` saw at `distance` in direction

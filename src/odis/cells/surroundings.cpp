@@ -3,27 +3,31 @@
 #include <algorithm>
 #include <cmath>
 
-#include "odis/decisions/texel_directions.h"
-#include "odis/instruction_sets.h"
+#include "odis/maps/instruction_sets.h"
+#include "odis/maps/texel_directions.h"
 
 namespace odis {
 
 namespace {
 
-// Points are looked at so many at a time: all of a field.
-constexpr size_t kChunk = kMapTexels;
+// Points as seen from a place: unit directions and 1 / distance.
+struct SeenPoints {
+  const float *x, *y, *z, *inverse;
+  size_t count;
+};
 
-// The texels in which points lie, and what their 1 / distance is to be multiplied by, as seen from elsewhere: what they were
-// seen from lies at `offset` from there.
-ODIS_WIDE void lookFrom(const float* x, const float* y, const float* z, const float* inverse, size_t count,
-                        const Float3& offset, int32_t* texels, float* nearer) {
+// Finds the texels in which points lie as seen from another place, and the factors that their 1 / distance
+// gets by the move. Where they were seen first lies at `offset` from the new place.
+ODIS_WIDE void lookFrom(const SeenPoints& points, const Float3& offset, int32_t* texels, float* nearer) {
+  const auto& [x, y, z, inverse, count] = points;
   for (size_t i = 0; i < count; ++i) {
     const float px = x[i] + inverse[i] * offset.x, py = y[i] + inverse[i] * offset.y,
                 pz = z[i] + inverse[i] * offset.z;
     const float squared = px * px + py * py + pz * pz;
     const bool there = (squared > 1e-12f) & (squared < INFINITY);  // not where one looks from
     const float scale = 1 / std::sqrt(there ? squared : 1.0f);
-    texels[i] = texelOf({there ? px * scale : x[i], there ? py * scale : y[i], there ? pz * scale : z[i]});
+    texels[i] =
+        texelOf<float>({there ? px * scale : x[i], there ? py * scale : y[i], there ? pz * scale : z[i]});
     nearer[i] = scale;
   }
 }
@@ -49,15 +53,16 @@ void LightField::add(const CellSample& sample, float value, const Float3& middle
 void LightPoints::clear() {
   m_middle.clear();
   m_begin.resize(1);
-  for (std::vector<float>* of : {&m_x, &m_y, &m_z, &m_inverse, &m_value}) of->clear();
+  for (std::vector<float>* numbers : {&m_x, &m_y, &m_z, &m_inverse, &m_value}) numbers->clear();
 }
 
 uint32_t LightPoints::add(const LightField& field, const Float3& middle) {
+  const TexelDirections& directions = texelDirections();
   for (size_t t = 0; t < kMapTexels; ++t) {
     if (!(field.value[t] > 0)) continue;
-    m_x.push_back(kTexelDirections.x[t]);
-    m_y.push_back(kTexelDirections.y[t]);
-    m_z.push_back(kTexelDirections.z[t]);
+    m_x.push_back(directions.x[t]);
+    m_y.push_back(directions.y[t]);
+    m_z.push_back(directions.z[t]);
     m_inverse.push_back(field.inverse[t] / field.value[t]);
     m_value.push_back(field.value[t]);
   }
@@ -68,10 +73,10 @@ uint32_t LightPoints::add(const LightField& field, const Float3& middle) {
 
 template <class Body>
 void LightPoints::forEachSeenFrom(uint32_t field, const Float3& middle, const Body& body) const {
-  int32_t texels[kChunk];
-  float nearer[kChunk];
+  int32_t texels[kMapTexels];  // a field has at most one point a texel
+  float nearer[kMapTexels];
   const size_t first = m_begin[field], count = m_begin[field + 1] - first;
-  lookFrom(m_x.data() + first, m_y.data() + first, m_z.data() + first, m_inverse.data() + first, count,
+  lookFrom({m_x.data() + first, m_y.data() + first, m_z.data() + first, m_inverse.data() + first, count},
            m_middle[field] - middle, texels, nearer);
   for (size_t i = 0; i < count; ++i)
     body(size_t(texels[i]), m_value[first + i], m_inverse[first + i] * nearer[i]);

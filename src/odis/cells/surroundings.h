@@ -1,5 +1,6 @@
-// What the cells around a cell have seen, as the cell itself would see it: much of what is known of a place is known next to
-// it, and parallax is what a histogram of the neighbours gets wrong.
+// What the cells around a cell have seen, as the cell itself would see it. Neighbours know much about a
+// place, but a histogram of what they saw is wrong by parallax: so their light is kept as points with
+// distances, and seen anew from the cell.
 #pragma once
 
 #include <vector>
@@ -8,15 +9,15 @@
 
 namespace odis {
 
-// The light that samples of a cell have seen, as from the middle of its cube: for each direction sums of values, and of
-// values over the distance from there.
+// The light that samples of a cell have seen, as from the middle of its cube: for each direction the sum of
+// the samples' values, and the sum of value / distance from there.
 struct LightField {
   Histogram value{}, inverse{};
-  // `value` is the sample's, clamped, and positive.
+  // Adds a sample with its value, clamped and positive.
   void add(const CellSample& sample, float value, const Float3& middle);
 };
 
-// Fields as points, one for each texel that is not dark, at its mean distance.
+// Light fields as points: one for each texel that is not dark, at the mean distance of its light.
 class LightPoints {
  public:
   void clear();
@@ -31,10 +32,10 @@ class LightPoints {
   template <class Body>
   void forEachSeenFrom(uint32_t field, const Float3& middle, const Body& body) const;
 
-  std::vector<Float3> m_middle;           // of each field
-  std::vector<uint32_t> m_begin{0};       // of each field's points, and the end
-  std::vector<float> m_x, m_y, m_z;       // of each point: direction,
-  std::vector<float> m_inverse, m_value;  // 1 / distance, value
+  std::vector<Float3> m_middle;           // [field] where its points are seen from
+  std::vector<uint32_t> m_begin{0};       // [field] its first point; and the number of all points
+  std::vector<float> m_x, m_y, m_z;       // [point] unit direction
+  std::vector<float> m_inverse, m_value;  // [point] 1 / distance and value
 };
 
 }  // namespace odis

@@ -4,8 +4,6 @@
 #include <fstream>
 #include <sstream>
 
-#include "odis/features/cell_features.h"
-
 namespace odis {
 
 // In a source that the build makes of weights/odis.weights.

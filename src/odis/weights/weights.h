@@ -2,10 +2,10 @@
 //
 //   bytes  0-7    ODISNETW
 //          8-11   format, 1
-//          12-15  version of the features that the networks were trained on (odis/features)
+//          12-15  version of the features that the networks were trained on (src/odis/models)
 //          16-19  length M of the text in bytes; then the text, JSON in UTF-8
-//          then   number of tensors; for each: length of its name, the name, number of dimensions (at most 4), the
-//                 dimensions, and its elements, 32-bit floats, the last index fastest
+//          then   number of tensors; for each: length of its name, the name, number of dimensions (at most
+//                 4), the dimensions, and its elements, 32-bit floats, the last index fastest
 //          last 4 CRC-32 of all before
 // All numbers are little-endian and, but for the elements, unsigned integers of 32 bits.
 #pragma once
@@ -18,6 +18,10 @@
 #include <vector>
 
 namespace odis {
+
+// Version of the features (src/odis/models). It counts up whenever a feature changes
+// its meaning: weights that were made for other features are refused.
+inline constexpr uint32_t kFeatureVersion = 3;
 
 // What is no file of weights, a damaged one, or one for other networks than these. Names the file.
 class WeightsError : public std::runtime_error {

@@ -1,0 +1,338 @@
+#include "odis/frame.h"
+
+#include <tbb/parallel_for.h>
+
+#include <atomic>
+#include <bit>
+#include <cmath>
+#include <stdexcept>
+
+#include "odis/image/pilot_weights.h"
+#include "odis/image/sample_counts.h"
+#include "odis/image/schedule.h"
+#include "odis/image/tiles.h"
+
+namespace odis {
+
+namespace {
+
+// Makes the seed of the oracle's passes, which are no part of the image.
+constexpr uint64_t kOracleSeed = 0x6f7261636c65ull;
+// The oracle's BSDF sampling fractions come from this many of its passes.
+constexpr uint32_t kOracleFractionPasses = 2;
+
+void requireOption(bool holds, const char* message) {
+  if (!holds) throw std::invalid_argument(std::string("FrameOptions::") + message);
+}
+void requireOrder(bool holds, const char* message) {
+  if (!holds) throw std::logic_error(message);
+}
+
+const FrameOptions& checked(const FrameOptions& o) {
+  requireOption(o.width > 0 && o.height > 0, "width, height: expected at least one pixel");
+  requireOption(uint64_t(o.width) * o.height < (uint64_t(1) << 31),
+                "width, height: expected less than 2^31 pixels");
+  requireOption(o.samplesPerPixel > 0, "samplesPerPixel: expected at least 1");
+  requireOption(o.pilotSamplesPerPixel >= 0 && std::isfinite(o.pilotSamplesPerPixel),
+                "pilotSamplesPerPixel: expected a finite number from 0 on");
+  requireOption(o.pilotWeight < 0 || std::isfinite(o.pilotWeight), "pilotWeight: expected a finite number");
+  return o;
+}
+
+Float3 finiteOrBlack(const Float3& value, std::atomic<uint64_t>& notFinite) {
+  if (std::isfinite(value.x) && std::isfinite(value.y) && std::isfinite(value.z)) return value;
+  ++notFinite;
+  return {};
+}
+
+using Tiles = std::vector<std::vector<PathVertex>>;
+
+std::vector<ArrayView<const PathVertex>> partsOf(const Tiles& tiles) {
+  return {tiles.begin(), tiles.end()};
+}
+
+uint64_t countVertices(const Tiles& tiles) {
+  uint64_t count = 0;
+  for (const std::vector<PathVertex>& tile : tiles) count += tile.size();
+  return count;
+}
+
+}  // namespace
+
+struct Frame::Data {
+  explicit Data(const FrameOptions& o)
+      : options(checked(o)),
+        schedule(o),
+        pilot(size_t(o.width) * o.height),
+        later(pilot.size()),
+        tiles(o.width, o.height),
+        builder(o.guided ? std::make_unique<GuideBuilder>(o.guide) : nullptr),
+        next(o.guided ? PassKind::pilot : PassKind::guided) {}
+
+  // The stages, in their order.
+  void describePass();
+  void take(uint32_t tile, ArrayView<const FrameSample> samples, std::vector<PathVertex> vertices);
+  void endPilot();
+  void endOraclePass();
+  void buildGuide(const Tiles& taught, const Tiles& judged);
+  void endGuidedPass();
+  void spreadSamples();
+  void refineGuide();
+  void takeStock(uint64_t vertices);
+
+  bool learns() const { return done < schedule.lastRefinement(); }
+  SampleRange samples(uint32_t pixel) const;
+
+  FrameOptions options;
+  Schedule schedule;
+  std::vector<PixelSums> pilot, later;  // of the pilot's samples, and of those after it
+  TileCollector tiles;
+  std::vector<float> pixelValues;
+  std::vector<float> pilotWeights;  // [pixel]; empty before the guide is built: 1
+  std::unique_ptr<GuideBuilder> builder;
+  Guide guide;
+
+  FramePass pass;
+  bool inPass = false, finished = false;
+  PassKind next;                         // of the pass under way, or of the next one
+  uint32_t oraclePasses = 0;             // passes of the oracle that are done
+  uint32_t done = 0, end = 0;            // samples after the pilot: done before the pass, and by its end
+  Tiles pilotVertices, passVertices;     // [tile]
+  Tiles oracleVertices;                  // those that the oracle's BSDF sampling fractions are made from
+  std::vector<CellSamples> cellSamples;  // [tile]
+  std::atomic<uint64_t> notFinite{0};
+  uint64_t outsideFrame = 0, buildingBytes = 0, pilotVertexCount = 0;
+  VertexCounts vertexCounts;
+};
+
+SampleRange Frame::Data::samples(uint32_t pixel) const {
+  switch (next) {
+    case PassKind::pilot:
+      return {0, schedule.pilotCount(pixel)};
+    case PassKind::oracle:
+      return {oraclePasses, 1};
+    case PassKind::guided:
+      break;
+  }
+  return schedule.remaining(pixel, done, end);
+}
+
+void Frame::Data::describePass() {
+  const size_t pixels = pilot.size();
+  pass = {};
+  pass.kind = next;
+  pass.seed = options.seed;
+  pass.guide = guide.view();
+  if (next == PassKind::guided) {
+    end = schedule.passEnd(done);
+    pass.stageSamples = pixels * schedule.mostRemaining();
+    pass.wantsVertices = learns();
+    cellSamples.clear();
+    if (learns()) cellSamples.resize(tiles.tileCount());
+    return;
+  }
+  pass.stageSamples = next == PassKind::pilot ? schedule.pilotSamples() : pixels * options.oracleSamples;
+  pass.wantsVertices = true;
+  pass.partOfImage = next == PassKind::pilot;
+  if (next == PassKind::oracle) pass.seed ^= kOracleSeed;
+  passVertices.assign(tiles.tileCount(), {});
+}
+
+// Takes a tile's samples and vertices.
+void Frame::Data::take(uint32_t tile, ArrayView<const FrameSample> samples,
+                       std::vector<PathVertex> vertices) {
+  if (pass.partOfImage) {
+    std::vector<PixelSums>& sums = next == PassKind::pilot ? pilot : later;
+    for (const FrameSample& s : samples) sums[s.pixel].add(finiteOrBlack(s.value, notFinite), s.rays);
+  }
+  if (!pass.wantsVertices) return;
+  if (next == PassKind::guided)
+    cellSamples[tile] = builder->take(vertices);
+  else
+    passVertices[tile] = std::move(vertices);
+}
+
+// Pixel values come from the pilot's image, and the guide from its vertices.
+void Frame::Data::endPilot() {
+  pixelValues = estimatePixelValues(pilot, options.width);
+  pilotVertices = std::move(passVertices);
+  pilotVertexCount = countVertices(pilotVertices);
+  buildingBytes = pilotVertexCount * sizeof(PathVertex);
+  next = options.oracleSamples > 0 ? PassKind::oracle : PassKind::guided;
+}
+
+void Frame::Data::endOraclePass() {
+  builder->add(partsOf(passVertices));
+  if (oraclePasses < kOracleFractionPasses)
+    std::move(passVertices.begin(), passVertices.end(), std::back_inserter(oracleVertices));
+  if (++oraclePasses == options.oracleSamples) next = PassKind::guided;
+}
+
+// Builds the first guide from all that the builder was taught, with BSDF sampling fractions from the
+// vertices `judged`, and settles what a pilot sample weighs: by the inverse of variances as the pilot
+// predicts them. These weights are not made anew when the guide has learned from the samples that are
+// weighed.
+void Frame::Data::buildGuide(const Tiles& taught, const Tiles& judged) {
+  builder->add(partsOf(taught));
+  guide = builder->build(partsOf(judged), pixelValues);
+  const ArrayView<const PixelPrediction> predictions = guide.predictions();
+  if (options.pilotWeight >= 0 || predictions.empty())
+    pilotWeights.assign(pilot.size(), options.pilotWeight >= 0 ? options.pilotWeight : 1);
+  else
+    pilotWeights = odis::pilotWeights(predictions, options.width);
+  takeStock(pilotVertexCount * sizeof(PathVertex));
+  if (!options.keepPilotVertices) pilotVertices = {};
+}
+
+// Notes what building needed, beside vertices of this many bytes, and lets go of the builder when the guide
+// won't learn any more.
+void Frame::Data::takeStock(uint64_t vertices) {
+  buildingBytes = std::max(buildingBytes, builder->bytes() + vertices);
+  vertexCounts = builder->vertexCounts();
+  if (!learns()) builder.reset();
+}
+
+// Settles how many samples each pixel has. Guided samples are told apart from those that they are counted
+// by, the pilot's can't be, since all that comes after them depends on them: so their share in the image
+// stays what it would have been.
+void Frame::Data::spreadSamples() {
+  std::vector<PixelNoise> noise;
+  noise.reserve(pilot.size());
+  for (size_t pixel = 0; pixel < pilot.size(); ++pixel) {
+    PixelSums sums = pilot[pixel];
+    sums.add(later[pixel]);
+    noise.push_back(noiseOf(sums));
+  }
+  schedule.spread(sampleCounts(noise, int(options.width), options.samplesPerPixel));
+  for (uint32_t pixel = 0; pixel < pilotWeights.size(); ++pixel)
+    pilotWeights[pixel] *= schedule.remainingRatio(pixel);
+}
+
+// Learns from the vertices of a guided pass, and rebuilds the guide where it is time.
+void Frame::Data::refineGuide() {
+  builder->add(cellSamples);
+  cellSamples.clear();
+  if (std::has_single_bit(end + 1)) guide = builder->rebuild(guide);
+  done = end;
+  takeStock(0);
+}
+
+void Frame::Data::endGuidedPass() {
+  if (end == schedule.spreadAfter()) spreadSamples();
+  if (learns())
+    refineGuide();
+  else
+    done = end;
+}
+
+Frame::Frame(const FrameOptions& options) : m_data(std::make_unique<Data>(options)) {}
+Frame::~Frame() = default;
+Frame::Frame(Frame&&) noexcept = default;
+Frame& Frame::operator=(Frame&&) noexcept = default;
+
+const FramePass* Frame::beginPass() {
+  Data& d = *m_data;
+  requireOrder(!d.inPass, "Frame::beginPass: expected endPass() before the next pass");
+  if (d.finished || (d.next == PassKind::guided && d.done >= d.schedule.mostRemaining())) return nullptr;
+  d.describePass();
+  d.tiles.beginPass([&d](uint32_t pixel) { return d.samples(pixel); },
+                    [&d](uint32_t tile, ArrayView<const FrameSample> samples,
+                         std::vector<PathVertex> vertices) { d.take(tile, samples, std::move(vertices)); });
+  d.inPass = true;
+  return &d.pass;
+}
+
+SampleRange Frame::samples(uint32_t pixel) const {
+  requireOrder(m_data->inPass, "Frame::samples: expected a pass under way");
+  if (pixel >= m_data->pilot.size()) throw std::out_of_range("Frame::samples: expected a pixel of the frame");
+  return m_data->samples(pixel);
+}
+
+ArrayView<const float> Frame::pixelValues() const {
+  return m_data->pixelValues;
+}
+
+void Frame::add(ArrayView<const FrameSample> samples, std::vector<PathVertex> vertices) {
+  requireOrder(m_data->inPass, "Frame::add: expected a pass under way");
+  if (!m_data->pass.wantsVertices) vertices.clear();
+  m_data->tiles.add(samples, std::move(vertices));
+}
+
+void Frame::endPass(bool interrupted) {
+  Data& d = *m_data;
+  requireOrder(d.inPass, "Frame::endPass: expected a pass under way");
+  d.outsideFrame += d.tiles.endPass();
+  d.inPass = false;
+  d.finished = interrupted;
+  const PassKind kind = d.next;
+  if (kind == PassKind::pilot) d.endPilot();
+  if (interrupted) return;
+  if (kind == PassKind::oracle) d.endOraclePass();
+  if (kind == PassKind::guided)
+    d.endGuidedPass();
+  else if (d.next == PassKind::guided)
+    kind == PassKind::pilot ? d.buildGuide(d.pilotVertices, d.pilotVertices)
+                            : d.buildGuide({}, d.oracleVertices);
+}
+
+bool Frame::guideIsFinal() const {
+  return m_data->next == PassKind::guided && !m_data->learns();
+}
+
+float Frame::sampleWeight(uint32_t pixel, uint32_t sample) const {
+  const bool ofPilot = sample < m_data->schedule.pilotCount(pixel);
+  return ofPilot && !m_data->pilotWeights.empty() ? m_data->pilotWeights[pixel] : 1;
+}
+
+PixelMean Frame::mean(uint32_t pixel) const {
+  const WeightedSums parts[] = {{&m_data->pilot[pixel], sampleWeight(pixel, 0)}, {&m_data->later[pixel], 1}};
+  return weightedMean({parts, 2});
+}
+
+uint32_t Frame::sampleCount(uint32_t pixel) const {
+  return m_data->pilot[pixel].count + m_data->later[pixel].count;
+}
+
+FrameStatistics Frame::statistics() const {
+  const Data& d = *m_data;
+  FrameStatistics result;
+  double pilot = 0, all = 0;
+  for (uint32_t pixel = 0; pixel < d.pilot.size(); ++pixel) {
+    const double weight = d.pilot[pixel].count * double(sampleWeight(pixel, 0));
+    pilot += weight;
+    all += weight + d.later[pixel].count;
+    result.samples += sampleCount(pixel);
+    result.pilotSamples += d.pilot[pixel].count;
+  }
+  result.pilotFraction = all > 0 ? pilot / all : 0;
+  result.notFinite = d.notFinite;
+  result.pilotVertices = d.pilotVertexCount;
+  result.cells = d.guide.view().cellCount;
+  result.guideBytes = d.guide.bytes();
+  result.buildingBytes = d.buildingBytes;
+  return result;
+}
+
+VertexCounts Frame::vertexCounts() const {
+  VertexCounts counts = m_data->vertexCounts;
+  counts.outsideFrame += m_data->outsideFrame;
+  return counts;
+}
+
+const Guide& Frame::guide() const {
+  return m_data->guide;
+}
+
+ArrayView<const PixelSums> Frame::pilotImage() const {
+  return m_data->pilot;
+}
+
+std::vector<PathVertex> Frame::pilotVertices() const {
+  std::vector<PathVertex> vertices;
+  vertices.reserve(m_data->pilotVertexCount);
+  for (const std::vector<PathVertex>& tile : m_data->pilotVertices)
+    vertices.insert(vertices.end(), tile.begin(), tile.end());
+  return vertices;
+}
+
+}  // namespace odis

@@ -1,0 +1,99 @@
+#include "odis/image/schedule.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <numeric>
+
+namespace odis {
+
+namespace {
+
+// A pilot of a quarter of a sample per pixel is for images of at least this many pixels and fewer samples
+// than that.
+constexpr size_t kManyPixels = 200000;
+constexpr uint32_t kManySamples = 8;
+// The least number of samples per pixel that are spread by what the first ones say.
+constexpr uint32_t kFewestToSpread = 4;
+// The greatest number of samples per pixel in a pass, so that there is progress and an end in sight.
+constexpr uint32_t kSamplesPerPass = 8;
+
+uint64_t mixBits(uint64_t x) {
+  x = (x ^ (x >> 31)) * 0x7fb5d329728ea185ull;
+  x = (x ^ (x >> 27)) * 0x81dadef4bc2dd44dull;
+  return x ^ (x >> 33);
+}
+
+double pilotSamplesPerPixel(const FrameOptions& options) {
+  if (options.pilotSamplesPerPixel > 0) return std::max(options.pilotSamplesPerPixel, 1e-3);
+  const size_t pixels = size_t(options.width) * options.height;
+  return pixels >= kManyPixels && options.samplesPerPixel < kManySamples ? 0.25 : 1.0;
+}
+
+// For each pixel how many of its samples belong to the pilot: `pilotSpp` rounded, or, if that is below one,
+// a sample in one pixel of each square of 1 / pilotSpp pixels (of the next whole side), which is chosen by
+// a hash of the square and the seed.
+std::vector<uint32_t> pilotCounts(const FrameOptions& options, double pilotSpp) {
+  const size_t pixels = size_t(options.width) * options.height;
+  if (pilotSpp >= 1)
+    return std::vector<uint32_t>(pixels,
+                                 uint32_t(std::min(std::round(pilotSpp), double(options.samplesPerPixel))));
+  std::vector<uint32_t> counts(pixels, 0);
+  const uint32_t side = uint32_t(std::lround(1 / std::sqrt(pilotSpp)));
+  for (uint32_t y = 0; y < options.height; y += side)
+    for (uint32_t x = 0; x < options.width; x += side) {
+      const uint64_t hash = mixBits(options.seed ^ (uint64_t(y / side) << 32 | (x / side)));
+      const uint32_t chosenX = x + uint32_t(hash % side), chosenY = y + uint32_t((hash >> 32) % side);
+      if (chosenX < options.width && chosenY < options.height)
+        counts[size_t(chosenY) * options.width + chosenX] = 1;
+    }
+  return counts;
+}
+
+}  // namespace
+
+Schedule::Schedule(const FrameOptions& options)
+    : m_spp(options.samplesPerPixel), m_mostRemaining(options.samplesPerPixel) {
+  double pilotSpp = 0;
+  if (options.guided) {
+    pilotSpp = pilotSamplesPerPixel(options);
+    m_pilotCounts = pilotCounts(options, pilotSpp);
+    if (pilotSpp >= 1 && !m_pilotCounts.empty()) m_mostRemaining -= m_pilotCounts[0];
+    if (options.oracleSamples == 0)
+      m_lastRefinement = std::bit_floor(std::min(options.refinementSamples, m_mostRemaining / 2) + 1) - 1;
+  }
+  // Two samples of a pixel tell how much they differ; a pilot's may be the first.
+  if (options.adaptive && m_spp >= kFewestToSpread && pilotSpp + 2 < m_spp)
+    m_spreadAfter = options.guided ? 1 : 2;
+}
+
+uint64_t Schedule::pilotSamples() const {
+  return std::accumulate(m_pilotCounts.begin(), m_pilotCounts.end(), uint64_t(0));
+}
+
+SampleRange Schedule::remaining(uint32_t pixel, uint32_t begin, uint32_t end) const {
+  const uint32_t all = sampleCount(pixel), first = std::min(pilotCount(pixel) + begin, all);
+  return {first, std::min(all - first, end - begin)};
+}
+
+uint32_t Schedule::passEnd(uint32_t done) const {
+  const uint32_t count = done < m_lastRefinement ? 1 : done < m_spreadAfter ? m_spreadAfter : kSamplesPerPass;
+  return std::min(m_mostRemaining, done + count);
+}
+
+void Schedule::spread(std::vector<uint32_t> counts) {
+  m_counts = std::move(counts);
+  m_mostRemaining = 0;
+  for (uint32_t pixel = 0; pixel < m_counts.size(); ++pixel) {
+    const uint32_t pilot = pilotCount(pixel);
+    m_counts[pixel] = std::max(m_counts[pixel], pilot + m_spreadAfter);
+    m_mostRemaining = std::max(m_mostRemaining, m_counts[pixel] - pilot);
+  }
+}
+
+float Schedule::remainingRatio(uint32_t pixel) const {
+  const uint32_t pilot = pilotCount(pixel);
+  return float(sampleCount(pixel) - pilot) / float(m_spp - pilot);
+}
+
+}  // namespace odis

@@ -1,0 +1,51 @@
+// Which sample of which pixel is taken when.
+#pragma once
+
+#include <utility>
+#include <vector>
+
+#include "odis/frame.h"
+
+namespace odis {
+
+// A pixel's first samples are the pilot's, where there is one; what remains is guided. The guide learns
+// from the first samples that remain, too, and after some of them it is settled how many each pixel has. 8
+// bytes a pixel.
+class Schedule {
+ public:
+  explicit Schedule(const FrameOptions& options);
+
+  // How many samples of the pixel belong to the pilot.
+  uint32_t pilotCount(uint32_t pixel) const { return m_pilotCounts.empty() ? 0 : m_pilotCounts[pixel]; }
+  // The number of samples of all pilots together.
+  uint64_t pilotSamples() const;
+  // How many samples remain after the pilot in the pixel that has the most.
+  uint32_t mostRemaining() const { return m_mostRemaining; }
+  // The samples of a pixel among those between `begin` and `end` of what remains after the pilot.
+  SampleRange remaining(uint32_t pixel, uint32_t begin, uint32_t end) const;
+
+  // Where a pass ends that begins when `done` of the samples that remain are taken in every pixel. Passes
+  // that something is decided after have as few samples as can be, others as many as there can be while
+  // there is progress to be seen.
+  uint32_t passEnd(uint32_t done) const;
+  // After how many of the samples that remain the guide is built for the last time: one less than a power
+  // of two, and at least as many samples must be left. 0: after the pilot only.
+  uint32_t lastRefinement() const { return m_lastRefinement; }
+  // After how many of them it is settled how many samples each pixel has; 0: all have as many.
+  uint32_t spreadAfter() const { return m_spreadAfter; }
+  // Settles that, spreadAfter() being done: `counts` are of all of a pixel's samples.
+  void spread(std::vector<uint32_t> counts);
+  // How many samples remain after the pilot in a pixel, as a ratio to how many would if all pixels had as
+  // many.
+  float remainingRatio(uint32_t pixel) const;
+
+ private:
+  uint32_t sampleCount(uint32_t pixel) const { return m_counts.empty() ? m_spp : m_counts[pixel]; }
+
+  uint32_t m_spp;
+  std::vector<uint32_t> m_pilotCounts;  // [pixel]; empty: no pilot
+  std::vector<uint32_t> m_counts;       // [pixel] all samples; empty: m_spp everywhere
+  uint32_t m_mostRemaining, m_lastRefinement = 0, m_spreadAfter = 0;
+};
+
+}  // namespace odis

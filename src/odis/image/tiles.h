@@ -1,0 +1,59 @@
+// Brings what hosts deliver, in any order and in portions of any size, into one order: tile by tile.
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <mutex>
+#include <vector>
+
+#include "odis/frame.h"
+
+namespace odis {
+
+// Collects the samples of a pass. Tiles are squares of 16 x 16 pixels, cut off at the right and at the
+// bottom; within a tile pixels are ordered by blocks of 4 x 4, so that neighbours in the order are
+// neighbours in the image.
+class TileCollector {
+ public:
+  // Called once for each tile that has samples, by any thread: a pixel's samples in the order of their
+  // numbers, vertices in the order of pixel, sample, depth.
+  using Sink = std::function<void(uint32_t tile, ArrayView<const FrameSample>, std::vector<PathVertex>)>;
+  // The samples of a pixel that are due in the pass.
+  using Due = std::function<SampleRange(uint32_t pixel)>;
+
+  TileCollector(uint32_t width, uint32_t height);
+  uint32_t tileCount() const { return m_columns * m_rows; }
+
+  void beginPass(Due due, Sink sink);
+  // Thread-safe. Throws std::out_of_range for samples that are not due, std::logic_error for samples of a
+  // tile that is complete.
+  void add(ArrayView<const FrameSample> samples, std::vector<PathVertex> vertices);
+  // Hands on the tiles that lack samples. Returns how many vertices were refused because they were not due.
+  uint64_t endPass();
+
+ private:
+  // What waits for the rest of its tile.
+  struct Tile {
+    std::mutex mutex;
+    std::vector<FrameSample> samples;
+    std::vector<PathVertex> vertices;
+    uint64_t due = 0;  // number of samples due in the pass; 0: not counted yet
+    bool done = false;
+  };
+  uint32_t tileOf(uint32_t pixel) const;
+  uint32_t placeInTile(uint32_t pixel) const;
+  bool isDue(uint32_t pixel, uint32_t sample) const;
+  uint64_t samplesDue(uint32_t tile) const;
+  bool allIn(uint32_t tile, ArrayView<const FrameSample> samples, ArrayView<const PathVertex> vertices) const;
+  void addToTile(uint32_t tile, ArrayView<const FrameSample> samples, std::vector<PathVertex> vertices);
+  void handOn(uint32_t tile, ArrayView<const FrameSample> samples, std::vector<PathVertex> vertices);
+
+  uint32_t m_width, m_height, m_columns, m_rows;
+  Due m_due;
+  Sink m_sink;
+  std::unique_ptr<Tile[]> m_tiles;
+  std::mutex m_refusedMutex;
+  uint64_t m_refused = 0;
+};
+
+}  // namespace odis

@@ -1,0 +1,26 @@
+// Histograms over directions: one number for each texel of a sampling map.
+#pragma once
+
+#include <array>
+
+#include "odis/sampling_map.h"
+
+namespace odis {
+
+using Histogram = std::array<float, kMapTexels>;
+
+// The texel in column x and row y, which may lie one step outside: the octahedral map continues across an
+// edge mirrored about the edge's middle.
+int wrappedTexel(int x, int y);
+
+// The four texels among which a direction is spread, bilinearly, across the seams of the octahedral map.
+struct Splat {
+  int texel[4];
+  float weight[4];
+};
+Splat splat(const Float3& wi);
+
+// Binomial blur over 3 x 3 texels, across the seams of the octahedral map; keeps the sum.
+Histogram blurred(const Histogram& map);
+
+}  // namespace odis

@@ -1,0 +1,221 @@
+#include "odis/models/bsdf_fraction.h"
+
+#include <tbb/parallel_for.h>
+
+#include <stdexcept>
+#include <string>
+
+#include "odis/mixture.h"
+#include "odis/record/vertex_check.h"
+
+namespace odis {
+
+namespace {
+
+// BSDF sampling fractions are made from a quarter of the vertices, within these bounds: from one pixel of
+// `stride`, all of its path. A pilot that is a small part of the image is worth as little time.
+constexpr size_t kShare = 4, kFewestVertices = 50000, kMostVertices = 200000;
+bool isChosen(const PathVertex& vertex, uint32_t stride) {
+  return ((vertex.pixel * 0x9e3779b9u) >> 8) % stride == 0;
+}
+
+// What vertices' contributions are multiplied by.
+class PixelScale {
+ public:
+  explicit PixelScale(ArrayView<const float> values) : m_values(values) {}
+  float operator()(const PathVertex& v) const { return m_values.empty() ? 1 : 1 / m_values[v.pixel]; }
+  // Throws where a vertex has no pixel value.
+  void check(const PathVertex& v) const {
+    if (!m_values.empty() && v.pixel >= m_values.size())
+      throw std::out_of_range("GuideBuilder::build: a vertex has pixel " + std::to_string(v.pixel) +
+                              ", expected less than the number of pixel values, " +
+                              std::to_string(m_values.size()));
+  }
+
+ private:
+  ArrayView<const float> m_values;
+};
+
+// The chosen vertices of a batch, their cells, and their part in what the whole image varies by.
+struct ChosenVertices {
+  std::vector<const PathVertex*> vertices;
+  std::vector<uint32_t> cellOf, cells;  // as in BatchCells
+  ImageMoments image;
+  std::vector<std::pair<uint32_t, float>> variances;  // pixels and theirs
+};
+
+// The image's variance and rays are those of the first vertices.
+void addToImage(ChosenVertices& batch, const PathVertex& v, float scale) {
+  const float emission = v.emission * (v.discrete ? 1.0f : powerHeuristic(v.pdf, v.emissionLightPdf));
+  const float light = v.lightPdf > 0 ? v.light * powerHeuristic(v.lightPdf, v.lightBsdfPdf) : v.light;
+  const double value = (v.indirect + emission + light) * scale;
+  const double variance = std::isfinite(value) ? std::min((value - 1) * (value - 1), 2500.0) : 0;
+  ++batch.image.count;
+  batch.image.variance += variance;
+  batch.image.rays += v.raysAfter;
+  batch.variances.emplace_back(v.pixel, float(variance));
+}
+
+ChosenVertices choose(const VertexBatch& batch, uint32_t stride, const PixelScale& scale,
+                      const CellStore& store) {
+  ChosenVertices result;
+  CellIndex index;
+  for (const ArrayView<const PathVertex>& piece : batch)
+    for (const PathVertex& v : piece) {
+      if (!isChosen(v, stride) || !knowsContributions(v)) continue;
+      scale.check(v);
+      if (v.depth == 1) addToImage(result, v, scale(v));
+      if (!v.discrete && !isUsable(v)) continue;
+      const uint64_t key = store.grid().key(v.position, v.normal, 0);
+      const uint32_t cell = index.insert(key);
+      if (cell == result.cells.size()) result.cells.push_back(store.index().find(key));
+      if (result.cells[cell] == kNoCell) continue;
+      result.vertices.push_back(&v);
+      result.cellOf.push_back(cell);
+    }
+  return result;
+}
+
+// The share of its texel's density that a vertex's own sample did not make.
+float shareOfOthers(const PathVertex& v, int texel, const CellStatistics& cell,
+                    const DirectionDistribution& distribution, float limit) {
+  const float value = std::min(sampleValue(v), limit);
+  const Splat place = splat(reaim(v.position, v.wi, v.distance, cell.centroid));
+  float own = 0;
+  for (int k = 0; k < 4; ++k)
+    if (place.texel[k] == texel) own += place.weight[k] * value;
+  return std::max(1 - own * distribution.sensitivity / distribution.probability[texel], 0.0f);
+}
+
+// Adds a vertex, judged by its cell's map without its own sample.
+SecondMoments addJudged(CellMoments& sums, const PathVertex& v, float scale, uint32_t cell, float limit,
+                        const FractionInputs& inputs) {
+  float mapPdf = 0, lightMapPdf = 0;
+  if (guidablePartOf(v).probability > 0) {
+    VertexMap<float> map;
+    map.prepare(inputs.maps, int32_t(cell), v.normal, v.scattersBothSides ? -1.0f : 0.0f);
+    if (!v.discrete) {
+      const int texel = texelOf(v.wi);
+      mapPdf = map.texelPdf(texel) *
+               shareOfOthers(v, texel, inputs.cells[cell], inputs.distributions[cell], limit);
+    }
+    if (v.lightPdf > 0) lightMapPdf = map.pdf(v.lightDirection);
+  }
+  return addVertex(sums[size_t(roughnessClass(inputs.rules, v.roughness))], v, mapPdf, lightMapPdf, scale);
+}
+
+// All chosen vertices in the order of their cells.
+struct SortedVertices {
+  explicit SortedVertices(const FractionInputs& inputs, const PixelScale& scale) {
+    const size_t count = countVertices(inputs.parts);
+    const uint32_t stride =
+        uint32_t(std::max<size_t>(1, count / std::clamp(count / kShare, kFewestVertices, kMostVertices)));
+    const std::vector<VertexBatch> all = makeBatches(inputs.parts);
+    batches.resize(all.size());
+    std::vector<BatchCells> batchCells(all.size());
+    tbb::parallel_for(size_t(0), all.size(), [&](size_t b) {
+      batches[b] = choose(all[b], stride, scale, inputs.store);
+      batchCells[b] = {batches[b].cellOf, batches[b].cells};
+    });
+    order = sortByCell<PathVertex>(
+        batchCells, uint32_t(inputs.cells.size()),
+        [&](size_t batch, size_t i) -> const PathVertex& { return *batches[batch].vertices[i]; });
+    for (const ChosenVertices& batch : batches) {
+      image.count += batch.image.count;
+      image.variance += batch.image.variance;
+      image.rays += batch.image.rays;
+    }
+  }
+
+  std::vector<ChosenVertices> batches;
+  CellOrder<PathVertex> order;
+  ImageMoments image;
+};
+
+// Sums of each cell, the coarser levels' included, and of the image; the second moments of each vertex.
+struct AllMoments {
+  std::vector<CellMoments> cells;
+  CellMoments image;
+  std::vector<SecondMoments> vertices;  // in the order of SortedVertices
+};
+
+AllMoments predictMoments(const SortedVertices& sorted, const FractionInputs& inputs,
+                          const PixelScale& scale) {
+  const std::span<const CellStatistics> cells = inputs.cells;
+  AllMoments moments{
+      std::vector<CellMoments>(cells.size()), {}, std::vector<SecondMoments>(sorted.order.items.size())};
+  forEachCell(cells.size(), [&](size_t c) {
+    if (sorted.order.of(c).empty()) return;
+    const CellStatistics& parent = cells[cells[c].parent];
+    const float limit = parent.count > 0 ? inputs.store.clamp() * float(parent.sum / parent.count) : 0;
+    SecondMoments* next = &moments.vertices[sorted.order.begin[c]];
+    forEachItem(sorted.order.of(c), [&](const PathVertex& v) {
+      *next++ = addJudged(moments.cells[c], v, scale(v), uint32_t(c), limit, inputs);
+    });
+  });
+  for (int level = 0; level < kCellLevels; ++level)
+    for (size_t c = 0; c < cells.size(); ++c)
+      if (cells[c].level == level) {
+        CellMoments& coarser = cells[c].parent == kNoCell ? moments.image : moments.cells[cells[c].parent];
+        for (size_t m = 0; m < coarser.size(); ++m) coarser[m].add(moments.cells[c][m]);
+      }
+  return moments;
+}
+
+// Pixels, and what guiding saves of their variance, in the order of SortedVertices.
+using Savings = std::vector<std::pair<uint32_t, float>>;
+
+// Chooses by sums that are shrunk towards the parent's, those towards the parent's parent's, and so on up
+// to the whole image; the cell's own vertices tell what that saves each pixel.
+Savings chooseByMoments(std::vector<CellDecisions>& result, const SortedVertices& sorted,
+                        const AllMoments& moments, const FractionInputs& inputs) {
+  std::vector<CellMoments> shrunk(inputs.cells.size());
+  Savings savings(sorted.order.items.size());
+  forEachFromCoarse(inputs.cells, [&](size_t c) {
+    const uint32_t parent = inputs.cells[c].parent;
+    const CellMoments& coarser = parent == kNoCell ? moments.image : shrunk[parent];
+    size_t choices[kRoughnessClasses];
+    for (size_t m = 0; m < kRoughnessClasses; ++m) {
+      shrunk[c][m] = shrunkSums(moments.cells[c][m], coarser[m]);
+      choices[m] = chooseFraction(shrunk[c][m], sorted.image);
+      result[c].bsdfFraction[m] = kBsdfFractions[choices[m]];
+    }
+    for (uint32_t i = sorted.order.begin[c]; i < sorted.order.begin[c + 1]; ++i) {
+      const PathVertex& v = *sorted.order.items[i];
+      const size_t choice = choices[roughnessClass(inputs.rules, v.roughness)];
+      savings[i] = {v.pixel, moments.vertices[i][0] - moments.vertices[i][choice]};
+    }
+  });
+  return savings;
+}
+
+}  // namespace
+
+GuidingPrediction chooseFractions(std::vector<CellDecisions>& result, const FractionInputs& inputs) {
+  const PixelScale scale(inputs.pixelValues);
+  const SortedVertices sorted(inputs, scale);
+  GuidingPrediction prediction;
+  prediction.image = sorted.image;
+  if (!(sorted.image.count > 0)) {
+    for (CellDecisions& cell : result)
+      std::fill_n(cell.bsdfFraction, kRoughnessClasses, kFallbackBsdfFraction);
+    return prediction;
+  }
+  const AllMoments moments = predictMoments(sorted, inputs, scale);
+  const Savings savings = chooseByMoments(result, sorted, moments, inputs);
+
+  prediction.pixels.resize(inputs.pixelValues.size());
+  double saved = 0;
+  for (const auto& [pixel, saving] : savings) {
+    saved += saving;
+    if (!prediction.pixels.empty()) prediction.pixels[pixel].saved += saving;
+  }
+  if (!prediction.pixels.empty())
+    for (const ChosenVertices& batch : sorted.batches)
+      for (const auto& [pixel, variance] : batch.variances) prediction.pixels[pixel].variance += variance;
+  if (sorted.image.variance > 0)
+    prediction.varianceRatio = std::clamp(float(1 - saved / sorted.image.variance), 0.1f, 1.5f);
+  return prediction;
+}
+
+}  // namespace odis

@@ -1,0 +1,37 @@
+// The BSDF sampling fractions of all cells at once.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "odis/cells/statistics.h"
+#include "odis/guide.h"
+#include "odis/models/direction_model.h"
+#include "odis/models/second_moments.h"
+
+namespace odis {
+
+// What the pilot predicts of guided samples.
+struct GuidingPrediction {
+  ImageMoments image;
+  float varianceRatio = 1;              // of a guided sample to an unguided one, over the whole image
+  std::vector<PixelPrediction> pixels;  // one for each pixel value
+};
+
+// What the choice is made from. `parts` are (a part of) the vertices that the maps were made from; their
+// contributions are divided by `pixelValues`, if there are any.
+struct FractionInputs {
+  const CellStore& store;
+  std::span<const CellStatistics> cells;
+  std::span<const DirectionDistribution> distributions;
+  MapArrays maps;
+  GuideRules rules;
+  VertexParts parts;
+  ArrayView<const float> pixelValues;
+};
+
+// Fills in the BSDF sampling fractions of `result`. Where no vertex knows its contributions they are
+// kFallbackBsdfFraction.
+GuidingPrediction chooseFractions(std::vector<CellDecisions>& result, const FractionInputs& inputs);
+
+}  // namespace odis

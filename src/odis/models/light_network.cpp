@@ -1,0 +1,58 @@
+#include "odis/models/light_network.h"
+
+#include <cmath>
+
+namespace odis {
+
+namespace {
+
+constexpr uint32_t kWidestPairLayer = 32;
+static_assert(kLanes == kMaxLightGroups);
+
+}  // namespace
+
+LightNetwork::LightNetwork(const Weights& weights) {
+  uint32_t inputs = kPairFeatures;
+  for (int i = 0; i < 3; ++i) {
+    m_layers[i] = Dense(weights, "lights." + std::to_string(i), inputs);
+    inputs = m_layers[i].outputs();
+    if (inputs > kWidestPairLayer) throw WeightsError("lights." + std::to_string(i) + ": is too wide");
+  }
+  if (inputs != 1) throw WeightsError("lights.2: expected one output");
+}
+
+std::array<float, kMaxLightGroups> LightNetwork::shares(const LightFeatures& features,
+                                                        uint32_t groups) const {
+  // All groups side by side.
+  float x[kWidestPairLayer * kMaxLightGroups], y[kWidestPairLayer * kMaxLightGroups];
+  m_layers[0].applyLanes(features.pairs[0].data(), x);
+  rectify(std::span(x, m_layers[0].outputs() * kMaxLightGroups));
+  m_layers[1].applyLanes(x, y);
+  rectify(std::span(y, m_layers[1].outputs() * kMaxLightGroups));
+  m_layers[2].applyLanes(y, x);
+  std::array<float, kMaxLightGroups> result{};
+  float most = -INFINITY, total = 0;
+  for (uint32_t g = 0; g < groups; ++g) {
+    result[g] = x[g] + std::log(std::max(features.formula[g], 1e-6f));
+    most = std::max(most, result[g]);
+  }
+  for (uint32_t g = 0; g < groups; ++g) total += result[g] = std::exp(result[g] - most);
+  for (float& share : result) share /= total;
+  return result;
+}
+
+LightSquares LightNetwork::predict(const CellChain& chain, const LightSquares*, uint32_t groups) const {
+  LightSquares squares{};
+  // Where no light gave anything at any level there is nothing to choose by.
+  bool lit = false;
+  for (const CellStatistics* cell : chain)
+    for (uint32_t g = 0; cell && g < groups; ++g) lit = lit || cell->lightSquares[g] > 0;
+  if (!lit) return squares;
+  LightFeatures features;
+  computeFeatures(chain, groups, features);
+  const std::array<float, kMaxLightGroups> share = shares(features, groups);
+  for (uint32_t g = 0; g < groups; ++g) squares[g] = double(share[g]) * share[g];
+  return squares;
+}
+
+}  // namespace odis

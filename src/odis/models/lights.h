@@ -1,0 +1,43 @@
+// Which group of lights next-event estimation should choose in a cell.
+#pragma once
+
+#include <array>
+#include <span>
+#include <vector>
+
+#include "odis/cells/statistics.h"
+#include "odis/guide.h"
+
+namespace odis {
+
+// For each group of lights the mean, over the cell's vertices, of the squared next-event estimate from that
+// group alone, visibility included.
+using LightSquares = std::array<double, kMaxLightGroups>;
+
+// From a cell's statistics to what its groups of lights give: the interface behind which formula and
+// network stand side by side.
+class LightModel {
+ public:
+  virtual ~LightModel() = default;
+  // Given the statistics of the cell and its ancestors, and its parent's result (null for the coarsest
+  // level). Called for parents before their children; thread-safe. `groups` is at most kMaxLightGroups.
+  virtual LightSquares predict(const CellChain& chain, const LightSquares* parent, uint32_t groups) const = 0;
+  // How reliable the cell's result is, from 0 to 1: the learned-light fraction is in proportion to it.
+  virtual double reliability(const CellStatistics& cell) const = 0;
+};
+
+// The cell's means, shrunk towards its parent's by how many samples the cell has.
+class LightFormula : public LightModel {
+ public:
+  LightSquares predict(const CellChain& chain, const LightSquares* parent, uint32_t groups) const override;
+  double reliability(const CellStatistics& cell) const override;
+};
+
+// Makes the light tables of all cells (GuideView::lightTables) and fills in their learned-light fractions.
+// The best probability of a group is in proportion to the root of its squared contribution. Groups that are
+// parts of one light follow it only where that gains much over drawing each part as often as the others.
+std::vector<float> tabulateLights(std::vector<CellDecisions>& result, std::span<const CellStatistics> cells,
+                                  const LightModel& model, uint32_t groups,
+                                  std::span<const LightParts> parts = {});
+
+}  // namespace odis

@@ -1,0 +1,24 @@
+// Counts path vertices by what can be learned from them, and says what stands in for optional fields that
+// the host left out.
+#pragma once
+
+#include "odis/path_vertex.h"
+
+namespace odis {
+
+void countVertex(VertexCounts& counts, VertexState state);
+
+// |cos| between wi and the normal.
+float cosineOf(const PathVertex& vertex);
+
+// The part of the vertex's pdf that comes from lobes that may be guided, and how often the BSDF draws from
+// them.
+struct GuidablePart {
+  float pdf, probability;
+};
+GuidablePart guidablePartOf(const PathVertex& vertex);
+
+// Whether it is known what the vertex adds to its pixel, and for how many rays.
+bool knowsContributions(const PathVertex& vertex);
+
+}  // namespace odis

@@ -1,0 +1,121 @@
+// Takes a frame through its passes with the toy host, and compares expectations.
+#pragma once
+
+#include <gtest/gtest.h>
+#include <tbb/parallel_for.h>
+
+#include <functional>
+#include <vector>
+
+#include "frame/toy_host.h"
+
+namespace odis::test {
+
+// What a test may do to vertices before they are handed over.
+using ChangeVertices = std::function<void(std::vector<PathVertex>& vertices)>;
+
+// Traces a pass pixel by pixel, on one thread.
+inline void runPass(Frame& frame, const FramePass& pass, const ToyHost& host, uint32_t pixels,
+                    const ChangeVertices& change = {}) {
+  std::vector<FrameSample> samples;
+  std::vector<PathVertex> vertices;
+  PathRecorder recorder;
+  for (uint32_t pixel = 0; pixel < pixels; ++pixel) {
+    const SampleRange range = frame.samples(pixel);
+    for (uint32_t i = 0; i < range.count; ++i)
+      samples.push_back(host.trace(pass, frame.pixelValues(), pixel, range.first + i, recorder));
+    recorder.finish(vertices);
+    if (!pass.wantsVertices) vertices.clear();
+  }
+  if (change) change(vertices);
+  frame.add(samples, std::move(vertices));
+}
+
+inline void runFrame(Frame& frame, const FrameOptions& options, const ToyRoom& room,
+                     const ChangeVertices& change = {}) {
+  const ToyHost host(room, options.width, options.height);
+  while (const FramePass* pass = frame.beginPass()) {
+    runPass(frame, *pass, host, options.width * options.height, change);
+    frame.endPass();
+  }
+}
+
+inline FrameOptions toyOptions(uint32_t width, uint32_t height, uint32_t samplesPerPixel) {
+  FrameOptions options;
+  options.width = width;
+  options.height = height;
+  options.samplesPerPixel = samplesPerPixel;
+  options.guide.lightGroups = 2;
+  options.guide.cellsPerDiagonal = 12;
+  return options;
+}
+
+inline std::vector<float> luminances(const Frame& frame, const FrameOptions& options) {
+  std::vector<float> image;
+  for (uint32_t pixel = 0; pixel < options.width * options.height; ++pixel)
+    image.push_back(frame.mean(pixel).color.y);
+  return image;
+}
+
+// Means over images of many seeds: of the whole image, and of each of 8 x 8 parts of it.
+struct Estimate {
+  static constexpr uint32_t kParts = 8;
+  struct Value {
+    double sum = 0, squares = 0;
+  };
+  std::vector<Value> values = std::vector<Value>(kParts * kParts + 1);  // the last one: the whole image
+  int count = 0;
+
+  void add(const std::vector<float>& image, uint32_t width) {
+    const auto height = uint32_t(image.size()) / width;
+    std::vector<double> sums(values.size()), pixels(values.size());
+    for (uint32_t i = 0; i < image.size(); ++i) {
+      const uint32_t part = i / width * kParts / height * kParts + i % width * kParts / width;
+      for (const size_t v : {size_t(part), values.size() - 1}) {
+        sums[v] += image[i];
+        ++pixels[v];
+      }
+    }
+    for (size_t v = 0; v < values.size(); ++v) {
+      const double mean = sums[v] / pixels[v];
+      values[v].sum += mean;
+      values[v].squares += mean * mean;
+    }
+    ++count;
+  }
+  double mean(size_t v) const { return values[v].sum / count; }
+  double varianceOfMean(size_t v) const {
+    return std::max(values[v].squares / count - mean(v) * mean(v), 0.0) / (count - 1);
+  }
+};
+
+// Renders with the seeds first, first + 1, ..., on all threads; `makeChange` gives each seed what changes
+// its vertices.
+inline Estimate estimate(const FrameOptions& options, const ToyRoom& room, int seeds, uint64_t first,
+                         const std::function<ChangeVertices(uint64_t seed)>& makeChange = {}) {
+  std::vector<std::vector<float>> images(static_cast<size_t>(seeds));
+  tbb::parallel_for(0, seeds, [&](int i) {
+    FrameOptions own = options;
+    own.seed = first + uint64_t(i);
+    Frame frame(own);
+    runFrame(frame, own, room, makeChange ? makeChange(own.seed) : ChangeVertices());
+    images[size_t(i)] = luminances(frame, own);
+  });
+  Estimate result;
+  for (const std::vector<float>& image : images) result.add(image, options.width);
+  return result;
+}
+
+// Expects the same expectation of the image and of each of its parts, at a significance of 1 % over all of
+// them (Šidák); means of 16 and more images are taken as normal.
+inline void expectSameExpectation(const Estimate& a, const Estimate& b) {
+  const double significance = 1 - std::pow(0.99, 1.0 / double(a.values.size()));
+  for (size_t v = 0; v < a.values.size(); ++v) {
+    const double z = (a.mean(v) - b.mean(v)) / std::sqrt(a.varianceOfMean(v) + b.varianceOfMean(v));
+    EXPECT_GT(std::erfc(std::abs(z) / std::sqrt(2.0)), significance)
+        << (v + 1 == a.values.size() ? "image" : "part " + std::to_string(v)) << ": " << a.mean(v) << " and "
+        << b.mean(v) << ", z = " << z;
+  }
+}
+
+}  // namespace odis::test

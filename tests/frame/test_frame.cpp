@@ -1,0 +1,229 @@
+// What a frame promises beside unbiasedness: the same bits in any order of delivery, and clear errors.
+#include <algorithm>
+#include <cstring>
+#include <map>
+#include <random>
+#include <thread>
+
+#include "frame/run_frame.h"
+
+namespace odis::test {
+
+namespace {
+
+// The bytes of every array of a guide.
+std::string bytesOf(const GuideView& view) {
+  std::string bytes;
+  const auto add = [&](const auto* data, size_t count) {
+    bytes.append(reinterpret_cast<const char*>(data), count * sizeof *data);
+  };
+  add(view.keys, view.cellCount);
+  add(view.maps.texels, size_t(view.cellCount) * kMapTexels);
+  add(view.maps.sums, size_t(view.cellCount) * kSumsPerMap);
+  add(view.decisions, view.cellCount);
+  add(view.lightTables, view.lightGroups > 0 ? size_t(view.cellCount) * (view.lightGroups + 1) : 0);
+  return bytes;
+}
+
+// Delivers the samples of each pass in an order and in portions that `engine` chooses, from four threads at
+// once.
+void runShuffled(Frame& frame, const FrameOptions& options, std::mt19937& engine) {
+  const ToyHost host({}, options.width, options.height);
+  while (const FramePass* pass = frame.beginPass()) {
+    std::vector<std::pair<uint32_t, uint32_t>> all;  // pixel, sample
+    for (uint32_t pixel = 0; pixel < options.width * options.height; ++pixel)
+      for (uint32_t i = 0; i < frame.samples(pixel).count; ++i)
+        all.emplace_back(pixel, frame.samples(pixel).first + i);
+    std::shuffle(all.begin(), all.end(), engine);
+    const size_t portion = 1 + engine() % 500, perThread = (all.size() + 3) / 4;
+    std::vector<std::thread> threads;
+    for (size_t t = 0; t < 4; ++t)
+      threads.emplace_back([&, t] {
+        const size_t end = std::min((t + 1) * perThread, all.size());
+        for (size_t begin = t * perThread; begin < end; begin += portion) {
+          PathRecorder recorder;
+          std::vector<FrameSample> samples;
+          std::vector<PathVertex> vertices;
+          for (size_t i = begin; i < std::min(begin + portion, end); ++i)
+            samples.push_back(host.trace(*pass, frame.pixelValues(), all[i].first, all[i].second, recorder));
+          recorder.finish(vertices);
+          std::reverse(vertices.begin(), vertices.end());
+          frame.add(samples, std::move(vertices));
+        }
+      });
+    for (std::thread& thread : threads) thread.join();
+    frame.endPass();
+  }
+}
+
+TEST(Frame, AnyOrderOfDeliveryGivesTheSameBits) {
+  const FrameOptions options = toyOptions(50, 37, 6);
+  Frame inOrder(options);
+  runFrame(inOrder, options, {});
+  const std::vector<float> expected = luminances(inOrder, options);
+  std::mt19937 engine(1);
+  for (int i = 0; i < 3; ++i) {
+    Frame shuffled(options);
+    runShuffled(shuffled, options, engine);
+    EXPECT_EQ(luminances(shuffled, options), expected);
+    EXPECT_EQ(bytesOf(shuffled.guide().view()), bytesOf(inOrder.guide().view()));
+  }
+}
+
+TEST(Frame, AnImageOfAnySizeGetsAllItsSamples) {
+  for (const auto& [width, height] : {std::pair{1u, 1u}, {3u, 70u}, {17u, 5u}, {16u, 16u}, {33u, 1u}}) {
+    FrameOptions options = toyOptions(width, height, 5);
+    options.adaptive = false;
+    Frame frame(options);
+    runFrame(frame, options, {});
+    for (uint32_t pixel = 0; pixel < width * height; ++pixel) {
+      EXPECT_EQ(frame.sampleCount(pixel), 5u);
+      EXPECT_TRUE(std::isfinite(frame.mean(pixel).color.y));
+    }
+    EXPECT_EQ(frame.statistics().samples, uint64_t(width) * height * 5);
+  }
+}
+
+TEST(Frame, AdaptiveCountsCostAboutAsManySamples) {
+  const FrameOptions options = toyOptions(64, 64, 8);
+  Frame frame(options);
+  runFrame(frame, options, {});
+  uint32_t least = ~0u, most = 0;
+  for (uint32_t pixel = 0; pixel < 64 * 64; ++pixel) {
+    least = std::min(least, frame.sampleCount(pixel));
+    most = std::max(most, frame.sampleCount(pixel));
+  }
+  EXPECT_LT(least, 8u);
+  EXPECT_GT(most, 8u);
+  EXPECT_NEAR(double(frame.statistics().samples), 64 * 64 * 8, 64 * 64 * 1.5);
+}
+
+// The mean is that of the samples with the weights that the frame tells of.
+TEST(Frame, TheMeanIsThatOfTheWeightedSamples) {
+  const FrameOptions options = toyOptions(24, 24, 6);
+  Frame frame(options);
+  const ToyHost host({}, 24, 24);
+  std::map<uint32_t, std::map<uint32_t, float>> values;  // [pixel][sample]
+  while (const FramePass* pass = frame.beginPass()) {
+    PathRecorder recorder;
+    std::vector<FrameSample> samples;
+    for (uint32_t pixel = 0; pixel < 24 * 24; ++pixel)
+      for (uint32_t i = 0; i < frame.samples(pixel).count; ++i)
+        samples.push_back(
+            host.trace(*pass, frame.pixelValues(), pixel, frame.samples(pixel).first + i, recorder));
+    for (const FrameSample& s : samples)
+      if (pass->partOfImage) values[s.pixel][s.sample] = s.value.y;
+    std::vector<PathVertex> vertices;
+    recorder.finish(vertices);
+    frame.add(samples, std::move(vertices));
+    frame.endPass();
+  }
+  for (const auto& [pixel, samples] : values) {
+    double sum = 0, weights = 0;
+    for (const auto& [sample, value] : samples) {
+      sum += double(frame.sampleWeight(pixel, sample)) * value;
+      weights += frame.sampleWeight(pixel, sample);
+    }
+    EXPECT_NEAR(frame.mean(pixel).color.y, sum / weights, 1e-5 * (1 + sum / weights)) << pixel;
+    EXPECT_EQ(samples.size(), frame.sampleCount(pixel));
+  }
+}
+
+TEST(Frame, AnInterruptedPassKeepsItsSamplesAndIsTheLast) {
+  const FrameOptions options = toyOptions(32, 32, 8);
+  const ToyHost host({}, 32, 32);
+  for (const int passes : {1, 2}) {  // the pilot is interrupted, or the first guided pass
+    Frame frame(options);
+    for (int i = 1; i < passes; ++i) {
+      const FramePass* pass = frame.beginPass();
+      runPass(frame, *pass, host, 32 * 32);
+      frame.endPass();
+    }
+    const FramePass* pass = frame.beginPass();
+    runPass(frame, *pass, host, 5);
+    frame.endPass(true);
+    EXPECT_EQ(frame.beginPass(), nullptr);
+    EXPECT_GT(frame.sampleCount(4), frame.sampleCount(5));
+    EXPECT_TRUE(std::isfinite(frame.mean(4).color.y));
+    EXPECT_TRUE(std::isfinite(frame.mean(5).color.y));
+  }
+}
+
+TEST(Frame, UnguidedFramesAskForNoVertices) {
+  FrameOptions options = toyOptions(20, 20, 3);
+  options.guided = false;
+  Frame frame(options);
+  while (const FramePass* pass = frame.beginPass()) {
+    EXPECT_FALSE(pass->wantsVertices);
+    EXPECT_EQ(pass->guide.cellCount, 0u);
+    runPass(frame, *pass, ToyHost({}, 20, 20), 20 * 20);
+    frame.endPass();
+  }
+  EXPECT_EQ(frame.statistics().samples, 20u * 20 * 3);
+  EXPECT_EQ(frame.statistics().pilotSamples, 0u);
+}
+
+TEST(Frame, ForeignVerticesAreCountedAndLeftOut) {
+  const FrameOptions options = toyOptions(32, 32, 2);
+  Frame frame(options), other(options);
+  runFrame(frame, options, {});
+  runFrame(other, options, {}, [](std::vector<PathVertex>& vertices) {
+    if (vertices.empty()) return;
+    for (int i = 0; i < 10; ++i) {
+      PathVertex foreign = vertices[size_t(i)];
+      if (i % 2 == 0)
+        foreign.pixel = 32 * 32;
+      else
+        foreign.sample = 77;
+      vertices.push_back(foreign);
+    }
+  });
+  EXPECT_EQ(frame.vertexCounts().outsideFrame, 0u);
+  EXPECT_GE(other.vertexCounts().outsideFrame, 10u);
+  EXPECT_EQ(luminances(other, options), luminances(frame, options));
+}
+
+TEST(Frame, WhatIsNotFiniteCountsAsBlack) {
+  FrameOptions options = toyOptions(8, 8, 1);
+  options.guided = false;
+  Frame frame(options);
+  frame.beginPass();
+  std::vector<FrameSample> samples;
+  for (uint32_t pixel = 0; pixel < 64; ++pixel) samples.push_back({pixel, 0, {1, 1, 1}, 1});
+  samples[3].value.y = NAN;
+  samples[9].value.x = INFINITY;
+  frame.add(samples);
+  frame.endPass();
+  EXPECT_EQ(frame.statistics().notFinite, 2u);
+  EXPECT_EQ(frame.mean(3).color.x, 0);
+  EXPECT_EQ(frame.mean(4).color.x, 1);
+}
+
+TEST(Frame, MisuseIsAnError) {
+  FrameOptions options = toyOptions(16, 16, 2);
+  for (const auto spoil : {+[](FrameOptions& o) { o.width = 0; }, +[](FrameOptions& o) { o.height = 0; },
+                           +[](FrameOptions& o) { o.samplesPerPixel = 0; },
+                           +[](FrameOptions& o) { o.pilotSamplesPerPixel = -1; },
+                           +[](FrameOptions& o) { o.guide.cellsPerDiagonal = 0; },
+                           +[](FrameOptions& o) { o.guide.lightGroups = kMaxLightGroups + 1; },
+                           +[](FrameOptions& o) { o.guide.floor = NAN; }}) {
+    FrameOptions bad = options;
+    spoil(bad);
+    EXPECT_THROW(Frame{bad}, std::invalid_argument);
+  }
+  Frame frame(options);
+  EXPECT_THROW(frame.endPass(), std::logic_error);
+  EXPECT_THROW(frame.samples(0), std::logic_error);
+  const FrameSample sample{0, 0, {1, 1, 1}, 1};
+  EXPECT_THROW(frame.add({&sample, 1}), std::logic_error);
+  ASSERT_NE(frame.beginPass(), nullptr);
+  EXPECT_THROW(frame.beginPass(), std::logic_error);
+  EXPECT_THROW(frame.samples(16 * 16), std::out_of_range);
+  const FrameSample outside{16 * 16, 0, {1, 1, 1}, 1}, notDue{0, 99, {1, 1, 1}, 1};
+  EXPECT_THROW(frame.add({&outside, 1}), std::out_of_range);
+  EXPECT_THROW(frame.add({&notDue, 1}), std::out_of_range);
+}
+
+}  // namespace
+
+}  // namespace odis::test

@@ -1,0 +1,134 @@
+// A frame's image has the expectation of plain path tracing, whatever its guide and its vertices say.
+// Images of 64 x 64 pixels.
+#include <random>
+
+#include "frame/run_frame.h"
+#include "odis/models/model_parts.h"
+
+namespace odis::test {
+
+namespace {
+
+constexpr uint32_t kSide = 64;
+
+// Maps that have nothing to do with the light.
+class WrongDirections : public DirectionModel {
+ public:
+  enum class Kind { random, oneTexel, zero, notANumber };
+  explicit WrongDirections(Kind kind) : m_kind(kind) {}
+  DirectionDistribution predict(const CellChain& chain, const DirectionDistribution*) const override {
+    std::mt19937 engine(uint32_t(chain[0]->count) * 7919u + uint32_t(chain[0]->level));
+    const uint32_t bright = engine() % kMapTexels;
+    DirectionDistribution result;
+    for (uint32_t t = 0; t < kMapTexels; ++t) {
+      result.inverseCosine[t] = 1;
+      result.probability[t] = m_kind == Kind::random       ? float(engine() % 1000) / 1000
+                              : m_kind == Kind::oneTexel   ? float(t == bright)
+                              : m_kind == Kind::notANumber ? (engine() % 4 == 0 ? NAN : 1.0f)
+                                                           : 0;
+    }
+    return result;
+  }
+
+ private:
+  Kind m_kind;
+};
+
+// Tables that draw one lamp only, or numbers that make no table.
+class WrongLights : public LightModel {
+ public:
+  LightSquares predict(const CellChain& chain, const LightSquares*, uint32_t) const override {
+    std::mt19937 engine(uint32_t(chain[0]->count) * 104729u + uint32_t(chain[0]->level));
+    LightSquares result{};
+    const uint32_t kind = engine() % 3;
+    result[engine() % 2] = kind == 0 ? 1 : kind == 1 ? NAN : -1;
+    return result;
+  }
+  double reliability(const CellStatistics&) const override { return 0.9; }
+};
+
+class UnbiasedFrame : public ::testing::Test {
+ protected:
+  static void SetUpTestSuite() {
+    FrameOptions options = toyOptions(kSide, kSide, 32);
+    options.guided = false;
+    s_reference = estimate(options, {}, 24, 5000);
+  }
+  static void expectUnbiased(const FrameOptions& options, int seeds = 64,
+                             const std::function<ChangeVertices(uint64_t)>& makeChange = {}) {
+    expectSameExpectation(estimate(options, {}, seeds, 1, makeChange), s_reference);
+  }
+  static FrameOptions adversarial(WrongDirections::Kind kind) {
+    FrameOptions options = toyOptions(kSide, kSide, 4);
+    options.guide.model = makeModel(std::make_shared<WrongDirections>(kind), std::make_shared<WrongLights>());
+    options.guide.fixedBsdfFraction = 0.3f;
+    return options;
+  }
+  static inline Estimate s_reference;
+};
+
+TEST_F(UnbiasedFrame, ByTheNetworks) {
+  expectUnbiased(toyOptions(kSide, kSide, 4));
+}
+
+TEST_F(UnbiasedFrame, ByFormulas) {
+  FrameOptions options = toyOptions(kSide, kSide, 4);
+  options.guide.model = Model::formulas();
+  expectUnbiased(options);
+}
+
+TEST_F(UnbiasedFrame, WithManySamplesThatRefineTheGuideAndAreSpread) {
+  FrameOptions options = toyOptions(kSide, kSide, 12);
+  options.guide.model = Model::formulas();
+  options.refinementSamples = 7;
+  expectUnbiased(options, 32);
+}
+
+TEST_F(UnbiasedFrame, FromAPilotOfAQuarterOfASample) {
+  FrameOptions options = toyOptions(kSide, kSide, 3);
+  options.guide.model = Model::formulas();
+  options.pilotSamplesPerPixel = 0.25;
+  expectUnbiased(options);
+}
+
+TEST_F(UnbiasedFrame, FromAnOracle) {
+  FrameOptions options = toyOptions(kSide, kSide, 3);
+  options.guide.model = Model::formulas();
+  options.oracleSamples = 4;
+  expectUnbiased(options);
+}
+
+TEST_F(UnbiasedFrame, ByWrongMapsAndTables) {
+  using Kind = WrongDirections::Kind;
+  for (const Kind kind : {Kind::random, Kind::oneTexel, Kind::zero, Kind::notANumber})
+    expectUnbiased(adversarial(kind));
+}
+
+// A host whose records are wrong in every number but the place loses quality, not the mean: what is wrong
+// about a path is known before the samples that it guides are drawn.
+TEST_F(UnbiasedFrame, FromLyingRecords) {
+  FrameOptions options = toyOptions(kSide, kSide, 4);
+  options.guide.model = Model::formulas();
+  expectUnbiased(options, 64, [](uint64_t seed) -> ChangeVertices {
+    return [engine = std::mt19937_64(seed)](std::vector<PathVertex>& vertices) mutable {
+      std::uniform_real_distribution<float> uniform(0, 1);
+      for (PathVertex& v : vertices) {
+        const float factor = std::exp2(6 * uniform(engine) - 3);
+        v.radiance = v.radiance * factor;
+        v.direct = v.direct * (4 * uniform(engine));
+        v.weight = v.weight * uniform(engine);
+        v.indirect *= factor * uniform(engine);
+        v.light = uniform(engine);
+        v.raysAfter = std::floor(10 * uniform(engine));
+        v.pdf *= 0.1f + uniform(engine);
+        v.roughness = uniform(engine);
+        v.lightGroup = uint32_t(engine() % 3);
+        v.lightGroupProbability = uniform(engine);
+      }
+    };
+  });
+}
+
+}  // namespace
+
+}  // namespace odis::test

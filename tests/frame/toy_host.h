@@ -1,0 +1,197 @@
+// A host of odis::Frame in a hundred lines: a path tracer with next-event estimation, multiple importance
+// sampling and everything that a guide decides.
+#pragma once
+
+#include <odis/frame.h>
+#include <odis/mixture.h>
+#include <odis/recorder.h>
+
+#include "frame/toy_room.h"
+
+namespace odis::test {
+
+// Independent random numbers: a function of (seed, pixel, sample) and of how many were drawn.
+class ToyNumbers {
+ public:
+  ToyNumbers(uint64_t seed, uint32_t pixel, uint32_t sample)
+      : m_state(mix(mix(seed * 0x9e3779b97f4a7c15ull + pixel) + sample)) {}
+  float next() {
+    m_state += 0x9e3779b97f4a7c15ull;
+    return float(mix(m_state) >> 40) * 0x1p-24f;
+  }
+
+ private:
+  static uint64_t mix(uint64_t x) {
+    x = (x ^ (x >> 30)) * 0xbf58476d1ce4e5b9ull;
+    x = (x ^ (x >> 27)) * 0x94d049bb133111ebull;
+    return x ^ (x >> 31);
+  }
+  uint64_t m_state;
+};
+
+// A diffuse BSDF as Mixture asks for it. World space.
+struct ToyBsdf {
+  struct Sample {
+    Float3 wi;
+    float pdf = 0, weight = 0;  // weight: albedo * cos / pi / pdf
+  };
+  Float3 normal;
+  float albedo;
+
+  float density(const Float3& wi) const { return std::max(dot(wi, normal), 0.0f) / kPi; }
+  Sample sampleBsdf(float u, float v) const {
+    const Float3 tangent = std::abs(normal.x) > 0.5f ? Float3{0, 1, 0} : Float3{1, 0, 0};
+    Float3 s = tangent - normal * dot(tangent, normal);
+    s = s / lengthOf(s);
+    const Float3 t{normal.y * s.z - normal.z * s.y, normal.z * s.x - normal.x * s.z,
+                   normal.x * s.y - normal.y * s.x};
+    const float r = std::sqrt(u), phi = 2 * kPi * v;
+    const Float3 wi =
+        s * (r * std::cos(phi)) + t * (r * std::sin(phi)) + normal * std::sqrt(std::max(1 - u, 1e-6f));
+    return {wi, density(wi), albedo};
+  }
+  bool isDiscrete(const Sample&) const { return false; }
+  bool isSharp(const Sample&) const { return false; }
+  bool failed(const Sample& sample) const { return !(sample.weight > 0); }
+  template <class PdfOf>
+  Sample evaluate(const Float3& wi, const PdfOf& pdfOf) const {
+    const float bsdf = density(wi), pdf = pdfOf(bsdf, bsdf);
+    return {wi, pdf, albedo * bsdf / pdf};
+  }
+  template <class PdfOf>
+  void reweigh(Sample& sample, const PdfOf& pdfOf) const {
+    const float pdf = pdfOf(sample.pdf, sample.pdf, sample.wi);
+    sample.weight *= sample.pdf / pdf;
+    sample.pdf = pdf;
+  }
+};
+
+class ToyHost {
+ public:
+  static constexpr int kMaxDepth = 5;
+
+  ToyHost(const ToyRoom& room, uint32_t width, uint32_t height)
+      : m_room(room), m_width(width), m_height(height) {}
+
+  // Traces one sample of the pass and records its vertices.
+  FrameSample trace(const FramePass& pass, ArrayView<const float> pixelValues, uint32_t pixel,
+                    uint32_t sample, PathRecorder& recorder) const {
+    State s{pass,  recorder, ToyNumbers(pass.seed, pixel, sample), recorder.begin({pixel, sample}),
+            pixel, sample};
+    s.pixelValue = pixelValues.empty() ? 1 : pixelValues[pixel];
+    const float x = (float(pixel % m_width) + s.numbers.next()) / float(m_width) - 0.5f,
+                y = 0.5f - (float(pixel / m_width) + s.numbers.next()) / float(m_height);
+    s.origin = {0.5f, 0.01f, 0.5f};
+    s.direction = Float3{x, 0.6f, y} / lengthOf({x, 0.6f, y});
+    for (s.depth = 1; s.depth <= kMaxDepth && extend(s); ++s.depth) {
+    }
+    return {pixel, sample, gray(s.radiance), s.rays};
+  }
+
+ private:
+  struct State {
+    const FramePass& pass;
+    PathRecorder& recorder;
+    ToyNumbers numbers;
+    uint32_t path, pixel, sample;
+    float pixelValue = 1, throughput = 1, radiance = 0;
+    float pdf = 0;         // of the ray's direction
+    LearnedLights lights;  // of the vertex that the ray left
+    Float3 origin, direction;
+    int depth = 1;
+    uint32_t rays = 0;
+  };
+  // The probability of a lamp, learned or not.
+  static float lampProbability(const LearnedLights& lights, int lamp) {
+    const float learned = lights.fraction > 0 ? lights.cdf[lamp + 1] - lights.cdf[lamp] : 0;
+    return lights.fraction * learned + (1 - lights.fraction) * 0.5f;
+  }
+  // The density, with respect to solid angle, of a point on a lamp.
+  float lampPdf(const Float3& to) const {
+    return dot(to, to) * lengthOf(to) / (m_room.lampSize * m_room.lampSize * std::max(to.z, 1e-6f));
+  }
+
+  // One bounce; false where the path ends.
+  bool extend(State& s) const {
+    const ToyRoom::Hit hit = m_room.intersect(s.origin, s.direction);
+    ++s.rays;
+    s.recorder.surface(s.path, {hit.position, hit.normal, s.direction * -1.0f, hit.distance});
+    if (hit.emission.x > 0) {
+      const float lightPdf = s.depth > 1 && hit.lamp >= 0
+                                 ? lampPdf(hit.position - s.origin) * lampProbability(s.lights, hit.lamp)
+                                 : 0;
+      const float weight = s.depth > 1 ? powerHeuristic(s.pdf, lightPdf) : 1;
+      s.radiance += s.throughput * hit.emission.x * weight;
+      s.recorder.emission(s.path, {hit.emission, weight, lightPdf});
+    }
+    if (s.depth == kMaxDepth) return false;
+    const GuideView& guide = s.pass.guide;
+    const uint32_t cell =
+        guide.cellCount > 0 ? findCell(guide, {hit.position, hit.normal, s.pixel, s.sample}) : kNoCell;
+    if (cell != kNoCell && s.depth > 1 && !playRoulette(s, guide.decisions[cell])) return false;
+
+    Mixture<float> mixture;
+    VertexMap<float> map;
+    if (cell != kNoCell) {
+      map.prepare(guide.maps, int32_t(cell), hit.normal, 0);
+      if (map.sampleable()) mixture = {bsdfFraction(guide, int32_t(cell), 1.0f), 1};
+    }
+    const ToyBsdf bsdf{hit.normal, m_room.albedo};
+    s.lights = cell != kNoCell && guide.lightGroups > 0 ? learnedLights(guide, cell) : LearnedLights();
+    estimateDirectLight(s, hit, bsdf, mixture, map);
+    const float u = s.numbers.next(), v = s.numbers.next();
+    const ToyBsdf::Sample next = mixture.sample(map, u, v, bsdf);
+    if (!(next.weight > 0)) return false;
+    s.recorder.bounce(s.path, {next.wi, gray(next.weight), next.pdf, bsdf.density(next.wi), 1});
+    s.throughput *= next.weight;
+    s.pdf = next.pdf;
+    s.origin = hit.position;
+    s.direction = next.wi;
+    return true;
+  }
+
+  bool playRoulette(State& s, const CellDecisions& cell) const {
+    const float survival =
+        survivalProbability(s.pass.guide.rules, cell.survivalFactor, s.throughput / s.pixelValue);
+    const float standIn = s.throughput * cell.outgoingRadiance.x;
+    if (s.numbers.next() >= survival) {
+      s.radiance += standIn;
+      return false;
+    }
+    s.radiance += standIn * (1 - 1 / survival);
+    s.throughput /= survival;
+    s.recorder.survived(s.path, survival);
+    return true;
+  }
+
+  void estimateDirectLight(State& s, const ToyRoom::Hit& hit, const ToyBsdf& bsdf,
+                           const Mixture<float>& mixture, const VertexMap<float>& map) const {
+    const int lamp = s.numbers.next() < lampProbability(s.lights, 0) ? 0 : 1;
+    const float u = s.numbers.next(), v = s.numbers.next(), uShadow = s.numbers.next();
+    const Float3 point{m_room.lampLeft(lamp) + u * m_room.lampSize, 0.4f + v * m_room.lampSize, 1};
+    const Float3 to = point - hit.position, wi = to / lengthOf(to);
+    const float bsdfPdf = bsdf.density(wi);
+    if (!(bsdfPdf > 0) || !(wi.z > 1e-4f)) return;
+    const float pdf = lampPdf(to) * lampProbability(s.lights, lamp);
+    const float unweighted = m_room.albedo * bsdfPdf * m_room.lampRadiance[lamp] / pdf;
+    const float mixed = mixture.guides() ? mixture.pdf(bsdfPdf, bsdfPdf, map.pdf(wi)) : bsdfPdf;
+    const float weighted = unweighted * powerHeuristic(pdf, mixed);
+    const float traced =
+        s.pass.guide.cellCount == 0
+            ? 1
+            : shadowRayProbability(s.pass.guide.rules, s.throughput * weighted / s.pixelValue);
+    if (!(uShadow < traced)) return;
+    ++s.rays;
+    s.recorder.light(s.path, {gray(unweighted / traced), gray(weighted / traced), wi, pdf, bsdfPdf, bsdfPdf,
+                              uint32_t(lamp), traced * lampProbability(s.lights, lamp)});
+    if (m_room.isHidden(hit.position, point))
+      s.recorder.lightHidden(s.path);
+    else
+      s.radiance += s.throughput * weighted / traced;
+  }
+
+  ToyRoom m_room;
+  uint32_t m_width, m_height;
+};
+
+}  // namespace odis::test

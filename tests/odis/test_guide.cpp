@@ -1,0 +1,305 @@
+// Cells and guides built from made-up path vertices: no renderer is needed.
+#include <gtest/gtest.h>
+#include <odis/guide.h>
+#include <tbb/global_control.h>
+
+#include <algorithm>
+
+#include "odis/cells/cell_index.h"
+#include "odis/cells/statistics.h"
+#include "odis/floor_under_patch.h"
+#include "odis/same_guide.h"
+
+namespace odis {
+namespace {
+
+// The options of most tests here: formulas decide.
+GuideOptions byFormula() {
+  GuideOptions options;
+  options.model = Model::formulas();
+  return options;
+}
+
+uint32_t cellAt(const Guide& guide, const Float3& position) {
+  return findCell(guide.view(), {position, {0, 0, 1}});
+}
+
+const CellDecisions& decisionsOf(const Guide& guide, uint32_t cell) {
+  return guide.view().decisions[cell];
+}
+
+std::vector<uint16_t> texelsOf(const Guide& guide, uint32_t cell) {
+  const uint16_t* texels = guide.view().maps.texels + size_t(cell) * kMapTexels;
+  return std::vector<uint16_t>(texels, texels + kMapTexels);
+}
+
+TEST(CellGrid, NeighboursInOneCellShareItsKeyAndFacesDoNot) {
+  const CellGrid grid({0, 0, 0}, 0.25f);
+  const Float3 up = {0.1f, 0.2f, 0.95f};
+  EXPECT_EQ(grid.key({0.01f, 0.01f, 0}, up, 0), grid.key({0.2f, 0.24f, 0}, {0, 0, 1}, 0));
+  EXPECT_NE(grid.key({0.01f, 0.01f, 0}, up, 0), grid.key({0.26f, 0.01f, 0}, up, 0));
+  EXPECT_EQ(grid.key({0.01f, 0.01f, 0}, up, 1), grid.key({0.26f, 0.01f, 0}, up, 1));
+  EXPECT_NE(grid.key({0.01f, 0.01f, 0}, up, 0), grid.key({0.01f, 0.01f, 0}, {0, 0, -1}, 0));
+  EXPECT_NE(grid.key({0.01f, 0.01f, 0}, up, 0), grid.key({-0.01f, 0.01f, 0}, up, 0));
+  EXPECT_NE(grid.key({0.01f, 0.01f, 0}, up, 0), grid.key({0.01f, 0.01f, 0}, up, 1));
+  // Far away and not a number: some key, no crash.
+  grid.key({1e30f, -1e30f, NAN}, up, 0);
+}
+
+TEST(CellGrid, ParentIsTheKeyOfTheNextLevel) {
+  const CellGrid grid({0.3f, -0.2f, 1}, 0.125f);
+  std::mt19937 engine(8);
+  std::normal_distribution<float> normal(0, 3);
+  for (int i = 0; i < 10000; ++i) {
+    const Float3 position = {normal(engine), normal(engine), normal(engine)};
+    const Float3 direction = {normal(engine), normal(engine), normal(engine)};
+    uint64_t key = grid.key(position, direction, 0);
+    for (int level = 1; level < kCellLevels; ++level) {
+      key = CellGrid::parent(key);
+      ASSERT_EQ(key, grid.key(position, direction, level));
+    }
+  }
+}
+
+TEST(SortByCell, KeepsTheOrderWithinACell) {
+  const std::vector<std::vector<uint32_t>> cellOf = {{0, 1, 0}, {}, {0, 1, 3}};
+  const std::vector<BatchCells> cells = {
+      {cellOf[0], {2, 0}}, {cellOf[1], {}}, {cellOf[2], {0, 3, kNoCell, 2}}};
+  const std::vector<std::vector<int>> items = {{10, 11, 12}, {}, {20, 21, 22}};
+  const CellOrder<int> order =
+      sortByCell<int>(cells, 4, [&](size_t batch, size_t i) -> const int& { return items[batch][i]; });
+  std::vector<std::vector<int>> found(4);
+  for (size_t c = 0; c < 4; ++c) forEachItem(order.of(c), [&](int item) { found[c].push_back(item); });
+  EXPECT_EQ(found, (std::vector<std::vector<int>>{{11, 20}, {}, {10, 12, 22}, {21}}));
+}
+
+TEST(CellIndex, FindsWhatWasInserted) {
+  CellIndex index;
+  EXPECT_EQ(index.find(5), kNoCell);
+  for (uint64_t k = 0; k < 10000; ++k) EXPECT_EQ(index.insert(k * k + 1), k);
+  for (uint64_t k = 0; k < 10000; ++k) EXPECT_EQ(index.find(k * k + 1), k);
+  EXPECT_EQ(index.insert(1), 0u);
+  EXPECT_EQ(index.size(), 10000u);
+  EXPECT_EQ(index.find(3), kNoCell);
+}
+
+TEST(Splat, WeightsAddUpAndSeamsWrap) {
+  std::mt19937 engine(1);
+  std::uniform_real_distribution<float> uniform(0, 1);
+  for (int i = 0; i < 20000; ++i) {
+    const Float3 w = squareToDirection(Float2{uniform(engine), uniform(engine)});
+    const Splat s = splat(w);
+    float sum = 0;
+    for (int k = 0; k < 4; ++k) {
+      sum += s.weight[k];
+      if (s.weight[k] == 0) continue;
+      const Float3 center = texelDirection(s.texel[k]);
+      EXPECT_GT(dot(center, w), 0.85f)
+          << "a texel far from the direction";  // no texel is wider than about 25 degrees
+    }
+    EXPECT_NEAR(sum, 1, 1e-4);
+  }
+}
+
+TEST(Guide, PointsAtTheLight) {
+  const std::vector<PathVertex> vertices = floorUnderPatch(kBright, 20000, 1);
+  GuideBuilder builder(byFormula());
+  builder.add(vertices);
+  const Guide guide = builder.build(vertices);
+  const uint32_t cell = cellAt(guide, {0.5f, 0.5f, 0});
+  ASSERT_NE(cell, kNoCell);
+  VertexMap<float> map;
+  map.prepare(guide.view().maps, int32_t(cell), {0, 0, 1}, 0);
+  EXPECT_GT(map.pdf(kBright), 5 * kBright.z / kPi);  // far above the cosine's density
+  EXPECT_LT(bsdfFraction(guide.view(), int32_t(cell), 1.0f), 0.5f);
+  EXPECT_LT(guide.predictedVarianceRatio(), 0.5f);
+}
+
+TEST(Guide, UniformLightKeepsTheVarianceAsItIs) {
+  std::vector<PathVertex> vertices = floorUnderPatch(kBright, 20000, 2);
+  for (PathVertex& v : vertices) {
+    v.radiance = {1, 1, 1};
+    v.indirect = 1;
+  }
+  GuideBuilder builder(byFormula());
+  builder.add(vertices);
+  EXPECT_GT(builder.build(vertices).predictedVarianceRatio(), 0.9f);
+}
+
+TEST(Guide, FallsBackToCoarserCellsAndThenToNothing) {
+  const std::vector<PathVertex> vertices = floorUnderPatch(kBright, 5000, 3);
+  GuideBuilder builder(byFormula());
+  builder.add(vertices);
+  const Guide guide = builder.build(vertices);
+  EXPECT_NE(cellAt(guide, {0.5f, 0.5f, 0.06f}), kNoCell);  // above the finest cells, inside coarser ones
+  EXPECT_EQ(cellAt(guide, {50, 50, 50}), kNoCell);
+  EXPECT_EQ(cellAt(Guide(), {0, 0, 0}), kNoCell);
+}
+
+TEST(Guide, NothingToLearnFromIsNoCrash) {
+  GuideBuilder builder(byFormula());
+  builder.add(VertexParts());
+  EXPECT_EQ(cellAt(builder.build(VertexParts()), {0, 0, 0}), kNoCell);
+  std::vector<PathVertex> vertices = floorUnderPatch(kBright, 200, 4);
+  for (size_t i = 0; i < vertices.size(); ++i) {
+    PathVertex& v = vertices[i];
+    switch (i % 5) {
+      case 0:
+        v.position.x = NAN;
+        break;
+      case 1:
+        v.radiance.y = INFINITY;
+        break;
+      case 2:
+        v.pdf = 0;
+        break;
+      case 3:
+        v.radiance = {0, 0, 0};
+        v.indirect = 0;
+        break;
+      case 4:
+        v.wi = {NAN, NAN, NAN};
+        break;
+    }
+  }
+  for (const GuideOptions& options : {byFormula(), GuideOptions()}) {
+    GuideBuilder broken(options);
+    broken.add(vertices);
+    const Guide guide = broken.build(vertices);
+    EXPECT_TRUE(std::isfinite(guide.predictedVarianceRatio()));
+  }
+}
+
+TEST(Guide, IsTheSameForAnyNumberOfThreads) {
+  const std::vector<PathVertex> vertices = floorUnderPatch(kBright, 30000, 5);
+  std::vector<Guide> guides;
+  for (const size_t threads : {1, 4}) {
+    const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
+    GuideBuilder builder(byFormula());
+    builder.add(vertices);
+    guides.push_back(builder.build(vertices));
+  }
+  EXPECT_TRUE(sameGuide(guides[0], guides[1]));
+}
+
+TEST(Guide, IsTheSameInPieces) {
+  const std::vector<PathVertex> vertices = floorUnderPatch(kBright, 40000, 6);
+  const ArrayView<const PathVertex> all(vertices);
+  const std::vector<ArrayView<const PathVertex>> parts = {all.subview(0, 1), all.subview(1, 0),
+                                                          all.subview(1, 25000), all.subview(25001, 14999)};
+  GuideBuilder whole(byFormula()), pieces(byFormula());
+  whole.add(vertices);
+  pieces.add(parts);
+  EXPECT_TRUE(sameGuide(whole.build(vertices), pieces.build(parts)));
+}
+
+TEST(Guide, IsTheSameFromSamplesTakenByParts) {
+  const std::vector<PathVertex> first = floorUnderPatch(kBright, 20000, 6),
+                                later = floorUnderPatch({-0.6f, 0, 0.8f}, 5000, 7);
+  const ArrayView<const PathVertex> all(later);
+  GuideBuilder vertices(byFormula()), samples(byFormula());
+  vertices.add(first);
+  samples.add(first);
+  vertices.add(later);
+  std::vector<CellSamples> parts(4);  // the last one remains empty
+  parts[0] = samples.take(all.subview(0, 1));
+  parts[1] = samples.take({});
+  parts[2] = samples.take(all.subview(1, all.size() - 1));
+  samples.add(parts);
+  EXPECT_EQ(samples.vertexCounts().accepted, first.size() + later.size());
+  EXPECT_TRUE(sameGuide(vertices.build(first), samples.build(first)));
+}
+
+TEST(Guide, DividesByPixelValues) {
+  std::vector<PathVertex> vertices = floorUnderPatch(kBright, 20000, 7);
+  GuideBuilder builder(byFormula());
+  builder.add(vertices);
+  const Guide relative = builder.build(vertices);
+  // Powers of two, so that dividing is exact.
+  const std::vector<float> values = {4, 0.5f, 64};
+  for (size_t i = 0; i < vertices.size(); ++i) vertices[i].indirect *= values[vertices[i].pixel = i % 3];
+  // Fractions are made from the vertices of all pixels, whatever their number.
+  const Guide divided = builder.build(vertices, values);
+  EXPECT_TRUE(sameView(relative.view(), divided.view()));
+  EXPECT_EQ(relative.predictedVarianceRatio(), divided.predictedVarianceRatio());
+  EXPECT_NE(relative.predictedVarianceRatio(), builder.build(vertices).predictedVarianceRatio());
+}
+
+TEST(Guide, RebuiltMapsAreThoseOfAllThatWasAdded) {
+  const std::vector<PathVertex> first = floorUnderPatch(kBright, 20000, 1);
+  std::vector<PathVertex> later = floorUnderPatch({-0.6f, 0, 0.8f}, 40000, 2);
+  GuideBuilder builder(byFormula()), both(byFormula());
+  builder.add(first);
+  both.add(first);
+  const Guide before = builder.build(first);
+  builder.add(later);
+  both.add(later);
+  const Guide after = builder.rebuild(before), expected = both.build(first);
+  EXPECT_EQ(after.view().cellCount, expected.view().cellCount);
+  for (float x = 0.05f; x < 1; x += 0.3f) {
+    const Float3 position{x, 0.5f, 0};
+    const uint32_t a = cellAt(after, position), b = cellAt(expected, position),
+                   old = cellAt(before, position);
+    EXPECT_EQ(texelsOf(after, a), texelsOf(expected, b));
+    EXPECT_NE(texelsOf(after, a), texelsOf(before, old));
+    EXPECT_EQ(decisionsOf(after, a).survivalFactor, decisionsOf(expected, b).survivalFactor);
+    EXPECT_EQ(decisionsOf(after, a).bsdfFraction[0], decisionsOf(before, old).bsdfFraction[0]);
+  }
+  EXPECT_EQ(after.predictedVarianceRatio(), before.predictedVarianceRatio());
+}
+
+TEST(Guide, RebuiltCellsThatAreNewHaveTheirParentsFractions) {
+  const std::vector<PathVertex> first = floorUnderPatch(kBright, 20000, 1);
+  std::vector<PathVertex> later = first;
+  for (PathVertex& v : later) v.position.x += 0.9f;  // some where nothing was, some in new parents
+  GuideBuilder builder(byFormula());
+  builder.add(first);
+  const Guide before = builder.build(first);
+  builder.add(later);
+  const Guide after = builder.rebuild(before);
+  EXPECT_GT(after.view().cellCount, before.view().cellCount);
+  const uint32_t parent = cellAt(before, {1.03f, 0.5f, 0}), cell = cellAt(after, {1.03f, 0.5f, 0});
+  ASSERT_NE(parent, kNoCell);
+  EXPECT_LT(decisionsOf(before, parent).bsdfFraction[0], 1);
+  EXPECT_EQ(decisionsOf(after, cell).bsdfFraction[0], decisionsOf(before, parent).bsdfFraction[0]);
+  EXPECT_NE(texelsOf(after, cell), texelsOf(before, parent));
+}
+
+TEST(Guide, FindsManyAsItFindsEach) {
+  const std::vector<PathVertex> vertices = floorUnderPatch(kBright, 2000, 4);
+  GuideBuilder builder(byFormula());
+  builder.add(vertices);
+  const Guide guide = builder.build(vertices);
+  std::vector<Place> places = {{{0.5f, 0.5f, 40}, {0, 0, -1}},
+                               {{NAN, 0, 0}, {0, 0, 1}}};  // nothing was seen there
+  for (const PathVertex& v : vertices) places.push_back({v.position, v.normal});
+  std::vector<uint32_t> cells(places.size());
+  findCells(guide.view(), places.data(), places.size(), cells.data());
+  for (size_t i = 0; i < places.size(); ++i) EXPECT_EQ(cells[i], findCell(guide.view(), places[i]));
+  EXPECT_EQ(cells[0], kNoCell);
+  EXPECT_NE(cells[2], kNoCell);
+  findCells(Guide().view(), places.data(), places.size(), cells.data());
+  EXPECT_EQ(cells[2], kNoCell);
+}
+
+TEST(Guide, PredictionsOfPixelsAddUpToThatOfTheImage) {
+  std::vector<PathVertex> vertices = floorUnderPatch(kBright, 20000, 3);
+  for (size_t i = 0; i < vertices.size(); ++i) {
+    vertices[i].pixel = uint32_t(i % 1000);
+    if (i % 2 == 0) vertices[i].guidableProbability = vertices[i].guidablePdf = 0;
+  }
+  GuideBuilder builder(byFormula());
+  builder.add(vertices);
+  EXPECT_TRUE(builder.build(vertices).predictions().empty());
+  const Guide guide = builder.build(vertices, std::vector<float>(1000, 1.0f));
+  ASSERT_EQ(guide.predictions().size(), 1000u);
+  double variance = 0, saved = 0;
+  for (const PixelPrediction& p : guide.predictions()) {
+    variance += p.variance;
+    saved += p.saved;
+  }
+  EXPECT_NEAR(1 - saved / variance, guide.predictedVarianceRatio(), 1e-3);
+}
+
+}  // namespace
+}  // namespace odis
