@@ -34,7 +34,7 @@ inline PixelStatistics renderSeeds(const render::Scene& scene, render::RenderOpt
   PixelStatistics result;
   for (int s = 0; s < seeds; ++s) {
     options.seed = firstSeed + uint64_t(s);
-    result.add(renderScene(scene, options).frame.color);
+    result.add(renderScene(scene, options).image.color);
   }
   return result;
 }
@@ -64,8 +64,8 @@ inline void expectSameExpectation(const PixelStatistics& a, const PixelStatistic
   EXPECT_GT(std::erfc(z / std::sqrt(2.0)), significance) << "z of the image's mean is " << z;
 }
 
-// A scene, and what plain path tracing makes of it, to compare guided images with. `Scene` has text(), what the file
-// holds, and kMaxDepth.
+// A scene, and what plain path tracing makes of it, to compare guided images with. `Scene` has text(), what
+// the file holds, and kMaxDepth.
 template <class Scene>
 class AgainstPath : public ::testing::Test {
  protected:

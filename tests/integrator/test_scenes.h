@@ -8,7 +8,7 @@
 #include <memory>
 #include <string>
 
-#include "render/integrator/render.h"
+#include "render/integrators/render.h"
 #include "render/scene/scene.h"
 
 namespace odis::test {

@@ -9,8 +9,8 @@
 
 namespace odis::render {
 
-// Rough glass, a mirror, lacquer too sharp to be guided and a see-through mask, in the light of a lamp that is
-// turned to the ceiling.
+// Rough glass, a mirror, lacquer too sharp to be guided and a see-through mask, in the light of a lamp that
+// is turned to the ceiling.
 inline std::string glassRoom() {
   std::string scene = test::indirectRoom(12);
   const auto sphere = [](const char* at, const char* radius, const std::string& bsdf) {

@@ -14,10 +14,6 @@ int checkerboard(size_t pixel, int width) {
 // A pixel whose samples vary more than that, relative to its value squared, counts as if they varied so much.
 constexpr double kMostVariance = 1e4;
 
-double average(const Rgbd& c) {
-  return (c.x + c.y + c.z) / 3;
-}
-
 // The variance of a sample of `image`, relative to the pixels' values squared, over the pixels of either
 // colour. Not a number where there is nothing to tell it by.
 std::array<double, 2> relativeVariance(const std::vector<PixelSums>& image,
@@ -31,8 +27,12 @@ std::array<double, 2> relativeVariance(const std::vector<PixelSums>& image,
       variance = sampleVariance(s);
     } else if (s.count == 1 && next && (*next)[pixel].count >= 2) {
       const PixelSums& other = (*next)[pixel];
-      const Rgbd difference = s.sum - other.sum / double(other.count);
-      variance = average(difference * difference) - sampleVariance(other) / other.count;
+      double squares = 0;
+      for (int c = 0; c < 3; ++c) {
+        const double difference = s.sum[c] - other.sum[c] / double(other.count);
+        squares += difference * difference;
+      }
+      variance = squares / 3 - sampleVariance(other) / other.count;
     } else {
       continue;
     }
@@ -45,12 +45,12 @@ std::array<double, 2> relativeVariance(const std::vector<PixelSums>& image,
 
 }  // namespace
 
-std::vector<WeightedImage> weighByVariance(std::span<const std::vector<PixelSums>> images, int width) {
+std::vector<std::vector<float>> weighByVariance(std::span<const std::vector<PixelSums>> images, int width) {
   if (images.empty()) return {};
   std::vector<PixelSums> all(images.front().size());
   for (const std::vector<PixelSums>& image : images)
     for (size_t pixel = 0; pixel < all.size(); ++pixel) all[pixel].add(image[pixel]);
-  const std::vector<float> estimates = pixelEstimates(all, width);
+  const std::vector<float> estimates = estimatePixelValues(all, uint32_t(width));
   std::vector<std::array<double, 2>> ofColour;
   for (size_t i = 0; i < images.size(); ++i) {
     const auto [even, odd] =
@@ -60,12 +60,12 @@ std::vector<WeightedImage> weighByVariance(std::span<const std::vector<PixelSums
     ofColour.push_back({weight(odd), weight(even)});
   }
   // In units of the last image's.
-  std::vector<WeightedImage> result;
+  std::vector<std::vector<float>> result;
   for (size_t i = 0; i < images.size(); ++i) {
-    WeightedImage& image = result.emplace_back(WeightedImage{&images[i], std::vector<float>(all.size())});
+    std::vector<float>& weights = result.emplace_back(all.size());
     for (size_t pixel = 0; pixel < all.size(); ++pixel) {
       const size_t colour = size_t(checkerboard(pixel, width));
-      image.weights[pixel] = float(ofColour[i][colour] / ofColour.back()[colour]);
+      weights[pixel] = float(ofColour[i][colour] / ofColour.back()[colour]);
     }
   }
   return result;

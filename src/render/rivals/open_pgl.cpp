@@ -5,7 +5,6 @@
 
 #include <cstring>
 
-#include "render/rivals/usable_vertex.h"
 #include "render/sampler/sampler.h"
 
 namespace odis::render {
@@ -23,7 +22,7 @@ pgl_vec3f toPgl(const Float3& v) {
 
 // As Cycles uses the library: half of the draws for the guide, an update after the first sample and then
 // after every fourth, as soon as there are enough samples to fit, up to the 128th.
-constexpr float kBsdfShare = 0.5f;
+constexpr float kBsdfFraction = 0.5f;
 constexpr uint32_t kSamplesPerUpdate = 4, kTrainingSamples = 128;
 constexpr size_t kFewestSamples = 1024;
 // As the library's own PathSegmentStorage prepares samples.
@@ -39,21 +38,21 @@ class PglVertex final : public DirectionSampler {
   explicit PglVertex(const pgl::Field* field) : m_distribution(field) {}
 
   // Says whether there is a distribution.
-  bool prepare(const pgl::Field& field, const Vec3& position, const Vec3& normal, Sides sides) {
+  bool prepare(const pgl::Field& field, const Vec3& position, const Vec3& normal, bool scattersBothSides) {
     float random = randomOf(position);
     if (!m_distribution.Init(&field, toPgl(position), random)) return false;
     // What transmits receives light from both sides.
-    if (sides == Sides::reflection) m_distribution.ApplyCosineProduct(toPgl(normal));
+    if (!scattersBothSides) m_distribution.ApplyCosineProduct(toPgl(normal));
     return true;
   }
 
-  VertexMap::Sample sample(const Vec2& u) const override {
+  VertexMap<float>::Sample sample(const Vec2& u) const override {
     pgl_vec3f wi;
     const float pdf = m_distribution.SamplePDF({u.x, u.y}, wi);
     return {{wi.x, wi.y, wi.z}, pdf};
   }
   float pdf(const Vec3& wi) const override { return m_distribution.PDF(toPgl(wi)); }
-  float bsdfShare() const override { return kBsdfShare; }
+  float bsdfFraction() const override { return kBsdfFraction; }
 
  private:
   // The library chooses among neighbouring mixtures by a random number: one that the place determines.
@@ -78,11 +77,12 @@ class OpenPgl final : public Rival {
     m_field = std::make_unique<pgl::Field>(&m_device, config);
   }
 
-  const DirectionSampler* at(const Vec3& position, const Vec3& normal, Sides sides) const override {
+  const DirectionSampler* at(const Vec3& position, const Vec3& normal,
+                             bool scattersBothSides) const override {
     if (!m_trained) return nullptr;
     std::unique_ptr<PglVertex>& vertex = m_vertices.local();
     if (!vertex) vertex = std::make_unique<PglVertex>(m_field.get());
-    return vertex->prepare(*m_field, position, normal, sides) ? vertex.get() : nullptr;
+    return vertex->prepare(*m_field, position, normal, scattersBothSides) ? vertex.get() : nullptr;
   }
 
   Combination combination() const override { return Combination::all; }
@@ -92,10 +92,10 @@ class OpenPgl final : public Rival {
     return std::min(done == 0 ? 1 : done + kSamplesPerUpdate, spp);
   }
 
-  void learn(std::span<const std::vector<PilotVertex>> tiles, uint32_t) override {
+  void learn(std::span<const std::vector<PathVertex>> tiles, uint32_t) override {
     std::vector<pgl::SampleData> samples;
-    for (const std::vector<PilotVertex>& tile : tiles)
-      for (const PilotVertex& v : tile) {
+    for (const std::vector<PathVertex>& tile : tiles)
+      for (const PathVertex& v : tile) {
         const float radiance = luminance(v.radiance);
         if (!isUsable(v) || !(radiance > 0) || !(v.distance > 0)) continue;
         pgl::SampleData& sample = samples.emplace_back();

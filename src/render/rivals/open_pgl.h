@@ -1,6 +1,6 @@
-// Intel's Open Path Guiding Library as a rival (https://github.com/OpenPathGuidingLibrary/openpgl): a k-d tree
-// over space with parallax-aware mixtures of von Mises-Fisher lobes (Ruppert, Herholz and Lensch 2020, "Robust
-// Fitting of Parallax-Aware Mixtures for Path Guiding"), multiplied by the cosine at the vertex.
+// Intel's Open Path Guiding Library as a rival (https://github.com/OpenPathGuidingLibrary/openpgl): a k-d
+// tree over space with parallax-aware mixtures of von Mises-Fisher lobes (Ruppert, Herholz and Lensch 2020,
+// "Robust Fitting of Parallax-Aware Mixtures for Path Guiding"), multiplied by the cosine at the vertex.
 #pragma once
 
 #include <memory>

@@ -1,6 +1,6 @@
 // Stands for open_pgl.cpp where CMake finds no Open PGL.
 #include "render/rivals/open_pgl.h"
-#include "render/scene/error.h"
+#include "render/xml/error.h"
 
 namespace odis::render {
 

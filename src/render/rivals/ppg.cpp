@@ -2,8 +2,7 @@
 
 #include <tbb/parallel_for.h>
 
-#include "render/integrator/path.h"
-#include "render/rivals/usable_vertex.h"
+#include "render/path/path.h"
 #include "render/sampler/sampler.h"
 
 namespace odis::render {
@@ -16,7 +15,7 @@ constexpr float kLearningRate = 0.01f, kRegularization = 0.01f, kMaxLogit = 4.59
 
 }  // namespace
 
-const DirectionSampler* PracticalPathGuiding::at(const Vec3& position, const Vec3&, Sides) const {
+const DirectionSampler* PracticalPathGuiding::at(const Vec3& position, const Vec3&, bool) const {
   if (m_iteration == 0) return nullptr;
   const SdLeaf& leaf = m_tree.leaves()[m_tree.find(position)];
   // Where no light was seen to arrive there is nothing to go by.
@@ -34,10 +33,10 @@ uint32_t PracticalPathGuiding::iterationEnd(uint32_t done, uint32_t spp) const {
 }
 
 // The tree spans what the first pass saw.
-void PracticalPathGuiding::place(std::span<const std::vector<PilotVertex>> tiles) {
+void PracticalPathGuiding::place(std::span<const std::vector<PathVertex>> tiles) {
   Vec3 low(kInfinity, kInfinity, kInfinity), high = -low;
-  for (const std::vector<PilotVertex>& tile : tiles)
-    for (const PilotVertex& v : tile) {
+  for (const std::vector<PathVertex>& tile : tiles)
+    for (const PathVertex& v : tile) {
       if (!isUsable(v)) continue;
       const Vec3 p = fromOdis(v.position);
       for (int a = 0; a < 3; ++a) {
@@ -53,7 +52,7 @@ void PracticalPathGuiding::place(std::span<const std::vector<PilotVertex>> tiles
 
 // The leaves that a vertex is recorded in: the one it lies in, the one that a random point of a box of that
 // leaf's size around it lies in, or all that this box meets.
-void PracticalPathGuiding::assign(const PilotVertex& vertex, uint64_t random,
+void PracticalPathGuiding::assign(const PathVertex& vertex, uint64_t random,
                                   std::vector<Entry>& entries) const {
   const Vec3 position = fromOdis(vertex.position);
   if (m_options.spatial == PpgOptions::Spatial::nearest) {
@@ -77,7 +76,7 @@ void PracticalPathGuiding::assign(const PilotVertex& vertex, uint64_t random,
   entries.push_back({&vertex, m_tree.find(m_tree.clipped(position + offset)), 1});
 }
 
-void PracticalPathGuiding::learn(std::span<const std::vector<PilotVertex>> tiles, uint32_t sample) {
+void PracticalPathGuiding::learn(std::span<const std::vector<PathVertex>> tiles, uint32_t sample) {
   if (!m_placed) place(tiles);
   if (!m_placed) return;
   std::vector<std::vector<Entry>> entriesOf(tiles.size());
@@ -103,7 +102,7 @@ void PracticalPathGuiding::learn(std::span<const std::vector<PilotVertex>> tiles
   tbb::parallel_for(size_t(0), leaves.size(), [&](size_t l) {
     SdLeaf& leaf = leaves[l];
     for (size_t i = begin[l]; i < begin[l + 1]; ++i) {
-      const PilotVertex& v = *sorted[i]->vertex;
+      const PathVertex& v = *sorted[i]->vertex;
       const float weight = sorted[i]->weight;
       leaf.weight += weight;
       const float radiance = luminance(v.radiance) / survivingPdf(v);
@@ -119,15 +118,15 @@ void PracticalPathGuiding::learn(std::span<const std::vector<PilotVertex>> tiles
 //   q(a) = q(a0) + (a - a0) (g - P m),   dq/da = g - P m,
 // with a0 the share, q(a0) the density that the direction was drawn with, g the BSDF's density of guidable
 // lobes, P their probability and m the tree's density.
-void PracticalPathGuiding::learnShare(const PilotVertex& v, SdLeaf& leaf) const {
+void PracticalPathGuiding::learnShare(const PathVertex& v, SdLeaf& leaf) const {
   const Rgb scattered =
       Rgb(v.weight.x, v.weight.y, v.weight.z) * Rgb(v.radiance.x, v.radiance.y, v.radiance.z);
   const float product = luminance(scattered) * v.pdf;
-  const DirectionSampler* used = at(fromOdis(v.position), fromOdis(v.normal), Sides::both);
+  const DirectionSampler* used = at(fromOdis(v.position), fromOdis(v.normal), true);
   if (!used || !(product > 0)) return;
   const float slope = v.guidablePdf - v.guidableProbability * used->pdf(fromOdis(v.wi));
   const float logit = leaf.shareLogit.value(), share = 1 / (1 + std::exp(-logit));
-  const float density = v.pdf + (share - used->bsdfShare()) * slope;
+  const float density = v.pdf + (share - used->bsdfFraction()) * slope;
   const float gradient = -product / (density * v.pdf) * slope * share * (1 - share);
   if (!(density > 0) || !std::isfinite(gradient)) return;
   leaf.shareLogit.step(gradient + kRegularization * logit, kLearningRate, kMaxLogit);

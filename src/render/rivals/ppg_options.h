@@ -10,8 +10,8 @@ struct PpgOptions {
   enum class Combine : uint8_t { last, inverseVariance };
   enum class Share : uint8_t { fixed, learned };
 
-  // The defaults are the improved method, as its author recommends it: Müller 2019, "Practical Path Guiding in
-  // Production".
+  // The defaults are the improved method, as its author recommends it: Müller 2019, "Practical Path Guiding
+  // in Production".
   float threshold = 4000;  // a leaf of iteration k is halved above threshold * sqrt(2^k) samples
   float flux = 0.01f;      // a quadrant is divided above this share of its leaf's light
   Spatial spatial = Spatial::jitter;

@@ -77,8 +77,8 @@ void Quadtree::build() {
 }
 
 Quadtree Quadtree::refined(float share) const {
-  // A node of the new tree and of this one at the same place. Within a leaf of this one light is spread evenly,
-  // and so it is over the whole square where nothing was recorded.
+  // A node of the new tree and of this one at the same place. Within a leaf of this one light is spread
+  // evenly, and so it is over the whole square where nothing was recorded.
   struct Task {
     uint32_t node;
     const Node* source;   // null: within a leaf

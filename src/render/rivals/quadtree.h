@@ -1,5 +1,6 @@
-// Quadtrees over the unit square: piecewise constant densities that are fine where there is much, after Müller,
-// Gross and Novák 2017, "Practical Path Guiding for Efficient Light-Transport Simulation", section 3.2.
+// Quadtrees over the unit square: piecewise constant densities that are fine where there is much, after
+// Müller, Gross and Novák 2017, "Practical Path Guiding for Efficient Light-Transport Simulation", section
+// 3.2.
 #pragma once
 
 #include <array>

@@ -69,8 +69,8 @@ class ReusedFrame {
     return worth;
   }
 
-  // Pixels in a disk around this one that see a surface alike. The choice depends on x1 of each alone, never on
-  // samples.
+  // Pixels in a disk around this one that see a surface alike. The choice depends on x1 of each alone,
+  // never on samples.
   void findNeighbours(size_t index, Sampler& random, std::vector<const FramePixel*>& found) const {
     found.clear();
     const int width = m_scene.film().crop.width, height = m_scene.film().crop.height;
@@ -108,8 +108,8 @@ class ReusedFrame {
       if (random.get1D() * sum < weight) chosen = worth.value / worth.target();
     };
 
-    // A sample of a neighbour, against the pixel's own way to find it. Targets stand for densities; all are per
-    // area, so that no Jacobian is left.
+    // A sample of a neighbour, against the pixel's own way to find it. Targets stand for densities; all are
+    // per area, so that no Jacobian is left.
     for (const FramePixel* other : neighbours) {
       if (!(other->own.target() > 0)) continue;
       const Worth here = seenWorth(other->path.sample, point, counts);
@@ -138,10 +138,10 @@ class ReusedFrame {
 
 }  // namespace
 
-RayCounts renderRestirFrame(const Pass& pass, const RestirOptions& options, uint32_t sample,
-                            Progress& progress, const std::function<bool()>& stop) {
+RayCounts renderRestirFrame(const RestirSetting& setting, uint32_t sample, Progress& progress,
+                            const std::function<bool()>& stop) {
   constexpr size_t kGrain = 64;
-  ReusedFrame frame(pass, options, sample);
+  ReusedFrame frame(setting.pass, setting.options, sample);
   const tbb::blocked_range<size_t> all(0, frame.pixelCount(), kGrain);
   tbb::parallel_for(all, [&](const tbb::blocked_range<size_t>& range) {
     if (stop()) return;
@@ -156,7 +156,7 @@ RayCounts renderRestirFrame(const Pass& pass, const RestirOptions& options, uint
     for (size_t i = range.begin(); i < range.end(); ++i) {
       counts[i] = frame.counts(i);
       const Rgb value = frame.gather(i, counts[i]);
-      (*pass.image)[i].add(value, counts[i].rays + counts[i].shadowRays);
+      setting.image[i].add(toOdis(value), uint32_t(counts[i].rays + counts[i].shadowRays));
     }
   });
   for (const RayCounts& pixel : counts) {

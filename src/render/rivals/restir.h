@@ -5,14 +5,20 @@
 
 #include <functional>
 
-#include "render/integrator/pass.h"
+#include "render/path/pass.h"
 #include "render/rivals/restir_options.h"
 
 namespace odis::render {
 
-// One frame: sample number `sample` of every pixel, added to `image`. Nothing is added if `stop` answers true
+struct RestirSetting {
+  const Pass& pass;
+  const RestirOptions& options;
+  std::vector<PixelSums>& image;  // that frames are added to
+};
+
+// Renders one frame: sample number `sample` of every pixel. Nothing is added if `stop` answers true
 // before it is done. Returns the rays traced.
-RayCounts renderRestirFrame(const Pass& pass, const RestirOptions& options, uint32_t sample,
-                            Progress& progress, const std::function<bool()>& stop);
+RayCounts renderRestirFrame(const RestirSetting& setting, uint32_t sample, Progress& progress,
+                            const std::function<bool()>& stop);
 
 }  // namespace odis::render

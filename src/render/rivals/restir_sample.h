@@ -1,14 +1,16 @@
 // What the pixels of a frame share when they resample (Ouyang et al. 2021, "ReSTIR GI"; Lin et al. 2022,
 // "Generalized Resampled Importance Sampling").
 //
-// A path is cut at the first vertex x1 that has lobes which may be guided. What arrives there along directions
-// drawn from those lobes is scattered towards x1 by a second vertex x2. A sample is x2 with all that
-// follows: light that next-event estimation found there, the direction in which the path went on, and the
-// radiance that came from there. Another pixel takes it over by connecting its own x1 to x2; only the two
-// BSDFs next to that connection change.
+// A path is cut at the first vertex x1 that has lobes which may be guided. What arrives there along
+// directions drawn from those lobes is scattered towards x1 by a second vertex x2. A sample is x2 with all
+// that follows: light that next-event estimation found there, the direction in which the path went on, and
+// the radiance that came from there. Another pixel takes it over by connecting its own x1 to x2; only the
+// two BSDFs next to that connection change.
 #pragma once
 
-#include "render/integrator/path.h"
+#include <odis/mixture.h>
+
+#include "render/path/path.h"
 
 namespace odis::render {
 
@@ -35,8 +37,8 @@ struct SecondaryPoint {
   Rgb emission{0, 0, 0};
   float emissionPdf = 0;  // the density with which next-event estimation would have found the emitter
   Rgb beyond{0, 0, 0};
-  // The density with which the sample was drawn: of the direction from x1, per solid angle there, times that of
-  // `wi` at x2. Densities of what follows are the same for all pixels, and left out everywhere.
+  // The density with which the sample was drawn: of the direction from x1, per solid angle there, times
+  // that of `wi` at x2. Densities of what follows are the same for all pixels, and left out everywhere.
   float pdf = 0;
 };
 

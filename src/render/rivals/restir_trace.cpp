@@ -36,22 +36,24 @@ Rgb scatteredLight(const SurfacePoint& at, const Vec3& wo, const DrawnLight& lig
   return bsdf.value * light.radiance * (light.pdf > 0 ? powerHeuristic(light.pdf, bsdf.pdf) : 1.0f);
 }
 
-// The path tracer's path from a vertex on, of throughput one, as a function of nothing but where it starts: so
-// it can be shared. `bySampling`, `pdf`: whether next-event estimation competes with that direction, and the
-// direction's density.
-Path traceBeyond(const PathSettings& settings, const Ray& ray, const Sampler& numbers, int depth,
-                 bool bySampling, float pdf, const LightReference& from, RayCounts& counts) {
+// The path that a vertex starts in a sampled direction, of throughput one.
+Path pathBeyond(const SurfacePoint& at, const Vec3& wo, const BsdfSample& next, const Sampler& numbers) {
+  Path path(Scene::spawn(at, at.shading.toWorld(next.wi)), numbers);
+  path.bySampling = !isDiscrete(next.lobe);
+  path.directionPdf = next.pdf;
+  path.previous = lightReference(at, wo);
+  return path;
+}
+
+// Traces a path from a vertex on, as the path tracer does, as a function of nothing but where it starts:
+// so it can be shared. The path's ray, and what competes with its direction, are set.
+void traceBeyond(const PathSettings& settings, int depth, Path& path, RayCounts& counts) {
   PathSettings rest = settings;
   if (rest.maxDepth >= 0) rest.maxDepth -= depth;
   rest.rrDepth = std::max(1, rest.rrDepth - depth);
-  Path path(ray, numbers);
-  path.bySampling = bySampling;
-  path.directionPdf = pdf;
-  path.previous = from;
   tracePaths(rest, std::span(&path, 1));
   counts.rays += path.counts.rays;
   counts.shadowRays += path.counts.shadowRays;
-  return path;
 }
 
 // Emission that a ray met, weighted against next-event estimation at its start.
@@ -61,11 +63,17 @@ struct Arrival {
   LightReference from;
 };
 
-Rgb emissionOf(const PathSettings& settings, const Arrival& arrival, const Rgb& emission,
-               const Emitter& emitter, uint32_t part, const Vec3& wi, float emitterPdf) {
-  if (isBlack(emission) || !arrival.bySampling) return emission;
-  return emission * powerHeuristic(arrival.pdf, emitterPdf * settings.lights->probability(arrival.from,
-                                                                                          emitter, part, wi));
+struct MetEmission {
+  Rgb radiance;
+  const Emitter& emitter;
+  uint32_t part;
+  float emitterPdf;  // with which the emitter would have been sampled there, once it is chosen
+};
+
+Rgb emissionOf(const PathSettings& settings, const Arrival& arrival, const Vec3& wi, const MetEmission& met) {
+  if (isBlack(met.radiance) || !arrival.bySampling) return met.radiance;
+  const float chosen = settings.lights->probability(arrival.from, met.emitter, met.part, wi);
+  return met.radiance * powerHeuristic(arrival.pdf, met.emitterPdf * chosen);
 }
 
 Rgb emissionMet(const PathSettings& settings, const Arrival& arrival, const Ray& ray, bool hit,
@@ -73,11 +81,13 @@ Rgb emissionMet(const PathSettings& settings, const Arrival& arrival, const Ray&
   Rgb sum(0, 0, 0);
   if (!hit) {
     for (const EnvironmentEmitter* e : settings.scene->environments())
-      sum += emissionOf(settings, arrival, e->radiance(ray.direction), *e, 0, ray.direction,
-                        arrival.bySampling ? e->pdf(arrival.from.p, ray.direction) : 0);
+      sum += emissionOf(settings, arrival, ray.direction,
+                        {e->radiance(ray.direction), *e, 0,
+                         arrival.bySampling ? e->pdf(arrival.from.p, ray.direction) : 0});
   } else if (const SurfaceEmitter* e = at.shape->emitter()) {
-    sum = emissionOf(settings, arrival, e->radiance(at, -ray.direction), *e, e->part(at), ray.direction,
-                     arrival.bySampling ? e->pdf(arrival.from.p, at) : 0);
+    sum = emissionOf(settings, arrival, ray.direction,
+                     {e->radiance(at, -ray.direction), *e, e->part(at),
+                      arrival.bySampling ? e->pdf(arrival.from.p, at) : 0});
   }
   return sum;
 }
@@ -108,9 +118,10 @@ void findSample(const PathSettings& settings, const BsdfSample& drawn, Sampler& 
   const bool discrete = isDiscrete(next.lobe);
   s.wi = s.at.shading.toWorld(next.wi);
   Path beyond(ray, further);
-  if (next.lobe != Lobe::none && !isBlack(next.weight))
-    beyond = traceBeyond(settings, Scene::spawn(s.at, s.wi), further, depth, !discrete, next.pdf,
-                         lightReference(s.at, wo), path.counts);
+  if (next.lobe != Lobe::none && !isBlack(next.weight)) {
+    beyond = pathBeyond(s.at, wo, next, further);
+    traceBeyond(settings, depth, beyond, path.counts);
+  }
 
   // A direction that was not drawn from a density can't be taken over, nor one that met several emitters at
   // once, whose weights would have to be told apart.
@@ -165,9 +176,8 @@ RestirPath traceRestirPath(const PathSettings& settings, const Ray& cameraRay, S
       if (next.lobe == Lobe::smooth) {
         findSample(settings, next, sampler, further, path);
       } else {
-        const Ray on = Scene::spawn(at, at.shading.toWorld(next.wi));
-        const Path beyond =
-            traceBeyond(settings, on, further, depth, !isDiscrete(next.lobe), next.pdf, from, path.counts);
+        Path beyond = pathBeyond(at, wo, next, further);
+        traceBeyond(settings, depth, beyond, path.counts);
         path.radiance += throughput * next.weight * beyond.radiance;
       }
       return path;

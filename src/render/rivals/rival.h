@@ -1,5 +1,5 @@
-// A guide that learns from what it renders: what ODIS is compared with. The renderer takes one sample per pixel
-// after another, in iterations:
+// A guide that learns from what it renders: what ODIS is compared with. The renderer takes one sample per
+// pixel after another, in iterations:
 //
 //   while there are samples left
 //     until iterationEnd(): a pass guided by the rival; learn(what the pass met)
@@ -8,12 +8,12 @@
 // Nothing is learnt during the last iteration.
 #pragma once
 
-#include <odis/pilot.h>
+#include <odis/path_vertex.h>
 
 #include <span>
 #include <vector>
 
-#include "render/integrator/direction_guide.h"
+#include "render/path/direction_guide.h"
 
 namespace odis::render {
 
@@ -30,9 +30,15 @@ class Rival : public DirectionGuide {
   virtual uint32_t iterationEnd(uint32_t done, uint32_t spp) const = 0;
   // The vertices of sample number `sample` of every pixel, tile after tile. The result may depend on their
   // order, not on the number of threads.
-  virtual void learn(std::span<const std::vector<PilotVertex>> tiles, uint32_t sample) = 0;
+  virtual void learn(std::span<const std::vector<PathVertex>> tiles, uint32_t sample) = 0;
   virtual void endIteration() = 0;
   virtual uint64_t bytes() const = 0;
 };
+
+// The probability density with which a path went on in the direction: the radiance that arrived, divided by
+// it, is what a vertex contributes to the integral over directions. Roulette left out the others.
+inline float survivingPdf(const PathVertex& v) {
+  return v.pdf * v.survival;
+}
 
 }  // namespace odis::render

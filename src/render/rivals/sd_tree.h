@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "render/integrator/direction_guide.h"
+#include "render/path/direction_guide.h"
 #include "render/rivals/adam.h"
 #include "render/rivals/quadtree.h"
 
@@ -17,9 +17,9 @@ Vec3 cylinderToDirection(const Vec2& point);
 // A place: what was learnt of the light that arrives there, and what is being learnt.
 class SdLeaf final : public DirectionSampler {
  public:
-  VertexMap::Sample sample(const Vec2& u) const override;
+  VertexMap<float>::Sample sample(const Vec2& u) const override;
   float pdf(const Vec3& wi) const override;
-  float bsdfShare() const override { return share; }
+  float bsdfFraction() const override { return share; }
 
   Quadtree known, learning;
   float weight = 0;    // of the samples that came in, radiance or not
@@ -42,8 +42,8 @@ class SdTree {
   // Points outside count to the leaf next to them.
   uint32_t find(const Vec3& point) const;
   Place place(const Vec3& point) const;
-  // Calls body(leaf, share of the box's volume) for every leaf that meets the box [low, high]. What of the box
-  // lies outside of the cube is left out.
+  // Calls body(leaf, share of the box's volume) for every leaf that meets the box [low, high]. What of the
+  // box lies outside of the cube is left out.
   template <class Body>
   void overlapping(const Vec3& low, const Vec3& high, const Body& body) const;
 

@@ -1,5 +1,5 @@
-// What the random numbers of a path are for. Every purpose has a dimension of its own, so that the numbers for some
-// can be drawn anew while all others stay as they are.
+// What the random numbers of a path are for. Every purpose has a dimension of its own, so that the numbers
+// for some can be drawn anew while all others stay as they are.
 #pragma once
 
 #include <algorithm>
@@ -10,8 +10,8 @@ namespace odis::render {
 // Each vertex of a path has so many dimensions; the camera is vertex 0.
 inline constexpr uint32_t kDimensionsPerVertex = 8;
 
-// A set of purposes, a bit each. The camera and the first vertex have bits of their own, all later vertices share
-// theirs.
+// A set of purposes, a bit each. The camera and the first vertex have bits of their own, all later vertices
+// share theirs.
 using Purposes = uint32_t;
 
 // Where in the pixel, and through which point of the lens.

@@ -4,29 +4,27 @@
 
 #include <cstdint>
 
-#include "render/integrator/render.h"
 #include "render/math/vec.h"
 #include "render/sampler/purposes.h"
+#include "render/sampler/sampler_kind.h"
 
 namespace odis::render {
 
-// The first two dimensions of Sobol's sequence as 32-bit fractions. The second is the Pascal triangle modulo
-// two, applied as a product of five butterflies.
+// Sobol's sequence as 32-bit fractions. Its first dimension is the bit-reversed index. Its second is the
+// Pascal triangle modulo two, applied as a product of five butterflies; here it is bit-reversed, too.
 inline uint32_t reverseBits(uint32_t x) {
-  x = (x >> 16) | (x << 16);
-  x = ((x & 0xff00ff00u) >> 8) | ((x & 0x00ff00ffu) << 8);
+  x = __builtin_bswap32(x);
   x = ((x & 0xf0f0f0f0u) >> 4) | ((x & 0x0f0f0f0fu) << 4);
   x = ((x & 0xccccccccu) >> 2) | ((x & 0x33333333u) << 2);
   return ((x & 0xaaaaaaaau) >> 1) | ((x & 0x55555555u) << 1);
 }
-inline uint32_t sobolSecondDimension(uint32_t index) {
+inline uint32_t sobolSecondReversed(uint32_t index) {
   uint32_t x = index;
   x ^= (x >> 1) & 0x55555555u;
   x ^= (x >> 2) & 0x33333333u;
   x ^= (x >> 4) & 0x0f0f0f0fu;
   x ^= (x >> 8) & 0x00ff00ffu;
-  x ^= (x >> 16) & 0x0000ffffu;
-  return reverseBits(x);
+  return x ^ ((x >> 16) & 0x0000ffffu);
 }
 
 // Owen scrambling in base two by hashing (Laine and Karras 2011, Burley 2020), on bits from the lowest up.
@@ -52,6 +50,7 @@ class Sampler {
   Sampler(SamplerKind kind, uint64_t seed, uint32_t pixel, uint32_t sample, Purposes redrawn = 0)
       : m_kind(kind),
         m_sample(sample),
+        m_reversedSample(reverseBits(sample)),
         m_redrawn(redrawn),
         m_base(mixBits(mixBits(seed + 0x9e3779b97f4a7c15ull) ^ pixel)) {}
 
@@ -64,8 +63,7 @@ class Sampler {
     const uint64_t hash = nextHash();
     if (m_kind == SamplerKind::independent) return toUnit(uint32_t(hash >> 32));
     const uint32_t index = shuffledIndex(uint32_t(hash));
-    // reversed: the first dimension is the bit-reversed index, so scrambling its reversal scrambles the
-    // index.
+    // The first dimension is the bit-reversed index, so that scrambling its reversal scrambles the index.
     return toUnit(reverseBits(owenScrambleReversed(index, uint32_t(hash >> 32))));
   }
   Vec2 get2D() {
@@ -73,15 +71,14 @@ class Sampler {
     if (m_kind == SamplerKind::independent) return {toUnit(uint32_t(hash >> 32)), toUnit(uint32_t(hash))};
     const uint32_t index = shuffledIndex(uint32_t(hash));
     const uint32_t seedX = uint32_t(hash >> 32), seedY = uint32_t(mixBits(hash));
-    const uint32_t second = reverseBits(sobolSecondDimension(index));
     return {toUnit(reverseBits(owenScrambleReversed(index, seedX))),
-            toUnit(reverseBits(owenScrambleReversed(second, seedY)))};
+            toUnit(reverseBits(owenScrambleReversed(sobolSecondReversed(index), seedY)))};
   }
 
  private:
   uint64_t nextHash() {
-    // Independent numbers differ by sample and by whether they are redrawn; Sobol' points share their scrambling
-    // among the samples of a pixel.
+    // Independent numbers differ by sample and by whether they are redrawn; Sobol' points share their
+    // scrambling among the samples of a pixel.
     ++m_dimension;
     uint64_t stream = 0;
     if (m_kind == SamplerKind::independent)
@@ -89,12 +86,12 @@ class Sampler {
     return mixBits(m_base ^ mixBits(stream + m_dimension));
   }
   uint32_t shuffledIndex(uint32_t seed) const {
-    return reverseBits(owenScrambleReversed(reverseBits(m_sample), seed));
+    return reverseBits(owenScrambleReversed(m_reversedSample, seed));
   }
   static float toUnit(uint32_t x) { return std::min(float(x) * 0x1p-32f, kOneMinusEpsilon); }
 
   SamplerKind m_kind;
-  uint32_t m_sample;
+  uint32_t m_sample, m_reversedSample;
   uint32_t m_dimension = 0;
   Purposes m_redrawn;
   uint64_t m_base;

@@ -1,0 +1,113 @@
+#include "render/integrators/frame_integrator.h"
+
+namespace odis::render {
+
+namespace {
+
+const char* stageName(const FramePass& pass) {
+  if (pass.kind == PassKind::pilot) return "pilot";
+  if (pass.kind == PassKind::oracle) return "oracle";
+  return pass.guide.cellCount > 0 ? "guided" : "path";
+}
+
+// Lets paths use what the guide has learned, as far as the options allow.
+void useGuide(PathSettings& settings, const GuideView& guide, const RenderOptions& options) {
+  settings.guide = &guide;
+  settings.learnedLights = options.lights != LightChoiceKind::hierarchy;
+  settings.shadowRoulette = options.shadowRays == ShadowRayKind::roulette;
+  settings.learnedRoulette = options.roulette != RouletteKind::throughput;
+}
+
+}  // namespace
+
+FrameOptions frameOptions(const RenderJob& job) {
+  const RenderOptions& options = job.options();
+  FrameOptions frame;
+  frame.width = uint32_t(job.crop().width);
+  frame.height = uint32_t(job.crop().height);
+  frame.samplesPerPixel = uint32_t(options.spp);
+  frame.seed = options.seed;
+  frame.guided = false;
+  frame.adaptive = options.samples == SampleSpread::adaptive;
+  return frame;
+}
+
+void FrameIntegrator::beginStage(const FramePass& framePass) {
+  const char* stage = stageName(framePass);
+  if (m_stage == stage) return;
+  if (m_stage) m_job.progress().end();
+  m_stage = stage;
+  m_job.progress().begin(stage, framePass.stageSamples);
+}
+
+Pass FrameIntegrator::passOf(const FramePass& framePass) {
+  Pass pass = m_job.pass();
+  pass.seed = framePass.seed;
+  if (framePass.guide.cellCount > 0) useGuide(pass.path, framePass.guide, m_job.options());
+  if (framePass.kind == PassKind::guided) pass.pixelValues = m_frame.pixelValues();
+  if (framePass.kind == PassKind::pilot && m_job.options().records) pass.emitted = &m_job.pilotEmitted;
+  if (!framePass.partOfImage) {
+    pass.features = nullptr;
+    pass.path.features = false;
+  }
+  pass.samples = [this](uint32_t pixel) { return m_frame.samples(pixel); };
+  pass.deliver = [this](uint32_t, ArrayView<const FrameSample> samples, std::vector<PathVertex> vertices) {
+    m_frame.add(samples, std::move(vertices));
+  };
+  pass.wantsVertices = framePass.wantsVertices;
+  return pass;
+}
+
+double FrameIntegrator::trace(const FramePass& framePass) {
+  beginStage(framePass);
+  const Stopwatch tracing;
+  m_job.run(passOf(framePass));
+  return tracing.seconds();
+}
+
+void FrameIntegrator::run(const FramePass& framePass) {
+  RenderStats& stats = m_job.stats;
+  const PassKind kind = framePass.kind;
+  (kind == PassKind::pilot    ? stats.secondsPilot
+   : kind == PassKind::oracle ? stats.secondsBuild
+                              : stats.secondsGuided) += trace(framePass);
+  const Stopwatch building;
+  m_frame.endPass(m_job.stop());
+  if (kind != PassKind::guided || framePass.wantsVertices) stats.secondsBuild += building.seconds();
+}
+
+void FrameIntegrator::render() {
+  while (const FramePass* pass = m_frame.beginPass()) run(*pass);
+  if (m_stage) m_job.progress().end();
+}
+
+void FrameIntegrator::tracePilot() {
+  m_job.stats.secondsPilot = trace(*m_frame.beginPass());
+  m_frame.endPass(true);
+  m_job.progress().end();
+}
+
+Pass FrameIntegrator::passBefore(uint32_t pixel, uint32_t sample) {
+  while (const FramePass* pass = m_frame.beginPass()) {
+    const SampleRange range = m_frame.samples(pixel);
+    const bool contains = pass->partOfImage && sample >= range.first && sample < range.first + range.count;
+    if (contains || m_frame.guideIsFinal()) return passOf(*pass);
+    run(*pass);
+  }
+  return m_job.pass();  // interrupted
+}
+
+void FrameIntegrator::finish(RenderResult& result) {
+  fillPixels(result, m_job.options(), [this](uint32_t pixel) { return m_frame.mean(pixel); });
+  const FrameStatistics frame = m_frame.statistics();
+  RenderStats& stats = result.stats;
+  stats.samples = frame.samples;
+  stats.pilotSamples = frame.pilotSamples;
+  stats.pilotVertices = frame.pilotVertices;
+  stats.cells = frame.cells;
+  stats.bytesMaps = frame.guideBytes;
+  stats.bytesBuild = frame.buildingBytes;
+  stats.pilotWeight = frame.pilotFraction;
+}
+
+}  // namespace odis::render

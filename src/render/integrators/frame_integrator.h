@@ -1,0 +1,37 @@
+// Integrators whose images are the library's frames: the library says what to trace, this traces it.
+#pragma once
+
+#include <odis/frame.h>
+
+#include "render/integrators/integrator.h"
+
+namespace odis::render {
+
+class FrameIntegrator : public Integrator {
+ public:
+  FrameIntegrator(RenderJob& job, const FrameOptions& options) : m_job(job), m_frame(options) {}
+
+  void render() override;
+  Pass passBefore(uint32_t pixel, uint32_t sample) override;
+  void finish(RenderResult& result) override;
+
+  // Traces the pilot, and nothing after it.
+  void tracePilot();
+  const odis::Frame& frame() const { return m_frame; }
+
+ private:
+  // Traces a pass; returns the time that took in seconds.
+  double trace(const FramePass& framePass);
+  void run(const FramePass& framePass);
+  Pass passOf(const FramePass& framePass);
+  void beginStage(const FramePass& framePass);
+
+  RenderJob& m_job;
+  odis::Frame m_frame;
+  const char* m_stage = nullptr;  // that progress tells of
+};
+
+// What a frame of the job's image is asked for, without a guide.
+FrameOptions frameOptions(const RenderJob& job);
+
+}  // namespace odis::render

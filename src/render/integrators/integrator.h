@@ -1,0 +1,38 @@
+// The interface of integrators: each renders an image its own way, on the same path tracer.
+#pragma once
+
+#include <memory>
+
+#include "render/integrators/job.h"
+
+namespace odis::render {
+
+class Integrator {
+ public:
+  virtual ~Integrator() = default;
+
+  // Takes all samples of all pixels.
+  virtual void render() = 0;
+  // Does everything that comes before a sample of a pixel, and returns the pass that it is traced in.
+  // Instead of render(), once. Throws OptionError where samples are not traced one by one.
+  virtual Pass passBefore(uint32_t pixel, uint32_t sample) = 0;
+  // Fills in the image's colour, its variance if that is asked for, and what depends on the integrator of
+  // features and statistics.
+  virtual void finish(RenderResult& result) = 0;
+};
+
+// Each integrator works on the job as long as it lives.
+std::unique_ptr<Integrator> makePathIntegrator(RenderJob& job);
+std::unique_ptr<Integrator> makeOdisIntegrator(RenderJob& job);
+std::unique_ptr<Integrator> makePpgIntegrator(RenderJob& job);
+std::unique_ptr<Integrator> makeOpenPglIntegrator(RenderJob& job);
+std::unique_ptr<Integrator> makeRestirIntegrator(RenderJob& job);
+
+// The integrator that the job's options name.
+std::unique_ptr<Integrator> makeIntegrator(RenderJob& job);
+
+// Sets the pixels of an image from the mean of each.
+void fillPixels(RenderResult& result, const RenderOptions& options,
+                const std::function<PixelMean(uint32_t pixel)>& mean);
+
+}  // namespace odis::render

@@ -1,0 +1,69 @@
+// What all integrators share while they render one image: the scene, the options, progress and time limit,
+// sums of features.
+#pragma once
+
+#include <tbb/global_control.h>
+
+#include <atomic>
+#include <chrono>
+
+#include "render/integrators/render.h"
+#include "render/path/pass.h"
+
+namespace odis::render {
+
+class RenderJob {
+ public:
+  RenderJob(const Scene& scene, const RenderOptions& options, Progress& progress);
+
+  const Scene& scene() const { return m_scene; }
+  const RenderOptions& options() const { return m_options; }
+  const LightSampler& lights() const { return m_lights; }
+  const Crop& crop() const { return m_scene.film().crop; }
+  size_t pixelCount() const { return size_t(crop().width) * size_t(crop().height); }
+  uint32_t pixelIndex(Vec2i pixel) const;
+
+  // A pass of unguided samples; samples() and deliver() are left to fill in.
+  Pass pass();
+  // Runs a pass and counts its rays.
+  void run(const Pass& pass);
+  void count(const RayCounts& counts);
+  // Whether rendering should end; once it does it stays so.
+  bool stop();
+  std::function<bool()> stopFunction();
+  Progress& progress() { return m_progress; }
+
+  RenderStats stats;
+  std::vector<FeatureSums> features;  // empty unless asked for
+  std::vector<Rgb> pilotEmitted;      // likewise
+
+ private:
+  const Scene& m_scene;
+  const RenderOptions& m_options;
+  Progress& m_progress;
+  LightSampler m_lights;
+  std::chrono::steady_clock::time_point m_start;
+  std::atomic<bool> m_stopped{false};
+};
+
+// Limits the threads of everything that is done while it lives; 0: one a core.
+class ThreadLimit {
+ public:
+  explicit ThreadLimit(int threads);
+
+ private:
+  tbb::global_control m_control;
+};
+
+// Measures the time since it was made.
+class Stopwatch {
+ public:
+  double seconds() const {
+    return std::chrono::duration<double>(std::chrono::steady_clock::now() - m_start).count();
+  }
+
+ private:
+  std::chrono::steady_clock::time_point m_start = std::chrono::steady_clock::now();
+};
+
+}  // namespace odis::render

@@ -1,0 +1,90 @@
+// odis: path tracing guided by what a pilot saw (docs/guiding.md). The library decides what is traced and
+// what samples weigh; here it is told of the scene's lights and of the options.
+#include "render/integrators/frame_integrator.h"
+#include "render/integrators/pilot_pass.h"
+
+namespace odis::render {
+
+namespace {
+
+// What guides are built with: the scene's lights, and the networks where they are asked for.
+GuideOptions guideOptions(const RenderJob& job) {
+  const RenderOptions& options = job.options();
+  GuideOptions guide = options.guideOptions;
+  if (options.lights != LightChoiceKind::hierarchy && job.lights().groupCount() > 1) {
+    guide.lightGroups = job.lights().groupCount();
+    guide.lightParts = job.lights().dividedLights();
+  }
+  guide.model = options.model;
+  if (options.guide != GuideKind::network) guide.model = guide.model.withDirectionFormula();
+  if (options.lights != LightChoiceKind::network) guide.model = guide.model.withLightFormula();
+  return guide;
+}
+
+FrameOptions guidedFrameOptions(const RenderJob& job) {
+  const RenderOptions& options = job.options();
+  FrameOptions frame = frameOptions(job);
+  frame.guided = true;
+  frame.adaptive = options.samples != SampleSpread::even;
+  frame.pilotSamplesPerPixel = options.pilotSpp;
+  frame.pilotWeight = float(options.pilotWeight);
+  frame.refinementSamples = uint32_t(options.refineSpp);
+  frame.oracleSamples = options.guide == GuideKind::oracle ? uint32_t(options.oracleSpp) : 0;
+  frame.keepPilotVertices = options.records;
+  frame.guide = guideOptions(job);
+  return frame;
+}
+
+// A vertex whose contributions are relative to its pixel's value.
+PathVertex divided(PathVertex v, float pixelValue) {
+  v.indirect /= pixelValue;
+  v.emission /= pixelValue;
+  v.light /= pixelValue;
+  return v;
+}
+
+class OdisIntegrator : public FrameIntegrator {
+ public:
+  explicit OdisIntegrator(RenderJob& job) : FrameIntegrator(job, guidedFrameOptions(job)), m_job(job) {}
+
+  void finish(RenderResult& result) override {
+    FrameIntegrator::finish(result);
+    const RenderOptions& options = m_job.options();
+    if (options.features && options.guideFeatures)
+      for (uint32_t pixel = 0; pixel < m_job.pixelCount(); ++pixel)
+        result.image.guideSamples.push_back(float(frame().sampleCount(pixel)));
+    if (!options.records) return;
+    result.records = frame().pilotVertices();
+    for (PathVertex& v : result.records) v = divided(v, frame().pixelValues()[v.pixel]);
+    result.pilotEmitted = std::move(m_job.pilotEmitted);
+  }
+
+ private:
+  RenderJob& m_job;
+};
+
+}  // namespace
+
+std::unique_ptr<Integrator> makeOdisIntegrator(RenderJob& job) {
+  return std::make_unique<OdisIntegrator>(job);
+}
+
+PilotPass renderPilot(const Scene& scene, const RenderOptions& options, Progress& progress) {
+  if (options.integrator != IntegratorKind::odis)
+    throw OptionError("--integrator: expected odis, others have no pilot");
+  const ThreadLimit limit(options.threads);
+  RenderJob job(scene, options, progress);
+  FrameOptions frame = guidedFrameOptions(job);
+  frame.keepPilotVertices = true;
+  FrameIntegrator integrator(job, frame);
+  integrator.tracePilot();
+  const ArrayView<const PixelSums> image = integrator.frame().pilotImage();
+  const ArrayView<const float> values = integrator.frame().pixelValues();
+  return {{image.begin(), image.end()},
+          integrator.frame().pilotVertices(),
+          {values.begin(), values.end()},
+          frame.guide,
+          job.stop()};
+}
+
+}  // namespace odis::render

@@ -1,0 +1,58 @@
+// What a rendering is asked for.
+#pragma once
+
+#include <odis/guide.h>
+
+#include "render/rivals/ppg_options.h"
+#include "render/rivals/restir_options.h"
+#include "render/sampler/sampler_kind.h"
+
+namespace odis::render {
+
+enum class IntegratorKind { path, odis, ppg, openpgl, restir };
+enum class GuideKind { network, histogram, oracle };
+enum class RouletteKind { throughput, formula };
+enum class LightChoiceKind { hierarchy, formula, network };
+enum class ShadowRayKind { all, roulette };
+enum class SampleSpread { automatic, even, adaptive };
+
+struct RenderOptions {
+  IntegratorKind integrator = IntegratorKind::odis;
+  SamplerKind sampler = SamplerKind::sobol;
+  int spp = 4;
+  uint64_t seed = 0;
+  int threads = 0;    // 0: one a core
+  int maxDepth = -1;  // -1: unlimited; 1 is directly visible emission, as Mitsuba counts
+  int rrDepth = 5;    // Russian roulette from this depth on
+  // How the samples are spread over the pixels: as many for each, or more where the first ones differ more,
+  // for about as many rays (odis/sample_counts.h). Automatic: adaptive for odis, even for others. Adaptive
+  // needs 4 samples per pixel.
+  SampleSpread samples = SampleSpread::automatic;
+  double timeLimit = 0;   // seconds; 0: none. The image then has as many whole passes as fitted in.
+  bool variance = false;  // also estimate the variance of each pixel
+  bool features = false;  // also write albedo, normals, position, depth, roughness
+
+  int guideBounces = -1;  // how many vertices of a path are guided; -1: all, 1: the first
+  PpgOptions ppg;         // ppg only
+  RestirOptions restir;   // restir only
+
+  // odis only
+  GuideKind guide = GuideKind::network;
+  Model model;                                         // the networks, or what stands for them
+  RouletteKind roulette = RouletteKind::formula;       // of the guided samples
+  LightChoiceKind lights = LightChoiceKind::network;   // likewise
+  ShadowRayKind shadowRays = ShadowRayKind::roulette;  // likewise
+  // Guided samples per pixel that the guide learns from, too: it is rebuilt after 1, 3, 7, ... if as many
+  // are left.
+  int refineSpp = 3;
+  // Samples per pixel of the pilot; 0.25 is one sample per 2x2 pixels. 0: 0.25 where that is enough to
+  // learn from (the image is large) and a whole sample would be dear (there are few), else 1.
+  double pilotSpp = 0;
+  int oracleSpp = 64;  // samples per pixel that the oracle's maps are made from
+  GuideOptions guideOptions;
+  double pilotWeight = -1;  // of a pilot sample relative to a guided one; -1: by predicted variance
+  bool records = false;     // keep the pilot's vertices in the result, for those who want to learn from them
+  bool guideFeatures = false;  // with `features`, also what the guide decided
+};
+
+}  // namespace odis::render

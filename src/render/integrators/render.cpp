@@ -1,0 +1,60 @@
+#include "render/integrators/render.h"
+
+#include <fmt/format.h>
+
+#include "render/integrators/integrator.h"
+#include "render/integrators/sample_image.h"
+#include "render/path/path_text.h"
+
+namespace odis::render {
+
+RenderResult render(const Scene& scene, const RenderOptions& options, Progress& progress) {
+  const ThreadLimit limit(options.threads);
+  RenderJob job(scene, options, progress);
+  const std::unique_ptr<Integrator> integrator = makeIntegrator(job);
+  integrator->render();
+
+  RenderResult result;
+  result.stats = job.stats;
+  RenderedImage& image = result.image;
+  image.x = job.crop().x;
+  image.y = job.crop().y;
+  image.width = job.crop().width;
+  image.height = job.crop().height;
+  if (options.features)
+    writeFeatures(job.features, options.guideFeatures && options.integrator == IntegratorKind::odis, image);
+  integrator->finish(result);
+  RenderStats& stats = result.stats;
+  stats.spp = double(stats.samples) / double(std::max<size_t>(job.pixelCount(), 1));
+  stats.bytesLights = job.lights().bytes();
+  stats.interrupted = job.stop();
+  return result;
+}
+
+void renderSamples(const Scene& scene, const RenderOptions& options, Progress& progress,
+                   const std::function<void(const SampleRenderer&)>& use) {
+  if (options.integrator == IntegratorKind::odis && options.pilotSpp >= options.spp)
+    throw OptionError("--set pilot-spp: all samples are the pilot's, expected fewer");
+  const ThreadLimit limit(options.threads);
+  RenderJob job(scene, options, progress);
+  const std::unique_ptr<Integrator> integrator = makeIntegrator(job);
+  Pass pass = integrator->passBefore(0, uint32_t(options.spp) - 1);
+  use([&](uint32_t sample, Purposes redrawn) {
+    return renderSampleImage(pass, sample, redrawn, progress, job.stopFunction());
+  });
+}
+
+std::string replay(const Scene& scene, const RenderOptions& options, Vec2i pixel, int sample) {
+  const ThreadLimit limit(options.threads);
+  Progress quiet;
+  RenderJob job(scene, options, quiet);
+  const std::unique_ptr<Integrator> integrator = makeIntegrator(job);
+  const uint32_t index = job.pixelIndex(pixel);
+  const Pass pass = integrator->passBefore(index, uint32_t(sample));
+  std::vector<PathVertex> vertices;
+  Path path = cameraPath(pass, index, uint32_t(sample));
+  tracePaths(pass.path, std::span(&path, 1), &vertices);
+  return fmt::format("pixel {},{} sample {}: ", pixel.x, pixel.y, sample) + pathText(path, vertices);
+}
+
+}  // namespace odis::render

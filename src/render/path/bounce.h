@@ -1,0 +1,100 @@
+// A bounce of many paths, as a list of steps in the order in which light transport tells them.
+#pragma once
+
+#include <array>
+
+#include "render/path/guided_bsdf.h"
+
+namespace odis::render {
+
+// Next-event estimation at a vertex, before it is known whether something hides the light.
+struct LightEstimate {
+  Rgb radiance{0, 0, 0};  // outgoing, without MIS weight: f |cos| Le / pdf
+  Vec3 wi{0, 0, 1};       // world space
+  float distance = 0;     // to the light
+  float pdf = 0;          // with respect to solid angle; 0 where MIS does not apply
+  BsdfValue bsdf;         // in direction wi
+  uint32_t group = 0;     // group of lights that the light was drawn from
+};
+
+// One path as it arrives at one vertex.
+struct Arrival {
+  Path* path;
+  uint32_t index;        // of the path in the batch
+  const Vertex* vertex;  // without a shape where the ray left the scene
+  uint32_t cell;         // of the guide, or kNoCell
+  int depth;             // 1 for the first vertex
+  bool scatters;         // whether the path goes on to be scattered here
+};
+
+// The same from its arrival to its departure. Steps fill it in one after another.
+struct Bounce : Arrival {
+  GuidedBsdf bsdf;             // that directions are sampled from
+  LightReference reference;    // that the choice of lights depends on
+  LightEstimate light;         // next-event estimation
+  Rgb direct;                  // its radiance with the MIS weight
+  float shadowRayProbability;  // with which the shadow ray was traced; 0: it was not
+  BsdfSample next;             // the sampled direction
+  Rgb weight;                  // of that direction, divided by `survival`; black if the path ends
+  float survival;              // probability with which roulette by throughput lets the path go on
+  bool survives;
+};
+
+// Steps are taken by a few paths at a time: as many as the first-level cache holds, so that each finds what
+// the step before it left.
+inline constexpr size_t kBounceBlock = 16;
+
+// A shadow ray adds this radiance to its path if nothing is in the way.
+struct ShadowRay {
+  uint32_t path;
+  Rgb radiance;
+};
+
+// What the paths of a batch share while they are traced; kept from batch to batch for its memory. 48 + 28 +
+// 216 bytes a path and 28 + 16 a shadow ray.
+struct Batch {
+  std::vector<uint32_t> active;  // paths that have a ray to trace
+  std::vector<Ray> rays;         // theirs
+  std::vector<Hit> hits;         // what those met
+  std::vector<Vertex> vertices;  // the same as points on surfaces
+  std::vector<Place> places;     // and as places of the guide
+  std::vector<uint32_t> cells;   // of the guide; kNoCell where there is none
+  std::array<Bounce, kBounceBlock> bounces;
+  std::vector<ShadowRay> shadowRays;
+  std::vector<Ray> shadowSegments;  // theirs
+  std::vector<uint8_t> hidden;
+  bool recording = false;
+  PathRecorder recorder;
+};
+
+using Bounces = std::span<Bounce>;
+
+// Adds the emission that rays met, weighted against next-event estimation where that could have found it
+// too. Paths go on where they met a surface and are not too deep.
+void meetEmission(const PathSettings& settings, Batch& batch, Bounces bounces);
+// Lets paths go on by what is known to come back from here. Paths that end add the cell's mean outgoing
+// radiance instead of what they would have found.
+void playRouletteOnArrival(const PathSettings& settings, Batch& batch, Bounces bounces);
+// Moves the paths that are scattered to the front, in their order, and returns them. All steps from here on
+// are theirs.
+Bounces keepScattered(Bounces bounces);
+// Finds out what directions are sampled from.
+void prepareDirections(const PathSettings& settings, Bounces bounces);
+// Chooses a light and a point on it, and weighs what it gives against sampling directions.
+void estimateDirectLight(const PathSettings& settings, Bounces bounces);
+void sampleDirections(Bounces bounces);
+// Notes features of the first vertex whose direction is not discrete.
+void describeFirstHits(const PathSettings& settings, Bounces bounces);
+// Ends paths by their throughput where nothing was learned, as Mitsuba does.
+void playRouletteOnDeparture(const PathSettings& settings, Bounces bounces);
+// Asks for shadow rays, though not always where the light would add little to the pixel.
+void requestShadowRays(const PathSettings& settings, Batch& batch, Bounces bounces);
+// Tells the recorder what happened.
+void recordBounces(const PathSettings& settings, Batch& batch, Bounces bounces);
+// Gives each path that survives its next ray.
+void departRays(Bounces bounces);
+
+// Traces the shadow rays of a bounce: adds the light that nothing hides.
+void traceShadowRays(const Scene& scene, std::span<Path> paths, Batch& batch);
+
+}  // namespace odis::render

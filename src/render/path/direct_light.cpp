@@ -1,0 +1,94 @@
+// Next-event estimation: the choice of a light, its MIS weight, shadow rays.
+#include "render/path/bounce.h"
+
+namespace odis::render {
+
+namespace {
+
+// How many numbers sampleLight() draws.
+constexpr uint32_t kLightNumbers = 2;
+
+LightEstimate sampleLight(const PathSettings& settings, const Vertex& vertex, const LightReference& reference,
+                          Sampler& sampler) {
+  LightEstimate result;
+  const SurfacePoint& at = vertex.at;
+  const float uChoice = sampler.get1D();
+  const Vec2 u = sampler.get2D();
+  const LightSampler::Choice choice = settings.lights->sample(reference, uChoice, u);
+  if (!choice.emitter) return result;
+  const EmitterSample light = choice.emitter->sample(choice.part, at.p, choice.u);
+  if (!(light.pdf > 0) || isBlack(light.radiance)) return result;
+  result.group = choice.group;
+  result.wi = light.wi;
+  result.distance = light.distance;
+  result.bsdf = at.shape->bsdf().evaluate(at, vertex.wo, at.shading.toLocal(light.wi));
+  if (isBlack(result.bsdf.value)) return result;
+  result.radiance = result.bsdf.value * light.radiance / (light.pdf * choice.probability);
+  result.pdf = light.delta ? 0 : light.pdf * choice.probability;
+  return result;
+}
+
+// The weight of next-event estimation against the mixture that directions are sampled from.
+float misWeight(const LightEstimate& light, const GuidedBsdf& bsdf) {
+  if (!(light.pdf > 0)) return 1;
+  return powerHeuristic(light.pdf, bsdf.pdf(light.bsdf, light.wi));
+}
+
+}  // namespace
+
+LightReference lightReference(const SurfacePoint& at, const Vec3& wo) {
+  return {at.p, facingNormal(at, wo), at.shape->bsdf().traits().transmissive};
+}
+
+void estimateDirectLight(const PathSettings& settings, Bounces bounces) {
+  for (Bounce& bounce : bounces) {
+    const Vertex& vertex = *bounce.vertex;
+    bounce.reference = lightReference(vertex.at, vertex.wo);
+    if (settings.learnedLights && bounce.cell != kNoCell)
+      bounce.reference.learned = learnedLights(*settings.guide, bounce.cell);
+    bounce.direct = Rgb(0, 0, 0);
+    if (!vertex.at.shape->bsdf().traits().evaluable) {
+      bounce.light = {};
+      bounce.path->sampler.skip(kLightNumbers);
+      continue;
+    }
+    bounce.light = sampleLight(settings, vertex, bounce.reference, bounce.path->sampler);
+    if (!isBlack(bounce.light.radiance))
+      bounce.direct = bounce.light.radiance * misWeight(bounce.light, bounce.bsdf);
+  }
+}
+
+void requestShadowRays(const PathSettings& settings, Batch& batch, Bounces bounces) {
+  for (Bounce& bounce : bounces) {
+    bounce.shadowRayProbability = 0;
+    if (isBlack(bounce.direct)) continue;
+    Path& path = *bounce.path;
+    float probability = 1;
+    if (settings.shadowRoulette && bounce.cell != kNoCell)
+      probability = shadowRayProbability(settings.guide->rules,
+                                         luminance(path.throughput * bounce.direct) / path.pixelValue);
+    if (probability < 1 && !(path.sampler.get1D() < probability)) continue;
+    bounce.shadowRayProbability = probability;
+    bounce.direct /= probability;
+    bounce.light.radiance /= probability;
+    ++path.counts.shadowRays;
+    batch.shadowRays.push_back({bounce.index, path.throughput * bounce.direct});
+    batch.shadowSegments.push_back(Scene::spawn(bounce.vertex->at, bounce.light.wi, bounce.light.distance));
+  }
+}
+
+void traceShadowRays(const Scene& scene, std::span<Path> paths, Batch& batch) {
+  batch.hidden.resize(batch.shadowRays.size());
+  scene.occluded(batch.shadowSegments, batch.hidden);
+  for (size_t i = 0; i < batch.shadowRays.size(); ++i) {
+    Path& path = paths[batch.shadowRays[i].path];
+    if (!batch.hidden[i])
+      path.radiance += batch.shadowRays[i].radiance;
+    else if (batch.recording)
+      batch.recorder.lightHidden(path.handle);
+  }
+  batch.shadowRays.clear();
+  batch.shadowSegments.clear();
+}
+
+}  // namespace odis::render

@@ -1,0 +1,33 @@
+// What another directional guide than ODIS's own has to answer, so that the path tracer can mix it with the
+// BSDF. A vertex that ODIS's maps guide costs no virtual call.
+#pragma once
+
+#include <odis/sampling_map.h>
+
+#include "render/math/vec.h"
+
+namespace odis::render {
+
+// The guide at one vertex: a density over all directions in world space, with respect to solid angle. It may
+// be zero where light arrives from: the BSDF's share of the draws covers that.
+class DirectionSampler {
+ public:
+  virtual ~DirectionSampler() = default;
+  // `u` uniform in [0, 1)^2.
+  virtual VertexMap<float>::Sample sample(const Vec2& u) const = 0;
+  // The density with which sample() gives that direction.
+  virtual float pdf(const Vec3& wi) const = 0;
+  // The probability, in (0, 1], that a draw that may be guided stays with the BSDF.
+  virtual float bsdfFraction() const = 0;
+};
+
+class DirectionGuide {
+ public:
+  virtual ~DirectionGuide() = default;
+  // The guide at a vertex with this unit normal on the side of the outgoing direction; null where there is
+  // none. It lasts until the same thread asks again. Thread-safe.
+  virtual const DirectionSampler* at(const Vec3& position, const Vec3& normal,
+                                     bool scattersBothSides) const = 0;
+};
+
+}  // namespace odis::render

@@ -1,0 +1,87 @@
+#include "render/path/guided_bsdf.h"
+
+namespace odis::render {
+
+namespace {
+
+// A rival's density as the mixture asks for it.
+struct RivalMap {
+  const DirectionSampler& rival;
+  VertexMap<float>::Sample sample(float u, float v) const { return rival.sample(Vec2(u, v)); }
+  float pdf(const Float3& wi) const { return rival.pdf(fromOdis(wi)); }
+};
+
+// The BSDF at a vertex as the mixture asks for it.
+struct BsdfHost {
+  using Sample = BsdfSample;
+
+  const Vertex& vertex;
+  float uLobe;
+
+  const SurfacePoint& at() const { return vertex.at; }
+  const Bsdf& bsdf() const { return vertex.at.shape->bsdf(); }
+
+  Sample sampleBsdf(float u, float v) const { return bsdf().sample(at(), vertex.wo, uLobe, Vec2(u, v)); }
+  bool isDiscrete(const Sample& sample) const { return odis::render::isDiscrete(sample.lobe); }
+  bool isSharp(const Sample& sample) const { return sample.lobe == Lobe::nearDelta; }
+  bool failed(const Sample& sample) const { return sample.lobe == Lobe::none; }
+
+  template <class PdfOf>
+  Sample evaluate(const Float3& wi, const PdfOf& pdfOf) const {
+    Sample result;
+    result.wi = at().shading.toLocal(fromOdis(wi));
+    const BsdfValue value = bsdf().evaluate(at(), vertex.wo, result.wi);
+    result.pdf = pdfOf(value.pdf, value.guidablePdf);
+    result.guidablePdf = value.guidablePdf;
+    result.weight = value.value / result.pdf;
+    result.eta = 1;
+    result.lobe = isBlack(value.value) ? Lobe::none : Lobe::smooth;
+    return result;
+  }
+  template <class PdfOf>
+  void reweigh(Sample& sample, const PdfOf& pdfOf) const {
+    const float mixed = pdfOf(sample.pdf, sample.guidablePdf, toOdis(at().shading.toWorld(sample.wi)));
+    sample.weight *= sample.pdf / mixed;
+    sample.pdf = mixed;
+  }
+};
+
+}  // namespace
+
+void GuidedBsdf::prepare(const PathSettings& settings, int depth, const Vertex& vertex, uint32_t cell) {
+  m_mixture = {};
+  m_rival = nullptr;
+  if (!guidesAt(settings, depth)) return;
+  if (!settings.rival && (cell == kNoCell || !guidesDirections(settings.guide->decisions[cell]))) return;
+  const Bsdf& bsdf = vertex.at.shape->bsdf();
+  const float guidable = bsdf.guidableProbability(vertex.at, vertex.wo);
+  if (!(guidable > 0)) return;
+  const Vec3 normal = facingNormal(vertex.at, vertex.wo);
+  const bool transmissive = bsdf.traits().transmissive;
+  if (settings.rival) {
+    m_rival = settings.rival->at(vertex.at.p, normal, transmissive);
+    if (m_rival) m_mixture = {m_rival->bsdfFraction(), guidable};
+    return;
+  }
+  const float fraction =
+      odis::bsdfFraction(*settings.guide, int32_t(cell), bsdf.roughness(vertex.at, vertex.wo));
+  if (fraction >= 1) return;
+  m_map.prepare(settings.guide->maps, int32_t(cell), toOdis(normal), transmissive ? -1.0f : 0.0f);
+  if (m_map.sampleable()) m_mixture = {fraction, guidable};
+}
+
+float GuidedBsdf::pdf(const BsdfValue& bsdf, const Vec3& wiWorld) const {
+  if (!m_mixture.guides()) return bsdf.pdf;
+  const float mapPdf = m_rival ? m_rival->pdf(wiWorld) : m_map.pdf(toOdis(wiWorld));
+  return m_mixture.pdf(bsdf.pdf, bsdf.guidablePdf, mapPdf);
+}
+
+BsdfSample GuidedBsdf::sample(const Vertex& vertex, Sampler& sampler) const {
+  const float uLobe = sampler.get1D();
+  const Vec2 u = sampler.get2D();
+  const BsdfHost host{vertex, uLobe};
+  if (m_rival) return m_mixture.sample(RivalMap{*m_rival}, u.x, u.y, host);
+  return m_mixture.sample(m_map, u.x, u.y, host);
+}
+
+}  // namespace odis::render

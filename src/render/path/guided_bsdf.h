@@ -1,0 +1,34 @@
+// The BSDF at a vertex, mixed with what guides directions there: a cell's map times the cosine, or a
+// rival's density.
+#pragma once
+
+#include <odis/mixture.h>
+
+#include "render/path/path.h"
+
+namespace odis::render {
+
+class GuidedBsdf {
+ public:
+  // `cell` is kNoCell where the guide knows nothing.
+  void prepare(const PathSettings& settings, int depth, const Vertex& vertex, uint32_t cell);
+
+  // The BSDF sampling fraction: 1 where nothing is guided.
+  float bsdfFraction() const { return m_mixture.bsdfFraction(); }
+  // The density of the mixture in a direction, with respect to solid angle, `bsdf` being the BSDF's value
+  // there.
+  float pdf(const BsdfValue& bsdf, const Vec3& wiWorld) const;
+  BsdfSample sample(const Vertex& vertex, Sampler& sampler) const;
+
+ private:
+  Mixture<float> m_mixture;
+  const DirectionSampler* m_rival = nullptr;
+  VertexMap<float> m_map;
+};
+
+// Whether directions are guided at all at this depth.
+inline bool guidesAt(const PathSettings& settings, int depth) {
+  return (settings.guide || settings.rival) && (settings.guideBounces < 0 || depth <= settings.guideBounces);
+}
+
+}  // namespace odis::render

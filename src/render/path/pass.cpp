@@ -1,0 +1,128 @@
+#include "render/path/pass.h"
+
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+#include <xmmintrin.h>
+
+namespace odis::render {
+
+namespace {
+
+constexpr int kTileSize = 16;
+
+// Denormal numbers are slow and mean nothing here: flushed to zero (bit 15) and taken as zero (bit 6).
+void flushDenormals() {
+  _mm_setcsr(_mm_getcsr() | 0x8040u);
+}
+
+int tilesX(const Crop& crop) {
+  return (crop.width + kTileSize - 1) / kTileSize;
+}
+
+// The pixels of a tile in blocks of 4 x 4, so that neighbours in the list are neighbours in the image.
+std::vector<uint32_t> pixelsOfTile(const Crop& crop, uint32_t tile) {
+  constexpr int kBlock = 4;
+  const int x0 = int(tile) % tilesX(crop) * kTileSize, y0 = int(tile) / tilesX(crop) * kTileSize;
+  std::vector<uint32_t> pixels;
+  for (int i = 0; i < kTileSize * kTileSize; ++i) {
+    const int block = i / (kBlock * kBlock), within = i % (kBlock * kBlock);
+    const int x = x0 + block % (kTileSize / kBlock) * kBlock + within % kBlock;
+    const int y = y0 + block / (kTileSize / kBlock) * kBlock + within / kBlock;
+    if (x < crop.width && y < crop.height) pixels.push_back(uint32_t(y) * uint32_t(crop.width) + uint32_t(x));
+  }
+  return pixels;
+}
+
+// What a tile's samples brought; kept from tile to tile for its memory.
+struct TileResult {
+  std::vector<FrameSample> samples;
+  std::vector<PathVertex> vertices;
+  RayCounts counts;
+};
+
+// Adds what traced paths brought.
+void collect(const Pass& pass, std::span<const Path> paths, TileResult& result) {
+  for (const Path& path : paths) {
+    const auto& [pixel, sample, filterWeight] = path.identity;
+    // A path that is not a number (a broken normal, an overflow) would spoil its pixel for good: it counts as
+    // black.
+    const Rgb value = isFinite(path.radiance) ? path.radiance * filterWeight : Rgb(0, 0, 0);
+    result.samples.push_back(
+        {pixel, sample, toOdis(value), uint32_t(path.counts.rays + path.counts.shadowRays)});
+    result.counts.add(path.counts);
+    if (pass.emitted) (*pass.emitted)[pixel] += path.emitted * filterWeight;
+    if (pass.features) (*pass.features)[pixel].add(path.first);
+  }
+}
+
+// Traces all samples of a tile, one of each pixel at a time, or several where few pixels are left that have
+// one.
+void renderTile(const Pass& pass, uint32_t tile, TileResult& result) {
+  const std::vector<uint32_t> pixels = pixelsOfTile(pass.path.scene->film().crop, tile);
+  std::vector<Path> paths;
+  for (uint32_t round = 0, traced = 1; traced > 0; ++round) {
+    traced = 0;
+    for (const uint32_t pixel : pixels) {
+      const auto [first, count] = pass.samples(pixel);
+      if (round >= count) continue;
+      paths.push_back(cameraPath(pass, pixel, first + round));
+      ++traced;
+    }
+    if (traced > 0 && paths.size() < pixels.size()) continue;
+    tracePaths(pass.path, paths, pass.wantsVertices ? &result.vertices : nullptr);
+    collect(pass, paths, result);
+    paths.clear();
+  }
+}
+
+}  // namespace
+
+uint32_t tileCount(const Crop& crop) {
+  return uint32_t(tilesX(crop) * ((crop.height + kTileSize - 1) / kTileSize));
+}
+
+Ray cameraRay(const Scene& scene, Vec2i pixel, Sampler& sampler, float& filterWeight) {
+  const FilterSample offset = scene.film().filter->sample(sampler.get2D());
+  filterWeight = offset.weight;
+  return scene.sensor().ray(Vec2(pixel.x + 0.5f, pixel.y + 0.5f) + offset.offset, sampler.get2D());
+}
+
+Path cameraPath(const Pass& pass, uint32_t index, uint32_t sample) {
+  const FilmSettings& film = pass.path.scene->film();
+  const Vec2i pixel(film.crop.x + int(index) % film.crop.width, film.crop.y + int(index) / film.crop.width);
+  Sampler sampler(pass.sampler, pass.seed, uint32_t(pixel.y) * uint32_t(film.width) + uint32_t(pixel.x),
+                  sample, pass.redrawn);
+  float filterWeight;
+  const Ray ray = cameraRay(*pass.path.scene, pixel, sampler, filterWeight);
+  Path path(ray, sampler);
+  path.identity = {index, sample, filterWeight};
+  if (!pass.pixelValues.empty()) path.pixelValue = pass.pixelValues[index];
+  return path;
+}
+
+RayCounts runPass(const Pass& pass, Progress& progress, const std::function<bool()>& stop) {
+  const uint32_t tiles = tileCount(pass.path.scene->film().crop);
+  std::vector<RayCounts> counts(tiles);
+  tbb::parallel_for(
+      tbb::blocked_range<uint32_t>(0, tiles, 1),
+      [&](const tbb::blocked_range<uint32_t>& range) {
+        flushDenormals();
+        for (uint32_t tile = range.begin(); tile < range.end(); ++tile) {
+          if (stop()) return;
+          thread_local TileResult result;
+          result.samples.clear();
+          result.vertices.clear();
+          result.counts = {};
+          renderTile(pass, tile, result);
+          pass.deliver(tile, result.samples, std::move(result.vertices));
+          counts[tile] = result.counts;
+          progress.advance(result.samples.size());
+        }
+      },
+      tbb::simple_partitioner());
+  RayCounts total;
+  for (const RayCounts& tile : counts) total.add(tile);
+  return total;
+}
+
+}  // namespace odis::render

@@ -1,0 +1,60 @@
+// Where paths go on, and whether.
+#include "render/path/bounce.h"
+
+namespace odis::render {
+
+Bounces keepScattered(Bounces bounces) {
+  size_t left = 0;
+  for (const Bounce& bounce : bounces) {  // without a branch, which would often be mispredicted
+    const Arrival arrival = bounce;
+    static_cast<Arrival&>(bounces[left]) = arrival;
+    left += arrival.scatters;
+  }
+  return bounces.first(left);
+}
+
+void prepareDirections(const PathSettings& settings, Bounces bounces) {
+  for (Bounce& bounce : bounces) bounce.bsdf.prepare(settings, bounce.depth, *bounce.vertex, bounce.cell);
+}
+
+void sampleDirections(Bounces bounces) {
+  for (Bounce& bounce : bounces) {
+    bounce.next = bounce.bsdf.sample(*bounce.vertex, bounce.path->sampler);
+    if (!isFinite(bounce.next.weight)) bounce.next = {};
+  }
+}
+
+void playRouletteOnDeparture(const PathSettings& settings, Bounces bounces) {
+  for (Bounce& bounce : bounces) {
+    bounce.survives = false;
+    Path& path = *bounce.path;
+    bounce.weight = bounce.next.weight;
+    bounce.survival = 1;
+    path.eta *= bounce.next.eta;
+    path.uSurvival = path.sampler.get1D();
+    bounce.survives = bounce.next.lobe != Lobe::none && !isBlack(bounce.weight);
+    const bool learned = settings.learnedRoulette && bounce.cell != kNoCell;
+    if (bounce.survives && bounce.depth >= settings.rrDepth && !learned) {
+      bounce.survival = std::min(maxComponent(path.throughput * bounce.weight) * sqr(path.eta), 0.95f);
+      bounce.survives = path.uSurvival < bounce.survival;
+      path.uSurvival /= bounce.survival;  // as good as new, should the path survive
+      bounce.weight /= bounce.survival;
+    }
+    if (!bounce.survives) bounce.weight = Rgb(0, 0, 0);
+  }
+}
+
+void departRays(Bounces bounces) {
+  for (Bounce& bounce : bounces) {
+    if (!bounce.survives) continue;
+    Path& path = *bounce.path;
+    const SurfacePoint& at = bounce.vertex->at;
+    path.throughput *= bounce.weight;
+    path.bySampling = !isDiscrete(bounce.next.lobe);
+    path.directionPdf = bounce.next.pdf;
+    path.previous = bounce.reference;
+    path.ray = Scene::spawn(at, at.shading.toWorld(bounce.next.wi));
+  }
+}
+
+}  // namespace odis::render

@@ -1,0 +1,97 @@
+#include <new>
+#include <numeric>
+
+#include "render/path/bounce.h"
+
+namespace odis::render {
+
+namespace {
+
+// Traces the paths' rays and turns what they hit into vertices.
+void findVertices(const PathSettings& settings, std::span<const Path> paths, Batch& batch) {
+  batch.rays.clear();
+  for (const uint32_t index : batch.active) batch.rays.push_back(paths[index].ray);
+  batch.hits.resize(batch.rays.size());
+  settings.scene->intersect(batch.rays, batch.hits);
+  batch.vertices.resize(batch.hits.size());
+  for (size_t i = 0; i < batch.hits.size(); ++i) {
+    const Hit& hit = batch.hits[i];
+    Vertex& vertex = batch.vertices[i];
+    vertex.at.shape = hit.shape;
+    if (!hit.shape) continue;
+    new (&vertex.at) SurfacePoint(hit.shape->surfacePoint(batch.rays[i], hit.raw));  // without a copy
+    vertex.wo = vertex.at.shading.toLocal(-batch.rays[i].direction);
+  }
+}
+
+// Finds the cells that guide the vertices.
+void findGuidingCells(const PathSettings& settings, std::span<const Path> paths, int depth, Batch& batch) {
+  batch.cells.assign(batch.vertices.size(), kNoCell);
+  if (!settings.guide || !guidesAt(settings, depth)) return;
+  batch.places.clear();
+  for (size_t i = 0; i < batch.vertices.size(); ++i) {
+    const Vertex& vertex = batch.vertices[i];
+    const PathIdentity& identity = paths[batch.active[i]].identity;
+    batch.places.push_back({{}, {}, identity.pixel, identity.sample});
+    if (!vertex.at.shape) continue;
+    batch.places.back().position = toOdis(vertex.at.p);
+    batch.places.back().normal = toOdis(facingNormal(vertex.at, vertex.wo));
+  }
+  findCells(*settings.guide, batch.places.data(), batch.places.size(), batch.cells.data());
+}
+
+// Takes some paths through all steps of a bounce; returns those that were scattered.
+Bounces takeSteps(const PathSettings& settings, Batch& batch, Bounces bounces) {
+  meetEmission(settings, batch, bounces);
+  playRouletteOnArrival(settings, batch, bounces);
+  bounces = keepScattered(bounces);
+  prepareDirections(settings, bounces);
+  estimateDirectLight(settings, bounces);
+  sampleDirections(bounces);
+  describeFirstHits(settings, bounces);
+  playRouletteOnDeparture(settings, bounces);
+  requestShadowRays(settings, batch, bounces);
+  recordBounces(settings, batch, bounces);
+  departRays(bounces);
+  return bounces;
+}
+
+// Takes all active paths from their rays' ends to their next rays; those without one are active no more.
+void bounceAll(const PathSettings& settings, std::span<Path> paths, int depth, Batch& batch) {
+  size_t left = 0;
+  for (size_t begin = 0; begin < batch.active.size(); begin += kBounceBlock) {
+    const size_t count = std::min(kBounceBlock, batch.active.size() - begin);
+    for (size_t i = begin; i < begin + count; ++i) {
+      Bounce& bounce = batch.bounces[i - begin];
+      bounce.index = batch.active[i];
+      bounce.path = &paths[bounce.index];
+      bounce.vertex = &batch.vertices[i];
+      bounce.cell = batch.cells[i];
+      if (bounce.cell != kNoCell) prefetchCell(*settings.guide, bounce.cell);  // needed some steps later
+      bounce.depth = depth;
+    }
+    for (const Bounce& bounce : takeSteps(settings, batch, Bounces(batch.bounces.data(), count)))
+      if (bounce.survives) batch.active[left++] = bounce.index;
+  }
+  batch.active.resize(left);
+}
+
+}  // namespace
+
+void tracePaths(const PathSettings& settings, std::span<Path> paths, std::vector<PathVertex>* vertices) {
+  thread_local Batch batch;
+  batch.recording = vertices != nullptr;
+  if (batch.recording)
+    for (Path& path : paths) path.handle = batch.recorder.begin(path.identity);
+  batch.active.resize(paths.size());
+  std::iota(batch.active.begin(), batch.active.end(), 0u);
+  for (int depth = 1; !batch.active.empty(); ++depth) {
+    findVertices(settings, paths, batch);
+    findGuidingCells(settings, paths, depth, batch);
+    bounceAll(settings, paths, depth, batch);
+    traceShadowRays(*settings.scene, paths, batch);
+  }
+  if (vertices) batch.recorder.finish(*vertices);
+}
+
+}  // namespace odis::render

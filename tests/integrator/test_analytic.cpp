@@ -1,0 +1,99 @@
+// Scenes whose image is known on paper, for every integrator.
+#include <gtest/gtest.h>
+
+#include "integrator/test_scenes.h"
+
+namespace odis::render {
+namespace {
+
+struct Kind {
+  std::string name;
+  IntegratorKind integrator;
+  GuideKind guide;
+  float bsdfFraction;
+};
+
+// What a failure prints.
+void PrintTo(const Kind& kind, std::ostream* out) {
+  *out << kind.name;
+}
+
+class AnalyticTest : public ::testing::TestWithParam<Kind> {
+ protected:
+  RenderOptions options(int spp) const {
+    RenderOptions o;
+    o.integrator = GetParam().integrator;
+    o.guide = GetParam().guide;
+    o.guideOptions.fixedBsdfFraction = GetParam().bsdfFraction;
+    o.oracleSpp = 4;
+    o.spp = spp;
+    return o;
+  }
+  // The mean over the image is what it must be, within a relative tolerance.
+  static void expectMean(const RenderResult& result, double expected, double relativeTolerance) {
+    double sum = 0;
+    for (const Rgb& c : result.image.color) sum += average(c);
+    EXPECT_NEAR(sum / double(result.image.color.size()), expected, relativeTolerance * expected);
+  }
+};
+
+TEST_P(AnalyticTest, Furnace) {
+  // L = 1 + 0.5 L. Every path carries the geometric series up to where roulette ends it.
+  const auto scene = test::loadScene(
+      test::furnace("<bsdf type=\"diffuse\"><rgb name=\"reflectance\" value=\"0.5\"/></bsdf>"));
+  expectMean(test::renderScene(*scene, options(256)), 2, 0.01);
+}
+
+TEST_P(AnalyticTest, FurnaceOfTwoBounces) {
+  // Depth 3: emission, direct light, one bounce: 1 + 0.5 + 0.25.
+  const auto scene = test::loadScene(
+      test::furnace("<bsdf type=\"diffuse\"><rgb name=\"reflectance\" value=\"0.5\"/></bsdf>"));
+  RenderOptions o = options(256);
+  o.maxDepth = 3;
+  expectMean(test::renderScene(*scene, o), 1.75, 0.005);
+  o.maxDepth = 2;
+  expectMean(test::renderScene(*scene, o), 1.5, 0.005);
+  o.maxDepth = 1;
+  expectMean(test::renderScene(*scene, o), 1, 1e-6);
+}
+
+TEST_P(AnalyticTest, WhiteSky) {
+  // A sphere that absorbs nothing under a sky of radiance one can't be seen.
+  for (const std::string bsdf :
+       {"<bsdf type=\"diffuse\"><rgb name=\"reflectance\" value=\"1\"/></bsdf>",
+        "<bsdf type=\"dielectric\"/>",
+        "<bsdf type=\"conductor\"><string name=\"material\" value=\"none\"/></bsdf>"}) {
+    const auto scene =
+        test::loadScene(test::sensor("origin=\"0,0,4\" target=\"0,0,0\" up=\"0,1,0\"", 40, 12, 12) +
+                        "<shape type=\"sphere\">" + bsdf +
+                        "</shape><emitter type=\"constant\"><rgb name=\"radiance\" value=\"1\"/></emitter>");
+    expectMean(test::renderScene(*scene, options(64)), 1, 0.005);
+  }
+}
+
+TEST_P(AnalyticTest, SphereLightOverAFloor) {
+  // A sphere of radius r and radiance L at height h straight above gives the irradiance pi L (r / h)^2, so a
+  // floor of reflectance 0.5 shows 0.5 L (r / h)^2.
+  const auto scene = test::loadScene(
+      test::sensor("origin=\"0,1,0.001\" target=\"0,0,0\" up=\"0,0,1\"", 0.2f, 4, 4) +
+      "<shape type=\"rectangle\"><transform name=\"to_world\"><scale value=\"10\"/><rotate x=\"1\" "
+      "angle=\"-90\"/></transform>"
+      "<bsdf type=\"diffuse\"><rgb name=\"reflectance\" value=\"0.5\"/></bsdf></shape>"
+      "<shape type=\"sphere\"><point name=\"center\" x=\"0\" y=\"3\" z=\"0\"/><float name=\"radius\" "
+      "value=\"0.5\"/><bsdf type=\"diffuse\"><rgb name=\"reflectance\" value=\"0\"/></bsdf>"
+      "<emitter type=\"area\"><rgb name=\"radiance\" value=\"10\"/></emitter></shape>");
+  expectMean(test::renderScene(*scene, options(256)), 0.5 * 10 * 0.25 / 9, 0.01);
+}
+
+INSTANTIATE_TEST_SUITE_P(Integrators, AnalyticTest,
+                         ::testing::Values(Kind{"path", IntegratorKind::path, GuideKind::histogram, 0},
+                                           Kind{"odis", IntegratorKind::odis, GuideKind::histogram, 0},
+                                           Kind{"odisMostlyMap", IntegratorKind::odis, GuideKind::histogram,
+                                                0.15f},
+                                           Kind{"ppg", IntegratorKind::ppg, GuideKind::histogram, 0},
+                                           Kind{"restir", IntegratorKind::restir, GuideKind::histogram, 0},
+                                           Kind{"oracle", IntegratorKind::odis, GuideKind::oracle, 0}),
+                         [](const auto& info) { return info.param.name; });
+
+}  // namespace
+}  // namespace odis::render

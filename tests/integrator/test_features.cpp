@@ -1,0 +1,100 @@
+// Features of the guide: what an image says of the decisions at the vertices that it shows.
+#include "render/path/features.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <set>
+
+#include "integrator/test_scenes.h"
+
+namespace odis::render {
+namespace {
+
+RenderOptions withFeatures() {
+  RenderOptions options;
+  options.spp = 4;
+  options.features = options.guideFeatures = true;
+  return options;
+}
+
+TEST(GuideFeatures, SayWhatWasDecided) {
+  const auto scene = test::loadScene(test::indirectRoom(32));
+  RenderOptions options = withFeatures();
+  options.guideOptions.fixedBsdfFraction = 0.4f;
+  options.guideOptions.floor = 1;
+  const RenderResult result = test::renderScene(*scene, options);
+  const RenderedImage& frame = result.image;
+  ASSERT_EQ(frame.guideCell.size(), 1024u);
+  int known = 0, asTold = 0;
+  std::set<float> cells;
+  for (size_t i = 0; i < 1024; ++i) {
+    if (frame.guideCell[i] < 0) {
+      EXPECT_EQ(frame.guideBsdfFraction[i], 1);
+      EXPECT_EQ(frame.guideSurvival[i], 1);
+      continue;
+    }
+    ++known;
+    cells.insert(frame.guideCell[i]);
+    EXPECT_LT(frame.guideCell[i], float(result.stats.cells));
+    // More than that only where the back of the lamp is seen, which scatters nothing.
+    asTold += std::abs(frame.guideBsdfFraction[i] - 0.4f) < 1e-6f;
+    EXPECT_GE(frame.guideBsdfFraction[i], 0.4f - 1e-6f);
+    EXPECT_NEAR(frame.guideEntropy[i], 8, 1e-3f) << "a map that is all floor is even";
+    EXPECT_GE(frame.guideSurvival[i], 0.3f);
+    EXPECT_LE(frame.guideSurvival[i], 1);
+    EXPECT_GE(frame.guideSamples[i], 2);
+  }
+  EXPECT_GT(known, 1000);
+  EXPECT_GT(asTold, 980);
+  EXPECT_GT(cells.size(), 50u);
+}
+
+TEST(GuideFeatures, DifferWhereLightDoes) {
+  const auto scene = test::loadScene(test::indirectRoom(32));
+  const RenderedImage frame = test::renderScene(*scene, withFeatures()).image;
+  const auto [least, most] = std::minmax_element(frame.guideEntropy.begin(), frame.guideEntropy.end());
+  EXPECT_GT(*least, 0);
+  EXPECT_LT(*least, *most - 0.5f);
+  EXPECT_LE(*most, 8);
+  EXPECT_LT(*std::min_element(frame.guideBsdfFraction.begin(), frame.guideBsdfFraction.end()), 0.9f);
+}
+
+// What is made only when asked for changes nothing else.
+TEST(GuideFeatures, AreMissingUnlessAskedFor) {
+  const auto scene = test::loadScene(test::indirectRoom(16));
+  RenderOptions options = withFeatures();
+  const RenderedImage with = test::renderScene(*scene, options).image;
+  options.guideFeatures = false;
+  const RenderedImage without = test::renderScene(*scene, options).image;
+  EXPECT_FALSE(with.guideBsdfFraction.empty());
+  EXPECT_TRUE(without.guideBsdfFraction.empty() && without.guideEntropy.empty());
+  EXPECT_TRUE(without.guideSurvival.empty() && without.guideCell.empty());
+  EXPECT_EQ(with.color, without.color);
+  EXPECT_EQ(with.depth, without.depth);
+}
+
+TEST(GuideFeatures, AreMissingWithoutAGuide) {
+  const auto scene = test::loadScene(test::indirectRoom(8));
+  RenderOptions options = withFeatures();
+  options.integrator = IntegratorKind::path;
+  const RenderedImage frame = test::renderScene(*scene, options).image;
+  EXPECT_EQ(frame.depth.size(), 64u);
+  EXPECT_TRUE(frame.guideBsdfFraction.empty() && frame.guideCell.empty());
+}
+
+TEST(GuideFeatures, EntropyCountsBits) {
+  std::array<uint16_t, kMapTexels> texels;
+  texels.fill(7);
+  EXPECT_NEAR(entropy(texels.data()), 8, 1e-5f);
+  texels.fill(0);
+  texels[3] = 60000;
+  EXPECT_NEAR(entropy(texels.data()), 0, 1e-5f);
+  texels[200] = 60000;
+  EXPECT_NEAR(entropy(texels.data()), 1, 1e-5f);
+}
+
+}  // namespace
+}  // namespace odis::render

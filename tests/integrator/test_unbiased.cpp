@@ -1,0 +1,160 @@
+// Guided images have the same expectation as path-traced ones, whatever the maps say.
+#include <gtest/gtest.h>
+
+#include <random>
+
+#include "integrator/same_expectation.h"
+#include "integrator/test_scenes.h"
+#include "odis/models/model_parts.h"
+
+namespace odis::render {
+namespace {
+
+using test::PixelStatistics, test::renderSeeds;
+
+// Maps that a broken or malicious model might make.
+class AdversarialModel : public DirectionModel {
+ public:
+  enum class Kind { random, oneHot, zero, notANumber, inverted };
+  explicit AdversarialModel(Kind kind) : m_kind(kind) {}
+  DirectionDistribution predict(const CellChain& chain, const DirectionDistribution*) const override {
+    const CellStatistics& cell = *chain[0];
+    DirectionDistribution result;
+    std::mt19937 engine(uint32_t(cell.count) * 7919u + uint32_t(cell.level));
+    const float most = *std::max_element(cell.histogram.begin(), cell.histogram.end());
+    const uint32_t hot = engine() % kMapTexels;
+    for (int t = 0; t < kMapTexels; ++t) {
+      result.inverseCosine[t] = 1;
+      switch (m_kind) {
+        case Kind::random:
+          result.probability[t] = float(engine() % 1000) / 1000;
+          break;
+        case Kind::oneHot:
+          result.probability[t] = uint32_t(t) == hot ? 1 : 0;
+          break;
+        case Kind::zero:
+          result.probability[t] = 0;
+          break;
+        case Kind::notANumber:
+          result.probability[t] = engine() % 4 ? 1 : NAN;
+          break;
+        case Kind::inverted:
+          result.probability[t] = most - cell.histogram[t];
+          break;
+      }
+    }
+    return result;
+  }
+
+ private:
+  Kind m_kind;
+};
+
+struct IndirectRoom {
+  static std::string text() { return test::indirectRoom(16); }
+  static constexpr int kMaxDepth = 6;
+};
+class UnbiasedTest : public test::AgainstPath<IndirectRoom> {};
+
+constexpr int kTests = 17;
+
+TEST_F(UnbiasedTest, Histogram) {
+  expectUnbiased(guidedOptions(), 96, kTests);
+}
+
+TEST_F(UnbiasedTest, FirstBounceOnly) {
+  RenderOptions options = guidedOptions();
+  options.guideBounces = 1;
+  expectUnbiased(options, 96, kTests);
+}
+
+TEST_F(UnbiasedTest, FractionalPilotAndIndependentSamples) {
+  RenderOptions options = guidedOptions();
+  options.pilotSpp = 0.25;
+  options.sampler = SamplerKind::independent;
+  expectUnbiased(options, 96, kTests);
+}
+
+TEST_F(UnbiasedTest, Oracle) {
+  RenderOptions options = guidedOptions();
+  options.guide = GuideKind::oracle;
+  options.oracleSpp = 4;
+  expectUnbiased(options, 96, kTests);
+}
+
+TEST_F(UnbiasedTest, AdversarialMaps) {
+  using Kind = AdversarialModel::Kind;
+  for (const Kind kind : {Kind::random, Kind::oneHot, Kind::zero, Kind::notANumber, Kind::inverted}) {
+    RenderOptions options = guidedOptions();
+    options.model = makeModel(std::make_shared<AdversarialModel>(kind), Model::builtIn().parts().lights);
+    options.guideOptions.fixedBsdfFraction = 0.3f;
+    options.refineSpp = 1;
+    // Twice as many seeds as elsewhere: where a map hardly looks at the light, tails are heavy.
+    expectUnbiased(options, 192, kTests);
+  }
+}
+
+TEST_F(UnbiasedTest, AsManySamplesEverywhere) {
+  RenderOptions options = guidedOptions();
+  options.samples = SampleSpread::even;
+  expectUnbiased(options, 96, kTests);
+}
+
+TEST_F(UnbiasedTest, AdaptivePathTracing) {
+  RenderOptions options = guidedOptions();
+  options.integrator = IntegratorKind::path;
+  options.samples = SampleSpread::adaptive;
+  options.sampler = SamplerKind::independent;
+  expectUnbiased(options, 192, kTests);
+}
+
+TEST_F(UnbiasedTest, NeverRefined) {
+  RenderOptions options = guidedOptions();
+  options.refineSpp = 0;
+  expectUnbiased(options, 96, kTests);
+}
+
+TEST_F(UnbiasedTest, RouletteByThroughput) {
+  RenderOptions options = guidedOptions();
+  options.roulette = RouletteKind::throughput;
+  options.rrDepth = 2;
+  expectUnbiased(options, 96, kTests);
+}
+
+TEST_F(UnbiasedTest, NothingForEndedPaths) {
+  RenderOptions options = guidedOptions();
+  options.guideOptions.controlVariate = false;
+  expectUnbiased(options, 96, kTests);
+}
+
+TEST_F(UnbiasedTest, EveryShadowRay) {
+  RenderOptions options = guidedOptions();
+  options.shadowRays = ShadowRayKind::all;
+  expectUnbiased(options, 96, kTests);
+}
+
+// Cells so small that many vertices have none: paths change from one roulette to the other, which must not
+// decide twice by the same number.
+TEST_F(UnbiasedTest, RouletteWhereCellsAreMissing) {
+  RenderOptions options = guidedOptions();
+  options.guideOptions.cellsPerDiagonal = 300;
+  options.refineSpp = 0;
+  options.rrDepth = 1;
+  expectUnbiased(options, 192, kTests);
+}
+
+// The test itself must be able to fail: three per cent of energy too much are found.
+TEST_F(UnbiasedTest, ABiasIsFound) {
+  PixelStatistics biased = renderSeeds(*s_scene, guidedOptions(), 96, 1);
+  for (Rgbd& c : biased.sum) c *= 1.03;
+  for (Rgbd& c : biased.squares) c *= 1.03 * 1.03;
+  double difference = 0, variance = 0;
+  for (size_t i = 0; i < biased.sum.size(); ++i) {
+    difference += biased.mean(i, 1) - s_path.mean(i, 1);
+    variance += biased.varianceOfMean(i, 1) + s_path.varianceOfMean(i, 1);
+  }
+  EXPECT_GT(std::abs(difference) / std::sqrt(variance), 3.3);
+}
+
+}  // namespace
+}  // namespace odis::render

@@ -1,0 +1,163 @@
+// Images whose lights are chosen by what was learned have the same expectation as path-traced ones.
+#include <gtest/gtest.h>
+
+#include <random>
+
+#include "integrator/same_expectation.h"
+#include "integrator/test_scenes.h"
+#include "odis/models/model_parts.h"
+
+namespace odis::render {
+namespace {
+
+// A room with lamps of many kinds, some behind a wall, under a sky: lights that are hit and lights that can't
+// be.
+std::string lampRoom(int size) {
+  const auto lamp = [](const std::string& place, const std::string& scale, const std::string& radiance) {
+    return "<shape type=\"rectangle\"><transform name=\"to_world\"><scale value=\"" + scale +
+           "\"/><rotate x=\"1\" angle=\"90\"/><translate " + place +
+           "/></transform><emitter type=\"area\"><rgb name=\"radiance\" value=\"" + radiance +
+           "\"/></emitter></shape>";
+  };
+  return test::sensor("origin=\"0,1,3.4\" target=\"0,0,0\" up=\"0,1,0\"", 45, size, size) +
+         "<shape type=\"rectangle\"><transform name=\"to_world\"><scale value=\"3\"/><rotate x=\"1\" "
+         "angle=\"-90\"/>"
+         "<translate y=\"-0.6\"/></transform><bsdf type=\"diffuse\"/></shape>"
+         "<shape type=\"rectangle\"><transform name=\"to_world\"><translate x=\"0.3\" "
+         "z=\"-0.4\"/></transform>"
+         "<bsdf type=\"twosided\"><bsdf type=\"roughconductor\"><float name=\"alpha\" "
+         "value=\"0.3\"/></bsdf></bsdf></shape>"
+         "<shape type=\"sphere\"><point name=\"center\" x=\"-0.6\" y=\"-0.2\" z=\"0.3\"/><float "
+         "name=\"radius\" "
+         "value=\"0.35\"/><bsdf type=\"plastic\"/></shape>" +
+         lamp("x=\"-1\" y=\"1\"", "0.4", "3 3 2") + lamp("x=\"1\" y=\"1\" z=\"-1.2\"", "0.2", "20 10 5") +
+         lamp("x=\"0\" y=\"0.8\" z=\"-1.5\"", "0.5", "4 4 8") +
+         "<emitter type=\"point\"><point name=\"position\" x=\"1.2\" y=\"0.3\" z=\"0.5\"/><rgb "
+         "name=\"intensity\" "
+         "value=\"0.4\"/></emitter><emitter type=\"constant\"><rgb name=\"radiance\" "
+         "value=\"0.3\"/></emitter>";
+}
+
+// A room that only part of the sky looks into, through what is missing of its roof; the sky falls into
+// regions.
+std::string openRoom(int size) {
+  const auto wall = [](const std::string& transform) {
+    return "<shape type=\"rectangle\"><transform name=\"to_world\"><scale value=\"2\"/>" + transform +
+           "</transform><bsdf type=\"twosided\"><bsdf type=\"diffuse\"/></bsdf></shape>";
+  };
+  return test::sensor("origin=\"0,0.4,1.9\" target=\"0,0,0\" up=\"0,1,0\"", 60, size, size) +
+         wall("<rotate x=\"1\" angle=\"-90\"/><translate y=\"-1\"/>") +
+         wall("<rotate x=\"1\" angle=\"90\"/><translate y=\"1\" z=\"-2.6\"/>") +
+         wall("<translate z=\"-2\"/>") + wall("<translate z=\"2\"/>") +
+         wall("<rotate y=\"1\" angle=\"90\"/><translate x=\"-2\"/>") +
+         wall("<rotate y=\"1\" angle=\"-90\"/><translate x=\"2\"/>") +
+         "<shape type=\"sphere\"><point name=\"center\" x=\"-0.4\" y=\"-0.4\" z=\"-0.6\"/><float "
+         "name=\"radius\" "
+         "value=\"0.6\"/><bsdf type=\"roughconductor\"><float name=\"alpha\" value=\"0.3\"/></bsdf></shape>"
+         "<emitter type=\"sunsky\"><vector name=\"sun_direction\" x=\"0.3\" y=\"0.6\" z=\"0.5\"/>"
+         "<float name=\"sky_scale\" value=\"10\"/><float name=\"sun_scale\" value=\"1\"/>"
+         "<float name=\"sun_radius_scale\" value=\"20\"/></emitter>"
+         "<emitter type=\"point\"><point name=\"position\" x=\"1.2\" y=\"0.3\" z=\"0.5\"/>"
+         "<rgb name=\"intensity\" value=\"0.2\"/></emitter>";
+}
+
+// Tables for no reason, and values that are none.
+class AdversarialLights : public LightModel {
+ public:
+  double reliability(const CellStatistics& cell) const override { return cell.count / (cell.count + 20); }
+  LightSquares predict(const CellChain& chain, const LightSquares*, uint32_t) const override {
+    const CellStatistics& cell = *chain[0];
+    LightSquares result{};
+    std::mt19937 engine(uint32_t(cell.count) * 7919u + uint32_t(cell.level));
+    const uint32_t kind = engine() % 4;
+    for (double& square : result)
+      square = kind == 0           ? (engine() % 8 == 0 ? 1.0 : 0.0)
+               : engine() % 8 == 0 ? NAN
+                                   : double(engine() % 1000);
+    if (kind == 1) result[engine() % 4] = INFINITY;
+    if (kind == 2) result[engine() % 4] = -1;
+    return result;
+  }
+};
+
+// All the same: the first group and no other.
+class StubbornLights : public LightModel {
+ public:
+  double reliability(const CellStatistics& cell) const override { return cell.count / (cell.count + 20); }
+  LightSquares predict(const CellChain&, const LightSquares*, uint32_t) const override { return {1}; }
+};
+
+struct LampRoom {
+  static std::string text() { return lampRoom(16); }
+  static constexpr int kMaxDepth = 5;
+};
+struct OpenRoom {
+  static std::string text() { return openRoom(16); }
+  static constexpr int kMaxDepth = 4;
+};
+
+template <class Scene>
+class UnbiasedLights : public test::AgainstPath<Scene> {
+ protected:
+  static constexpr int kTests = 7;
+  static RenderOptions guidedOptions() {
+    RenderOptions options = test::AgainstPath<Scene>::guidedOptions();
+    options.guideOptions.cellsPerDiagonal = 3;  // so that the few samples are enough to be believed
+    return options;
+  }
+  static void expectLearnedUnbiased() {
+    test::AgainstPath<Scene>::expectUnbiased(guidedOptions(), 128, kTests);
+  }
+  static void expectAdversarialUnbiased() {
+    RenderOptions options = guidedOptions();
+    options.model = makeModel(Model::builtIn().parts().directions, std::make_shared<AdversarialLights>());
+    options.refineSpp = 1;
+    test::AgainstPath<Scene>::expectUnbiased(options, 256, kTests);
+  }
+  static void expectStubbornUnbiased() {
+    RenderOptions options = guidedOptions();
+    options.model = makeModel(Model::builtIn().parts().directions, std::make_shared<StubbornLights>());
+    options.refineSpp = 1;
+    options.pilotWeight = 0;
+    test::AgainstPath<Scene>::expectUnbiased(options, 256, kTests);
+  }
+};
+using UnbiasedLightsTest = UnbiasedLights<LampRoom>;
+using UnbiasedRegionsTest = UnbiasedLights<OpenRoom>;
+
+TEST_F(UnbiasedLightsTest, Learned) {
+  expectLearnedUnbiased();
+}
+
+TEST_F(UnbiasedLightsTest, Hierarchy) {
+  RenderOptions options = guidedOptions();
+  options.lights = LightChoiceKind::hierarchy;
+  expectUnbiased(options, 128, kTests);
+}
+
+// Lamps are mostly left to the directions that hit them: fails if their densities there were those of another
+// place, or those without what was learned.
+TEST_F(UnbiasedLightsTest, Stubborn) {
+  expectStubbornUnbiased();
+}
+
+TEST_F(UnbiasedLightsTest, Adversarial) {
+  expectAdversarialUnbiased();
+}
+
+TEST_F(UnbiasedRegionsTest, Learned) {
+  expectLearnedUnbiased();
+}
+
+// Next-event estimation mostly looks into a sixteenth of the sky: fails if a direction's density were that of
+// another region.
+TEST_F(UnbiasedRegionsTest, Stubborn) {
+  expectStubbornUnbiased();
+}
+
+TEST_F(UnbiasedRegionsTest, Adversarial) {
+  expectAdversarialUnbiased();
+}
+
+}  // namespace
+}  // namespace odis::render
