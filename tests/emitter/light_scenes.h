@@ -2,11 +2,10 @@
 #pragma once
 
 #include <cmath>
-#include <random>
 #include <vector>
 
 #include "render/emitter/light_sampler.h"
-#include "render/math/warp.h"
+#include "support/random.h"
 
 namespace odis::test {
 
@@ -15,18 +14,6 @@ using namespace odis::render;
 // For lights that are not divided into regions, where it does not matter how they are sampled.
 inline const Vec2 kMiddle(0.5f, 0.5f);
 inline const Vec3 kUp(0, 0, 1);
-
-class Random {
- public:
-  explicit Random(uint64_t seed) : m_engine(seed) {}
-  float operator()() { return std::min(m_uniform(m_engine), kOneMinusEpsilon); }
-  Vec3 inCube(float half) { return Vec3((*this)() - 0.5f, (*this)() - 0.5f, (*this)() - 0.5f) * (2 * half); }
-  Vec3 direction() { return squareToSphere({(*this)(), (*this)()}); }
-
- private:
-  std::mt19937_64 m_engine;
-  std::uniform_real_distribution<float> m_uniform{0.0f, 1.0f};
-};
 
 // Boxes of many sizes and powers, flat and round, in clusters and apart; some of them black.
 inline std::vector<LightBounds> someLights(int count, Random& random) {

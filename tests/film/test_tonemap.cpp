@@ -1,6 +1,6 @@
 #include <gtest/gtest.h>
 
-#include "render/film/tonemap.h"
+#include "render/image/tonemap.h"
 
 namespace odis::render {
 namespace {

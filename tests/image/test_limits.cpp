@@ -3,33 +3,13 @@
 #include <sys/resource.h>
 
 #include <cstring>
-#include <fstream>
 
-#include "render/image/image.h"
+#include "image/files.h"
 #include "render/image/write.h"
 #include "support/temporary_folder.h"
 
 namespace odis::render {
 namespace {
-
-void write(const std::string& path, const std::string& bytes) {
-  std::ofstream(path, std::ios::binary) << bytes;
-}
-
-std::string bytesOf(const std::string& path) {
-  std::ifstream stream(path, std::ios::binary);
-  return {std::istreambuf_iterator<char>(stream), {}};
-}
-
-// The message of the error; "" if the image is read.
-std::string complaint(const std::string& path) {
-  try {
-    Image::read(path, true, {});
-    return "";
-  } catch (const SceneError& error) {
-    return error.what();
-  }
-}
 
 template <class T>
 std::string raw(const T& value) {
@@ -52,15 +32,15 @@ TEST(ImageLimits, PixelsThatTheFileCannotHold) {
   tga[2] = 2;
   tga[13] = tga[15] = 64;
   tga[16] = 32;
-  write(path, tga + "abcd");
+  writeBytes(path, tga + "abcd");
   EXPECT_NE(complaint(path).find("16384 x 16384 pixels, more than the file can hold"), std::string::npos);
   // A bitmap alike.
-  write(path, "BM" + raw(uint32_t(58)) + raw(uint32_t(0)) + raw(uint32_t(54)) + raw(uint32_t(40)) +
-                  raw(int32_t(16384)) + raw(int32_t(16384)) + raw(uint16_t(1)) + raw(uint16_t(24)) +
-                  std::string(24, '\0') + "abcd");
+  writeBytes(path, "BM" + raw(uint32_t(58)) + raw(uint32_t(0)) + raw(uint32_t(54)) + raw(uint32_t(40)) +
+                       raw(int32_t(16384)) + raw(int32_t(16384)) + raw(uint16_t(1)) + raw(uint16_t(24)) +
+                       std::string(24, '\0') + "abcd");
   EXPECT_NE(complaint(path).find("more than the file can hold"), std::string::npos);
   // A scan line of HDR costs no more than itself.
-  write(path, "#?RADIANCE\n\n-Y 16384 +X 16384\n\2\2\100");
+  writeBytes(path, "#?RADIANCE\n\n-Y 16384 +X 16384\n\2\2\100");
   EXPECT_NE(complaint(path).find("ends early"), std::string::npos);
   EXPECT_LT(peakMemory() - before, uint64_t(64) << 20);
 }
@@ -85,7 +65,7 @@ class ExrLimits : public testing::Test {
                   std::string("tiles\0tiledesc\0", 15) + raw(uint32_t(9)) + raw(width) + raw(height) + '\0');
   }
   std::string complaintNow() const {
-    write(m_path, m_file);
+    writeBytes(m_path, m_file);
     return complaint(m_path);
   }
 

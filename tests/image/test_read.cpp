@@ -4,12 +4,11 @@
 #include <zlib.h>
 
 #include <cstdio>  // for jpeglib.h
-#include <fstream>
 #include <random>
 
 #include <jpeglib.h>
 
-#include "render/image/image.h"
+#include "image/files.h"
 #include "render/image/srgb.h"
 #include "render/image/write.h"
 #include "support/temporary_folder.h"
@@ -18,25 +17,6 @@ namespace odis::render {
 namespace {
 
 const SourceLocation kAt{"scene.xml", 12, 3};
-
-std::string bytesOf(const std::string& path) {
-  std::ifstream stream(path, std::ios::binary);
-  return {std::istreambuf_iterator<char>(stream), {}};
-}
-
-void writeBytes(const std::string& path, const std::string& bytes) {
-  std::ofstream(path, std::ios::binary) << bytes;
-}
-
-// What Image::read says of a file; "" if it reads it.
-std::string complaint(const std::string& path) {
-  try {
-    Image::read(path, true, kAt);
-  } catch (const SceneError& e) {
-    return e.what();
-  }
-  return "";
-}
 
 // A greyscale PNG of 16 bits, which stb can not write.
 std::string png16(int width, int height, const std::vector<uint16_t>& values) {
@@ -145,7 +125,7 @@ TEST(ReadImage, JpegOfGreyAndOfInks) {
     const float expected = channels == 1 ? 200.0f / 255 : 200.0f / 255 * 200.0f / 255;
     EXPECT_NEAR(image->rgb(3, 5).y, expected, 1.5f / 255);
     // Versions of the library word it differently.
-    EXPECT_NE(complaint(folder.path("cut.jpg")).find("remature end"), std::string::npos);
+    EXPECT_NE(complaint(folder.path("cut.jpg"), kAt).find("remature end"), std::string::npos);
   }
 }
 
@@ -244,7 +224,7 @@ TEST(ReadImage, GammaReplacesTheCurve) {
 TEST(ReadImage, ComplaintsNameTheFileThePlaceAndTheReason) {
   const test::TemporaryFolder folder;
   const auto expect = [&](const std::string& name, const std::string& reason) {
-    const std::string text = complaint(folder.path(name));
+    const std::string text = complaint(folder.path(name), kAt);
     EXPECT_NE(text.find("scene.xml:12:3"), std::string::npos) << text;
     EXPECT_NE(text.find(name), std::string::npos) << text;
     EXPECT_NE(text.find(reason), std::string::npos) << text;

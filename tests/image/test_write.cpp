@@ -5,9 +5,9 @@
 #include <csignal>
 #include <fstream>
 
-#include "render/film/tonemap.h"
+#include "render/files/replace_file.h"
 #include "render/image/image.h"
-#include "render/image/replace_file.h"
+#include "render/image/tonemap.h"
 #include "render/image/write.h"
 #include "support/temporary_folder.h"
 

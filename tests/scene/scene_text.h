@@ -7,7 +7,7 @@
 #include <fstream>
 #include <string>
 
-#include "render/scene/xml.h"
+#include "render/xml/xml.h"
 
 namespace odis::test {
 

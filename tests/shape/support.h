@@ -8,11 +8,9 @@
 #include <filesystem>
 #include <fstream>
 #include <memory>
-#include <random>
 #include <string>
 #include <vector>
 
-#include "render/math/warp.h"
 #include "render/scene/scene.h"
 #include "render/shape/affine.h"
 #include "render/shape/cylinder.h"
@@ -20,6 +18,7 @@
 #include "render/shape/mesh.h"
 #include "render/shape/plain_meshes.h"
 #include "render/shape/sphere.h"
+#include "support/random.h"
 
 namespace odis::test {
 
@@ -59,21 +58,6 @@ inline Matrix4 translation(const Vec3& t) {
   m.setTranslation(t);
   return m;
 }
-
-class Random {
- public:
-  explicit Random(uint64_t seed) : m_engine(seed) {}
-  float operator()() { return std::min(m_uniform(m_engine), kOneMinusEpsilon); }
-  Vec2 pair() {
-    const float x = (*this)();
-    return {x, (*this)()};
-  }
-  Vec3 direction() { return squareToSphere(pair()); }
-
- private:
-  std::mt19937_64 m_engine;
-  std::uniform_real_distribution<float> m_uniform{0.0f, 1.0f};
-};
 
 // A file in a folder of its own, removed at the end.
 class TemporaryFile {

@@ -4,16 +4,16 @@
 #include <algorithm>
 #include <cmath>
 
-#include "render/scene/names.h"
+#include "render/xml/names.h"
 
 namespace odis::render {
 namespace {
 
-struct Dielectric {
+struct NamedDielectric {
   const char* name;
   float ior;
 };
-constexpr Dielectric kDielectrics[] = {
+constexpr NamedDielectric kNamedDielectrics[] = {
     {"vacuum", 1.0f},      {"helium", 1.000036f},        {"hydrogen", 1.000132f},
     {"air", 1.000277f},    {"carbon dioxide", 1.00045f}, {"water", 1.3330f},
     {"acetone", 1.36f},    {"ethanol", 1.361f},          {"carbon tetrachloride", 1.461f},
@@ -37,7 +37,7 @@ float readIor(const Properties& properties, const std::string& name, const std::
   }
   const std::string material = lowerCase(properties.string(name, fallback));
   std::string known;
-  for (const Dielectric& candidate : kDielectrics) {
+  for (const NamedDielectric& candidate : kNamedDielectrics) {
     if (material == candidate.name) return candidate.ior;
     known += std::string(known.empty() ? "\"" : ", \"") + candidate.name + "\"";
   }

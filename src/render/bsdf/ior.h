@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "render/scene/properties.h"
+#include "render/xml/properties.h"
 
 namespace odis::render {
 

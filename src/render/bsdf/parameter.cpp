@@ -5,7 +5,7 @@
 #include "render/bsdf/fresnel.h"
 #include "render/bsdf/ior.h"
 #include "render/scene/builder.h"
-#include "render/scene/names.h"
+#include "render/xml/names.h"
 
 namespace odis::render {
 

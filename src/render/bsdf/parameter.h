@@ -4,8 +4,8 @@
 
 #include "render/bsdf/bsdf.h"
 #include "render/bsdf/microfacet.h"
-#include "render/scene/properties.h"
 #include "render/texture/texture.h"
+#include "render/xml/properties.h"
 
 namespace odis::render {
 

@@ -17,8 +17,8 @@ Perturbed::Turned Perturbed::turn(const SurfacePoint& at, const Vec3& wo) const 
   Vec3 n = normal(at);
   if (!isFinite(n)) n = Vec3(0, 0, 1);
   if (m_options.flipInvalidNormals && wo.z * dot(wo, n) <= 0) n = {-n.x, -n.y, n.z};
-  Turned result{Frame::fromTangent(n, tangent(at)), at, 0};
-  const Frame& local = result.frame;
+  Turned result{CoordinateFrame::fromTangent(n, tangent(at)), at, 0};
+  const CoordinateFrame& local = result.frame;
   result.at.shading = {at.shading.toWorld(local.s), at.shading.toWorld(local.t), at.shading.toWorld(local.n)};
   if (m_options.useShadowing) {
     const float c2 = n.z * n.z;

@@ -2,8 +2,8 @@
 #pragma once
 
 #include "render/bsdf/bsdf.h"
-#include "render/scene/properties.h"
 #include "render/texture/texture.h"
+#include "render/xml/properties.h"
 
 namespace odis::render {
 
@@ -24,9 +24,9 @@ class Perturbed : public Bsdf {
 
  private:
   struct Turned {
-    Frame frame;      // of the perturbed surface, in coordinates of the original shading frame
-    SurfacePoint at;  // with the perturbed shading frame
-    float alpha2;     // squared roughness of the terminator's shadowing
+    CoordinateFrame frame;  // of the perturbed surface, in coordinates of the original shading frame
+    SurfacePoint at;        // with the perturbed shading frame
+    float alpha2;           // squared roughness of the terminator's shadowing
   };
   // The unit normal that the texture asks for, in the original shading frame.
   virtual Vec3 normal(const SurfacePoint& at) const = 0;

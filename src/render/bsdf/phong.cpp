@@ -30,7 +30,7 @@ class Phong final : public Bsdf {
       return finishSample(wi, evaluate(at, n, wo, wi), Lobe::smooth);
     }
     const float c = std::pow(u.x, 1 / (n + 1)), s = safeSqrt(1 - c * c), phi = 2 * kPi * u.y;
-    const Vec3 wi = Frame(reflect(wo)).toWorld({s * std::cos(phi), s * std::sin(phi), c});
+    const Vec3 wi = CoordinateFrame(reflect(wo)).toWorld({s * std::cos(phi), s * std::sin(phi), c});
     return finishSample(wi, evaluate(at, n, wo, wi), glossyLobe(n));
   }
 

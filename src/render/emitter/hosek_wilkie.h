@@ -15,8 +15,8 @@ constexpr float kCieYIntegral = 106.7502594f;  // nm, of the observer's curve y
 extern const float kSkyShape[kTurbidities][kAlbedos][kControlPoints][3][kShapeParameters];
 extern const float kSkyRadiance[kTurbidities][kAlbedos][kControlPoints][3];
 
-// Mean radiance of the sun's disc at the elevations 90 (k / 45)^3 degrees, spectral, W/(m^2 sr nm), weighed to
-// linear RGB; below 0 where its colour is outside of RGB.
+// Mean radiance of the sun's disc at the elevations 90 (k / 45)^3 degrees, spectral, W/(m^2 sr nm), weighed
+// to linear RGB; below 0 where its colour is outside of RGB.
 constexpr int kSunKnots = 46;
 extern const float kSunRadiance[kTurbidities][kSunKnots][3];
 

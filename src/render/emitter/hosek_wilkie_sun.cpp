@@ -1,9 +1,9 @@
 // The sun of Hošek and Wilkie, "Adding a Solar-Radiance Function to the Hošek-Wilkie Skylight Model", 2013,
 // tabulated: at the ends of the 45 pieces of the authors' spectral data set (solarDatasets of
-// ArHosekSkyModelData_Spectral.h, https://cgg.mff.cuni.cz/projects/SkylightModelling/), averaged over the disc
-// with their limbDarkeningDatasets, and turned into linear RGB by the weights that Mitsuba 3 uses: the mean over
-// the 11 wavelengths of radiance times the CIE 1931 observer's curves in the primaries of ITU-R BT.709, times
-// 467.069 / 106.75. The data set is theirs, under this licence:
+// ArHosekSkyModelData_Spectral.h, https://cgg.mff.cuni.cz/projects/SkylightModelling/), averaged over the
+// disc with their limbDarkeningDatasets, and turned into linear RGB by the weights that Mitsuba 3 uses: the
+// mean over the 11 wavelengths of radiance times the CIE 1931 observer's curves in the primaries of ITU-R
+// BT.709, times 467.069 / 106.75. The data set is theirs, under this licence:
 //
 // Copyright (c) 2012 - 2013, Lukas Hosek and Alexander Wilkie
 // All rights reserved.

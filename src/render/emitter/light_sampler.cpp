@@ -13,8 +13,8 @@ constexpr float kUniformShare = 0.1f;
 
 // How many emitters outside of the tree are groups of their own.
 constexpr uint32_t kMostInfiniteGroups = 8;
-// Environments have grids of at most so many columns and rows, and so many groups are left to the tree if it has the
-// lights.
+// Environments have grids of at most so many columns and rows, and so many groups are left to the tree if
+// it has the lights.
 constexpr uint32_t kFinestGrid = 4, kTreeGroups = 8;
 
 // No weight is more than this, so that sums can be kept.
@@ -48,7 +48,7 @@ LightSampler::LightSampler(const std::vector<const Emitter*>& emitters)
     m_infiniteIrradiance += weights.back();
   }
   divide(uint32_t(lights.size()));
-  m_tree = LightTree(lights, kMostLightGroups - m_infiniteGroups);
+  m_tree = LightTree(lights, kMaxLightGroups - m_infiniteGroups);
   if (m_infinite.empty()) return;
 
   const float even = 1 / float(weights.size());
@@ -71,7 +71,7 @@ void LightSampler::divide(uint32_t lights) {
   uint32_t divisible = 0;
   for (const uint32_t emitter : m_infinite) divisible += m_emitters[emitter]->invertible();
   // The finest grid that leaves some groups to the lights of the tree.
-  const uint32_t most = kMostLightGroups - std::min(lights, kTreeGroups);
+  const uint32_t most = kMaxLightGroups - std::min(lights, kTreeGroups);
   m_side = kFinestGrid;
   while (m_side > 1 && count + divisible * (regions() - 1) > most) m_side /= 2;
   if (count > kMostInfiniteGroups) m_side = 1;
@@ -103,11 +103,12 @@ uint32_t LightSampler::drawRegion(const LightReference& ref, float probability, 
   const LearnedLights& learned = ref.learned;
   const float* cdf = learned.cdf + m_groupOf[emitter];
   // What every region gets, whatever was learned of it.
-  const float even = (1 - learned.share) * probability / float(regions());
+  const float even = (1 - learned.fraction) * probability / float(regions());
   const auto weight = [&](uint32_t first, uint32_t count) {
-    return float(count) * even + learned.share * (cdf[first + count] - cdf[first]);
+    return float(count) * even + learned.fraction * (cdf[first + count] - cdf[first]);
   };
-  // Draws one of the pieces of `size` regions each, as many as the grid has columns, from the region `first` on.
+  // Draws one of the pieces of `size` regions each, as many as the grid has columns, from the region
+  // `first` on.
   const auto draw = [&](uint32_t first, uint32_t size, float& x) {
     x *= weight(first, m_side * size);
     uint32_t piece = 0;
@@ -142,8 +143,8 @@ float LightSampler::withinGroup(const LightReference& ref, const Emitter& emitte
 float LightSampler::mixed(const LearnedLights& learned, float probability, uint32_t group,
                           float withinGroup) {
   if (!(probability > 0)) return 0;
-  return (1 - learned.share) * probability +
-         learned.share * (learned.cdf[group + 1] - learned.cdf[group]) * withinGroup;
+  return (1 - learned.fraction) * probability +
+         learned.fraction * (learned.cdf[group + 1] - learned.cdf[group]) * withinGroup;
 }
 
 LightSampler::Choice LightSampler::drawFromAll(const LightReference& ref, float u) const {
@@ -181,7 +182,7 @@ LightSampler::Choice LightSampler::drawFromGroup(const LightReference& ref, uint
 LightSampler::Choice LightSampler::sample(const LightReference& ref, float uChoice, const Vec2& u) const {
   const LearnedLights& learned = ref.learned;
   Choice choice;
-  if (!(learned.share > 0)) {
+  if (!(learned.fraction > 0)) {
     choice = drawFromAll(ref, uChoice);
     choice.u = u;
     if (choice.emitter && isDivided(choice.emitter->index()))
@@ -189,14 +190,15 @@ LightSampler::Choice LightSampler::sample(const LightReference& ref, float uChoi
     return choice;
   }
   float within = 0;
-  if (uChoice < learned.share) {
+  if (uChoice < learned.fraction) {
     const std::span<const float> cdf(learned.cdf, groupCount() + 1);
-    uChoice = std::min(uChoice / learned.share, kOneMinusEpsilon);
+    uChoice = std::min(uChoice / learned.fraction, kOneMinusEpsilon);
     const uint32_t group = findCell(cdf, uChoice);
     const float rest = (uChoice - cdf[group]) / (cdf[group + 1] - cdf[group]);
     choice = drawFromGroup(ref, group, std::min(rest, kOneMinusEpsilon), within);
   } else {
-    choice = drawFromAll(ref, std::min((uChoice - learned.share) / (1 - learned.share), kOneMinusEpsilon));
+    choice =
+        drawFromAll(ref, std::min((uChoice - learned.fraction) / (1 - learned.fraction), kOneMinusEpsilon));
     if (choice.emitter) within = withinGroup(ref, *choice.emitter, choice.part);
   }
   if (!choice.emitter) return choice;
@@ -212,7 +214,7 @@ float LightSampler::probability(const LightReference& ref, const Emitter& emitte
                                 const Vec3& wi) const {
   const uint32_t index = emitter.index();
   const bool infinite = m_probability[index] > 0;
-  if (!(ref.learned.share > 0))
+  if (!(ref.learned.fraction > 0))
     return infinite ? (1 - treeProbability(ref)) * m_probability[index]
                     : treeProbability(ref) * m_tree.probability(ref, m_firstLight[index] + part);
   const uint32_t group = isDivided(index) ? regionAt(index, emitter.invert(wi)) : groupOf(emitter, part);
@@ -228,7 +230,7 @@ float LightSampler::groupProbability(const LightReference& ref, uint32_t group) 
       group < m_infiniteGroups
           ? (1 - treeProbability(ref)) * (m_cdf[groupEnd(group)] - m_cdf[groupBegin(group)]) * ownShare(group)
           : treeProbability(ref) * m_tree.groupProbability(ref, group - m_infiniteGroups);
-  return ref.learned.share > 0 ? mixed(ref.learned, probability, group, 1) : probability;
+  return ref.learned.fraction > 0 ? mixed(ref.learned, probability, group, 1) : probability;
 }
 
 uint64_t LightSampler::bytes() const {

@@ -21,9 +21,9 @@ struct LightGroup {
 // by their mean irradiance. Between the two the irradiance decides that the tree may give the reference. A
 // tenth of both choices is spread evenly, so that none is starved by a bad estimate.
 //
-// Lights fall into groups; a few environments are divided into several: a grid over the unit square that their sample()
-// takes to directions. Where something was learned of groups (LightReference::learned), a share of the choices draws a
-// group from the table there, and a light within the group as ever.
+// Lights fall into groups; a few environments are divided into several: a grid over the unit square that
+// their sample() takes to directions. Where something was learned of groups (LightReference::learned), a
+// share of the choices draws a group from the table there, and a light within the group as ever.
 class LightSampler {
  public:
   LightSampler() = default;
@@ -37,23 +37,24 @@ class LightSampler {
     uint32_t group = 0;
     Vec2 u{0, 0};  // for sampling the part
   };
-  // Chooses with uChoice in [0, 1). The point u of [0, 1)^2 comes back as it is, or moved into the region of an environment
-  // that was chosen by what was learned.
+  // Chooses with uChoice in [0, 1). The point u of [0, 1)^2 comes back as it is, or moved into the region
+  // of an environment that was chosen by what was learned.
   Choice sample(const LightReference& ref, float uChoice, const Vec2& u) const;
   // The probability with which sample() chooses the part of the emitter. It is zero only for parts that give
-  // the reference nothing. Of a divided environment it is that of its region around `wi`, over what the region has of the
-  // environment's own density: always what the density of a direction is to be multiplied with.
+  // the reference nothing. Of a divided environment it is that of its region around `wi`, over what the
+  // region has of the environment's own density: always what the density of a direction is to be multiplied
+  // with.
   float probability(const LightReference& ref, const Emitter& emitter, uint32_t part, const Vec3& wi) const;
-  // At most kMostLightGroups.
+  // At most kMaxLightGroups.
   uint32_t groupCount() const { return m_infiniteGroups + m_tree.groupCount(); }
   // Which groups are regions of a divided environment.
   const std::vector<LightParts>& dividedLights() const { return m_dividedLights; }
   // The probability with which sample() chooses a light of the group.
   float groupProbability(const LightReference& ref, uint32_t group) const;
 
-  // Chooses a light of the group, whatever was learned. The probability is that within the group: together with the
-  // density that the emitter states for its choice.u, all directions to the group's light integrate to one. No emitter where
-  // the group is known to give the reference nothing.
+  // Chooses a light of the group, whatever was learned. The probability is that within the group: together
+  // with the density that the emitter states for its choice.u, all directions to the group's light
+  // integrate to one. No emitter where the group is known to give the reference nothing.
   Choice sampleGroup(const LightReference& ref, uint32_t group, float uChoice, const Vec2& u) const;
   // What the group is: for those who learn what to expect of it.
   LightGroup describe(uint32_t group) const;
@@ -66,18 +67,19 @@ class LightSampler {
   uint32_t regions() const { return m_side * m_side; }
   // The probability of choosing from the tree.
   float treeProbability(const LightReference& ref) const;
-  // Choices without what was learned, from all lights or from a group; probabilities are those of sample() then.
+  // Choices without what was learned, from all lights or from a group; probabilities are those of sample()
+  // then.
   Choice drawFromAll(const LightReference& ref, float u) const;
   // `within` becomes the probability within the group, as withinGroup() has it.
   Choice drawFromGroup(const LightReference& ref, uint32_t group, float u, float& within) const;
-  // Draws a region of a divided environment, whose probability without what was learned is given, and stretches u into
-  // it. Says which group that is.
+  // Draws a region of a divided environment, whose probability without what was learned is given, and
+  // stretches u into it. Says which group that is.
   uint32_t drawRegion(const LightReference& ref, float probability, uint32_t emitter, Vec2& u) const;
   // The region of a divided environment that this point of the unit square lies in, as a group.
   uint32_t regionAt(uint32_t emitter, const Vec2& u) const;
   bool isDivided(uint32_t emitter) const { return m_divided[emitter]; }
-  // The group that a light of emitters not divided belongs to, and the probability of the light within it; of a region
-  // over what the region has of its emitter's density.
+  // The group that a light of emitters not divided belongs to, and the probability of the light within it;
+  // of a region over what the region has of its emitter's density.
   uint32_t groupOf(const Emitter& emitter, uint32_t part) const;
   float withinGroup(const LightReference& ref, const Emitter& emitter, uint32_t part) const;
   // A probability of sample() with what was learned, from the one without and that within the group.
@@ -102,7 +104,8 @@ class LightSampler {
   std::vector<uint8_t> m_divided;    // each emitter: whether it has as many groups as the grid has cells
   uint32_t m_side = 1;               // how many columns and rows that grid has
   std::vector<LightParts> m_dividedLights;
-  // The first groups are emitters outside of the tree, each by itself if they are few, the others those of the tree.
+  // The first groups are emitters outside of the tree, each by itself if they are few, the others those of
+  // the tree.
   uint32_t m_infiniteGroups = 0;
   std::vector<uint32_t> m_memberOf;  // for each of these groups the first of m_infinite in it
 };

@@ -41,7 +41,8 @@ class LightTree {
   // An estimate of what all lights together give the reference, in W/m^2; zero only if nothing.
   float irradiance(const LightReference& ref) const { return empty() ? 0 : importance(m_rootNode, ref); }
 
-  // The tree is cut into groups of lights: the brightest node is divided until there are as many as asked for.
+  // The tree is cut into groups of lights: the brightest node is divided until there are as many as asked
+  // for.
   uint32_t groupCount() const { return uint32_t(m_groups.size()); }
   uint32_t groupOf(uint32_t light) const { return m_groupOf[light]; }
   // The probability with which sample() draws a light of the group.

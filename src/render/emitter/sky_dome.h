@@ -9,9 +9,9 @@ namespace odis::render {
 // Its radiance is that of the model for every direction; a table of it drives the sampling.
 class SkyDome final : public EnvironmentEmitter {
  public:
-  // `sunDirection`, unit, is in the sky's space, where up is +Y; so is the sky before it is stretched: what is
-  // at an angle from the zenith moves to `stretch` (1 to 2) times that angle. The linear part of toWorld must
-  // have an inverse. The table has `width` >= 4 columns.
+  // `sunDirection`, unit, is in the sky's space, where up is +Y; so is the sky before it is stretched: what
+  // is at an angle from the zenith moves to `stretch` (1 to 2) times that angle. The linear part of toWorld
+  // must have an inverse. The table has `width` >= 4 columns.
   SkyDome(const Sky& sky, const Vec3& sunDirection, float scale, float stretch, int width,
           const Matrix4& toWorld);
 

@@ -23,7 +23,7 @@ class SunDisc final : public EnvironmentEmitter {
   float solidAngle() const { return kPi * sqr(m_chord); }
   bool covers(const Vec3& wi) const { return lengthSquared(wi - m_frame.n) <= sqr(m_chord); }
 
-  Frame m_frame;
+  CoordinateFrame m_frame;
   float m_chord;
   Rgb m_radiance;
 };

@@ -8,8 +8,8 @@
 
 namespace odis::render {
 
-// Each triangle is cut into n^2 equal ones, which are the parts, uniform by area each; the brighter ones are chosen
-// more often.
+// Each triangle is cut into n^2 equal ones, which are the parts, uniform by area each; the brighter ones
+// are chosen more often.
 class TexturedMeshLight final : public AreaLight {
  public:
   TexturedMeshLight(const Mesh& mesh, TexturePtr radiance);

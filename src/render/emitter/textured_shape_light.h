@@ -6,8 +6,8 @@
 
 namespace odis::render {
 
-// One part. Half of the points are drawn as the shape draws them, so that what it knows of its silhouette is not lost;
-// half from a table of the radiance over uv, so that what is bright is found.
+// One part. Half of the points are drawn as the shape draws them, so that what it knows of its silhouette
+// is not lost; half from a table of the radiance over uv, so that what is bright is found.
 class TexturedShapeLight final : public AreaLight {
  public:
   TexturedShapeLight(const Shape& shape, TexturePtr radiance);

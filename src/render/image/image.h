@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "render/math/vec.h"
-#include "render/scene/error.h"
+#include "render/xml/error.h"
 
 namespace odis::render {
 

@@ -48,8 +48,8 @@ bool isPng(const std::vector<uint8_t>& file) {
   return file.size() >= 8 && std::memcmp(file.data(), "\x89PNG", 4) == 0;
 }
 
-// Throws if a chunk of a PNG file is longer than what is left of the file: stb would make room for all that it
-// announces.
+// Throws if a chunk of a PNG file is longer than what is left of the file: stb would make room for all that
+// it announces.
 void checkPngChunks(const std::vector<uint8_t>& file) {
   constexpr size_t kSignature = 8, kHead = 8, kChecksum = 4;  // a chunk's head: its length and type
   for (size_t at = kSignature; at + kHead <= file.size();) {

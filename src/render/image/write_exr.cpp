@@ -9,9 +9,9 @@
 
 #include <stdexcept>
 
-#include "render/image/checked_stream.h"
+#include "render/files/checked_stream.h"
+#include "render/files/replace_file.h"
 #include "render/image/limits.h"
-#include "render/image/replace_file.h"
 #include "render/image/write.h"
 
 namespace odis::render {

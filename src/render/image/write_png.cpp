@@ -4,10 +4,10 @@
 #include <cstdint>
 #include <stdexcept>
 
-#include "render/film/tonemap.h"
-#include "render/image/checked_stream.h"
+#include "render/files/checked_stream.h"
+#include "render/files/replace_file.h"
 #include "render/image/limits.h"
-#include "render/image/replace_file.h"
+#include "render/image/tonemap.h"
 #include "render/image/write.h"
 
 namespace odis::render {

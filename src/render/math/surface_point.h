@@ -11,10 +11,10 @@ class Shape;
 class Texture;
 
 struct SurfacePoint {
-  Vec3 p;           // world space
-  Vec3 ng;          // unit geometric normal, on the side that the shape calls its outside
-  Frame shading;    // unit shading frame; n points to the same side as ng, s follows dpdu
-  Vec2 uv;          // texture coordinates
+  Vec3 p;                   // world space
+  Vec3 ng;                  // unit geometric normal, on the side that the shape calls its outside
+  CoordinateFrame shading;  // unit shading frame; n points to the same side as ng, s follows dpdu
+  Vec2 uv;                  // texture coordinates
   Vec3 dpdu, dpdv;  // world-space partial derivatives of p with respect to uv (zero where there are none)
   const Shape* shape = nullptr;
   uint32_t primitive = 0;  // triangle of a mesh; 0 for analytic shapes

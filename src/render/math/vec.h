@@ -94,13 +94,13 @@ inline Vec3 transformNormal(const Matrix4& inverse, const Vec3& n) {
 }
 
 // An orthonormal, right-handed frame. Local coordinates have the normal along z.
-struct Frame {
+struct CoordinateFrame {
   Vec3 s{1, 0, 0}, t{0, 1, 0}, n{0, 0, 1};
 
-  Frame() = default;
-  Frame(const Vec3& s_, const Vec3& t_, const Vec3& n_) : s(s_), t(t_), n(n_) {}
+  CoordinateFrame() = default;
+  CoordinateFrame(const Vec3& s_, const Vec3& t_, const Vec3& n_) : s(s_), t(t_), n(n_) {}
   // Any frame about the unit normal (Duff et al. 2017, "Building an Orthonormal Basis, Revisited").
-  explicit Frame(const Vec3& normal) : n(normal) {
+  explicit CoordinateFrame(const Vec3& normal) : n(normal) {
     const float sign = std::copysign(1.0f, n.z);
     const float a = -1.0f / (sign + n.z);
     const float b = n.x * n.y * a;
@@ -108,10 +108,10 @@ struct Frame {
     t = {b, sign + n.y * n.y * a, -n.y};
   }
   // The frame about `normal` whose s is as near to `tangent` as it can be; any frame if the two are parallel.
-  static Frame fromTangent(const Vec3& normal, const Vec3& tangent) {
+  static CoordinateFrame fromTangent(const Vec3& normal, const Vec3& tangent) {
     const Vec3 s = tangent - normal * dot(normal, tangent);
     const float squared = lengthSquared(s);
-    if (!(squared > 1e-12f * lengthSquared(tangent)) || !(squared > 0.0f)) return Frame(normal);
+    if (!(squared > 1e-12f * lengthSquared(tangent)) || !(squared > 0.0f)) return CoordinateFrame(normal);
     const Vec3 unit = s * (1.0f / std::sqrt(squared));
     return {unit, cross(normal, unit), normal};
   }

@@ -4,8 +4,8 @@
 #include <filesystem>
 
 #include "render/image/image.h"
-#include "render/scene/names.h"
 #include "render/texture/constant.h"
+#include "render/xml/names.h"
 
 namespace odis::render {
 namespace {

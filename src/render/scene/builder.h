@@ -10,9 +10,9 @@
 
 #include "render/bsdf/bsdf.h"
 #include "render/emitter/emitter.h"
-#include "render/scene/properties.h"
 #include "render/shape/shape.h"
 #include "render/texture/texture.h"
+#include "render/xml/properties.h"
 
 namespace odis::render {
 

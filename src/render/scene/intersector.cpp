@@ -37,8 +37,8 @@ RTCRay embreeRay(const Ray& ray) {
 
 constexpr size_t kPacket = 16;
 
-// Puts the first rays into a packet and says how many they are. Places that are left over repeat the last ray:
-// some builds of Embree look at them though they are not valid.
+// Puts the first rays into a packet and says how many they are. Places that are left over repeat the last
+// ray: some builds of Embree look at them though they are not valid.
 size_t fillPacket(RTCRay16& packet, int* valid, std::span<const Ray> rays) {
   const size_t count = std::min(rays.size(), kPacket);
   for (size_t i = 0; i < kPacket; ++i) valid[i] = i < count ? -1 : 0;

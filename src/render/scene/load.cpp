@@ -5,9 +5,9 @@
 #include "render/scene/load_film.h"
 #include "render/scene/load_shapes.h"
 #include "render/scene/scene.h"
-#include "render/scene/xml.h"
 #include "render/sensor/perspective.h"
 #include "render/sensor/registry.h"
+#include "render/xml/xml.h"
 
 namespace odis::render {
 namespace {

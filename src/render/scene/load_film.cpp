@@ -3,7 +3,7 @@
 #include <cmath>
 
 #include "render/image/limits.h"
-#include "render/scene/names.h"
+#include "render/xml/names.h"
 
 namespace odis::render {
 namespace {

@@ -1,8 +1,8 @@
 // The film and the reconstruction filter of scene files.
 #pragma once
 
-#include "render/scene/properties.h"
 #include "render/scene/scene.h"
+#include "render/xml/properties.h"
 
 namespace odis::render {
 

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "render/scene/names.h"
+#include "render/xml/names.h"
 
 namespace odis::render {
 namespace {

@@ -10,9 +10,9 @@
 
 #include "render/emitter/emitter.h"
 #include "render/film/filter.h"
-#include "render/scene/error.h"
 #include "render/sensor/sensor.h"
 #include "render/shape/shape.h"
+#include "render/xml/error.h"
 
 namespace odis::render {
 

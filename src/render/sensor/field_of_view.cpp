@@ -1,7 +1,7 @@
 #include "render/sensor/field_of_view.h"
 
-#include "render/scene/names.h"
-#include "render/scene/xml_element.h"
+#include "render/xml/element.h"
+#include "render/xml/names.h"
 
 namespace odis::render {
 namespace {

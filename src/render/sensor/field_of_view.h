@@ -1,7 +1,7 @@
 // The field of view of cameras, as Mitsuba measures it.
 #pragma once
 
-#include "render/scene/properties.h"
+#include "render/xml/properties.h"
 
 namespace odis::render {
 

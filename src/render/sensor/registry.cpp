@@ -1,8 +1,8 @@
 #include "render/sensor/registry.h"
 
-#include "render/scene/names.h"
 #include "render/sensor/field_of_view.h"
 #include "render/sensor/thinlens.h"
+#include "render/xml/names.h"
 
 namespace odis::render {
 namespace {

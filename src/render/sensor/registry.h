@@ -3,8 +3,8 @@
 
 #include <memory>
 
-#include "render/scene/properties.h"
 #include "render/sensor/sensor.h"
+#include "render/xml/properties.h"
 
 namespace odis::render {
 

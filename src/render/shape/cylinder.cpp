@@ -69,7 +69,7 @@ SurfacePoint Cylinder::pointAt(double cosPhi, double sinPhi, double z) const {
   at.dpdu = Vec3((m_y * cosPhi - m_x * sinPhi) * (2 * M_PI * m_radius));
   at.dpdv = Vec3(m_axis);
   at.ng = Vec3(m_flipNormals ? -outward : outward);
-  at.shading = Frame::fromTangent(at.ng, at.dpdu);
+  at.shading = CoordinateFrame::fromTangent(at.ng, at.dpdu);
   return at;
 }
 
@@ -112,8 +112,9 @@ ShapePtr makeCylinder(const Properties& node, Builder& builder) {
   if (!(length > 0) || !std::isfinite(length))
     throw SceneError(node.location, "p0 and p1 of a cylinder must be finite and apart");
 
-  // The frame about the axis decides where u starts, so it is that of Frame(normal) before the transform.
-  const Frame frame(Vec3((p1 - p0) / length));
+  // The frame about the axis decides where u starts, so it is that of CoordinateFrame(normal) before the
+  // transform.
+  const CoordinateFrame frame(Vec3((p1 - p0) / length));
   const Vec3d axis = affine.vector(p1 - p0), x = affine.vector(Vec3d(frame.s)),
               y = affine.vector(Vec3d(frame.t));
   const Vec3d direction = axis.normalized();

@@ -53,7 +53,7 @@ SurfacePoint Disk::pointAt(double x, double y) const {
   at.dpdu = Vec3(m_x * cosPhi + m_y * sinPhi);
   at.dpdv = Vec3((m_y * x - m_x * y) * (2 * M_PI));
   at.ng = Vec3(m_normal);
-  at.shading = Frame::fromTangent(at.ng, at.dpdu);
+  at.shading = CoordinateFrame::fromTangent(at.ng, at.dpdu);
   return at;
 }
 

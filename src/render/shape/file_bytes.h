@@ -5,7 +5,7 @@
 #include <string>
 #include <string_view>
 
-#include "render/scene/error.h"
+#include "render/xml/error.h"
 
 namespace odis::render {
 

@@ -151,7 +151,7 @@ SurfacePoint Mesh::pointOn(uint32_t triangle, const Vec2& barycentric) const {
     n = normalizeOr(v0.normal * b0 + v1.normal * b1 + v2.normal * b2, at.ng);
     if (dot(n, at.ng) < 0) at.ng = -at.ng;
   }
-  at.shading = Frame(n);
+  at.shading = CoordinateFrame(n);
   if (tangents()) findTangents(at, t);
   return at;
 }
@@ -169,12 +169,12 @@ void Mesh::findTangents(SurfacePoint& at, const Triangle& t) const {
       at.dpdu = (e1 * d2.y - e2 * d1.y) * inverse;
       at.dpdv = (e2 * d1.x - e1 * d2.x) * inverse;
     } else {
-      const Frame frame(at.ng);
+      const CoordinateFrame frame(at.ng);
       at.dpdu = frame.s;
       at.dpdv = frame.t;
     }
   }
-  at.shading = Frame::fromTangent(at.shading.n, at.dpdu);
+  at.shading = CoordinateFrame::fromTangent(at.shading.n, at.dpdu);
 }
 
 ShapeSample Mesh::sample(const Vec3& ref, const Vec2& u) const {

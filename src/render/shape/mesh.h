@@ -4,8 +4,8 @@
 #include <array>
 #include <vector>
 
-#include "render/scene/error.h"
 #include "render/shape/shape.h"
+#include "render/xml/error.h"
 
 namespace odis::render {
 

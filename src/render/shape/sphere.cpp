@@ -52,13 +52,13 @@ SurfacePoint Sphere::pointToward(const Vec3d& unit) const {
       float(std::max({std::abs(m_center.x), std::abs(m_center.y), std::abs(m_center.z)}) + m_radius));
   at.uv = {phi * (0.5f * kInvPi), std::atan2(float(rho), float(local.z)) * kInvPi};
   at.ng = Vec3(m_flipNormals ? -unit : unit);
-  at.shading = Frame(at.ng);
+  at.shading = CoordinateFrame(at.ng);
   if (!tangents()) return at;
   const double cosPhi = rho > 0 ? local.x / rho : 1, sinPhi = rho > 0 ? local.y / rho : 0;
   at.dpdu = Vec3((m_axes[1] * local.x - m_axes[0] * local.y) * (2 * M_PI * m_radius));
   at.dpdv = Vec3((m_axes[0] * (local.z * cosPhi) + m_axes[1] * (local.z * sinPhi) - m_axes[2] * rho) *
                  (M_PI * m_radius));
-  at.shading = Frame::fromTangent(at.ng, at.dpdu);
+  at.shading = CoordinateFrame::fromTangent(at.ng, at.dpdu);
   return at;
 }
 
@@ -96,7 +96,7 @@ ShapeSample Sphere::sample(const Vec3& ref, const Vec2& u) const {
   const double sinSquared = oneMinusCos * (2 - oneMinusCos);
   const double toSurface =
       distance * cosTheta - std::sqrt(std::max(0.0, m_radius * m_radius - distance * distance * sinSquared));
-  const Frame frame(Vec3(toCenter / distance));
+  const CoordinateFrame frame(Vec3(toCenter / distance));
   const double phi = 2 * M_PI * u.y, sinTheta = std::sqrt(sinSquared);
   const Vec3d direction = (Vec3d(frame.s) * std::cos(phi) + Vec3d(frame.t) * std::sin(phi)) * sinTheta +
                           toCenter * (cosTheta / distance);

@@ -70,7 +70,7 @@ inline void toWorld(SurfacePoint& at, const RawHit& hit) {
   at.dpdu = transformVector(m, at.dpdu);
   at.dpdv = transformVector(m, at.dpdv);
   at.ng = normalize(transformNormal(inverse, at.ng));
-  at.shading = Frame::fromTangent(normalize(transformNormal(inverse, at.shading.n)), at.dpdu);
+  at.shading = CoordinateFrame::fromTangent(normalize(transformNormal(inverse, at.shading.n)), at.dpdu);
 }
 
 }  // namespace odis::render

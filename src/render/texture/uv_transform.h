@@ -2,7 +2,7 @@
 #pragma once
 
 #include "render/math/vec.h"
-#include "render/scene/properties.h"
+#include "render/xml/properties.h"
 
 namespace odis::render {
 

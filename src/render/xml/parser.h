@@ -1,0 +1,59 @@
+// The walk over the elements of scene files that fills the tree of Properties.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <unordered_map>
+#include <vector>
+
+#include "render/xml/element.h"
+#include "render/xml/file.h"
+#include "render/xml/properties.h"
+#include "render/xml/references.h"
+#include "render/xml/variables.h"
+#include "render/xml/xml.h"
+
+namespace odis::render {
+
+class XmlParser {
+ public:
+  XmlParser(const std::map<std::string, std::string>& defines, Warnings& warnings)
+      : m_variables(defines), m_warnings(warnings) {}
+  ParsedScene parse(const XmlFile& file);
+
+ private:
+  // Where in the walk an element stands.
+  struct Place {
+    const XmlFile& file;
+    int depth = 0;
+    bool emitter = false;  // within an emitter spectra mean radiance
+  };
+
+  XmlElement element(const Place& place, const pugi::xml_node& node);
+  void parseChildren(const Place& place, const pugi::xml_node& node, Properties& owner);
+  void parseNode(const Place& place, const pugi::xml_node& node, Properties& owner);
+  bool parseStructure(const Place& place, const XmlElement& e, Properties& owner);
+  void parseInclude(const Place& place, const XmlElement& e, Properties& owner);
+  std::shared_ptr<Properties> parseObject(const Place& place, const pugi::xml_node& node,
+                                          const XmlElement& e);
+  // Whether the tag is one of a value; its parameter is then added. The first knows those with elements
+  // inside.
+  bool parseNestedValue(const Place& place, const pugi::xml_node& node, const XmlElement& e,
+                        Properties& owner);
+  bool parseValue(const Place& place, const pugi::xml_node& node, const XmlElement& e, Properties& owner);
+  PropertyValue parseSpectrumValue(const Place& place, const XmlElement& e);
+  // A <spectrum type="..."> of Mitsuba 3, as a colour.
+  PropertyValue parseSpectrumObject(const Place& place, const Properties& node);
+  Matrix4 parseTransformSteps(const Place& place, const pugi::xml_node& node);
+  void addParameter(Properties& owner, const XmlElement& e, PropertyValue value);
+  std::string findFile(const Place& place, const std::string& name, const SourceLocation& at) const;
+
+  Variables m_variables;
+  Warnings& m_warnings;
+  XmlReferences m_references;
+  std::vector<std::string> m_folders;
+  std::vector<std::string> m_openFiles;  // for cyclic includes
+  int m_includeCount = 0;
+};
+
+}  // namespace odis::render

@@ -1,0 +1,128 @@
+#include <bit>
+#include <cstring>
+
+#include "render/shape/mesh_files.h"
+#include "shape/support.h"
+
+namespace odis::test {
+namespace {
+
+MeshData parsePly(const std::string& bytes) {
+  const TemporaryFile file("mesh.ply", bytes);
+  Warnings warnings;
+  return readPly(file.path(), {}, warnings);
+}
+
+std::string plyFailure(const std::string& bytes) {
+  try {
+    parsePly(bytes);
+  } catch (const SceneError& error) {
+    return error.what();
+  }
+  return "";
+}
+
+// Appends numbers in either byte order.
+struct Bytes {
+  bool big;
+  std::string text;
+
+  template <class T>
+  Bytes& operator<<(T value) {
+    char raw[sizeof(T)];
+    std::memcpy(raw, &value, sizeof(T));
+    if (big != (std::endian::native == std::endian::big)) std::reverse(raw, raw + sizeof(T));
+    text.append(raw, sizeof(T));
+    return *this;
+  }
+};
+
+void expectSquare(const MeshData& mesh) {
+  ASSERT_EQ(mesh.positions.size(), 4u);
+  EXPECT_EQ(mesh.positions[2], Vec3(1, 1, 0.5f));
+  ASSERT_EQ(mesh.uvs.size(), 4u);
+  EXPECT_EQ(mesh.uvs[3], Vec2(0.25f, 1));
+  EXPECT_TRUE(mesh.normals.empty());
+  ASSERT_EQ(mesh.triangles.size(), 2u);
+  EXPECT_EQ(mesh.triangles[0], (Triangle{0, 1, 2}));
+  EXPECT_EQ(mesh.triangles[1], (Triangle{0, 2, 3}));
+}
+
+TEST(Ply, ReadsText) {
+  expectSquare(parsePly(
+      "ply\r\nformat ascii 1.0\r\ncomment by hand\r\nelement vertex 4\r\nproperty float x\r\nproperty "
+      "float y\r\n"
+      "property float z\r\nproperty float s\r\nproperty float t\r\nelement face 1\r\n"
+      "property list uchar int vertex_index\r\nend_header\r\n"
+      "0 0 0 0 0\r\n1 0 0 1 0\r\n1 1 0.5 1 1\r\n0 1 0 0.25 1\r\n4 0 1 2 3\r\n"));
+}
+
+TEST(Ply, ReadsBinaryOfEitherOrderAndSkipsTheUnknown) {
+  for (const bool big : {false, true}) {
+    Bytes bytes{
+        big, std::string("ply\nformat binary_") + (big ? "big" : "little") +
+                 "_endian 1.0\nelement camera 1\nproperty list int double k\nproperty short id\n"
+                 "element vertex 4\nproperty uchar red\nproperty double x\nproperty double y\n"
+                 "property double z\nproperty list uchar ushort extra\nproperty float u\nproperty float v\n"
+                 "element face 2\nproperty int flags\nproperty list uchar uint vertex_indices\nend_header\n"};
+    bytes << int32_t(2) << 1.0 << 2.0 << int16_t(7);
+    const double xyz[4][3] = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0.5}, {0, 1, 0}};
+    const float uv[4][2] = {{0, 0}, {1, 0}, {1, 1}, {0.25f, 1}};
+    for (int i = 0; i < 4; ++i) {
+      bytes << uint8_t(200) << xyz[i][0] << xyz[i][1] << xyz[i][2] << uint8_t(i);
+      for (int k = 0; k < i; ++k) bytes << uint16_t(65535);
+      bytes << uv[i][0] << uv[i][1];
+    }
+    bytes << int32_t(0) << uint8_t(3) << uint32_t(0) << uint32_t(1) << uint32_t(2);
+    bytes << int32_t(0) << uint8_t(3) << uint32_t(0) << uint32_t(2) << uint32_t(3);
+    expectSquare(parsePly(bytes.text));
+    // Wherever the file is cut off, that is an error and not a crash.
+    for (size_t size = 0; size < bytes.text.size(); size += 3)
+      EXPECT_NE(plyFailure(bytes.text.substr(0, size)), "") << "cut at " << size;
+  }
+}
+
+TEST(Ply, ReadsNormals) {
+  const MeshData mesh = parsePly(
+      "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n"
+      "property float nx\nproperty float ny\nproperty float nz\nelement face 1\n"
+      "property list uchar int vertex_indices\nend_header\n0 0 0 0 1 0\n1 0 0 0 1 0\n0 1 0 1 0 0\n3 0 1 2\n");
+  ASSERT_EQ(mesh.normals.size(), 3u);
+  EXPECT_EQ(mesh.normals[2], Vec3(1, 0, 0));
+}
+
+TEST(Ply, RefusesWhatCannotBe) {
+  const std::string head = "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\n";
+  const std::string z = "property float z\n";
+  const auto faces = [](const std::string& count) {
+    return "element face " + count + "\nproperty list uchar int vertex_indices\nend_header\n";
+  };
+  const std::string vertices = "0 0 0\n1 0 0\n0 1 0\n";
+  EXPECT_EQ(plyFailure(head + z + faces("1") + vertices + "3 0 1 2\n"), "");
+  EXPECT_NE(plyFailure(head + z + faces("1") + vertices + "3 0 1 3\n").find("face 0 refers to vertex 3"),
+            std::string::npos);
+  EXPECT_NE(plyFailure(head + z + faces("1") + vertices + "3 0 1 -1\n").find("vertex -1"), std::string::npos);
+  EXPECT_NE(plyFailure(head + z + faces("1") + vertices + "3 0 1 nan\n"), "");
+  EXPECT_NE(plyFailure(head + z + faces("18446744073709551615") + vertices).find("are announced"),
+            std::string::npos);
+  EXPECT_NE(plyFailure(head + z + faces("1") + vertices + "1e18 0 1 2\n").find("a list of"),
+            std::string::npos);
+  EXPECT_NE(plyFailure(head + faces("1") + "0 0\n1 0\n0 1\n3 0 1 2\n").find("no x, y and z"),
+            std::string::npos);
+  EXPECT_NE(plyFailure(head + z + faces("1") + "0 0 zero\n").find("mesh.ply:10: expected a number"),
+            std::string::npos);
+  EXPECT_NE(plyFailure("ply\nformat ascii 1.0\nelement vertex 3\n").find("end_header"), std::string::npos);
+  EXPECT_NE(plyFailure("ply\nformat morse 1.0\nend_header\n").find("unknown format"), std::string::npos);
+  EXPECT_NE(plyFailure("ply\nformat ascii 1.0\nproperty float x\nend_header\n"), "");
+  // Vertices with normals and vertices without would not go together.
+  EXPECT_NE(plyFailure(head + z + "property float nx\nproperty float ny\nproperty float nz\n" +
+                       "element vertex 3\n" + "property float x\nproperty float y\n" + z + faces("1") +
+                       "0 0 0 0 0 1\n1 0 0 0 0 1\n" + "0 1 0 0 0 1\n" + vertices + "3 3 4 5\n")
+                .find("a second element \"vertex\""),
+            std::string::npos);
+  EXPECT_NE(plyFailure("solid stl\n").find("not a PLY file"), std::string::npos);
+  EXPECT_NE(plyFailure("").find("not a PLY file"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace odis::test
