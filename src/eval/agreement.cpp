@@ -31,7 +31,7 @@ Estimate readEstimate(const std::string& path) {
 namespace {
 
 // Means over a set of pixels and the variance of their difference.
-struct Sums {
+struct BlockSums {
   Rgbd image{0, 0, 0}, reference{0, 0, 0}, variance{0, 0, 0};
 
   void add(const Estimate& a, const Estimate& b, size_t pixel) {
@@ -68,14 +68,14 @@ Agreement agreement(const Estimate& image, const Estimate& reference) {
   Agreement result;
   result.blocksX = (image.width + kAgreementBlock - 1) / kAgreementBlock;
   result.blocksY = (image.height + kAgreementBlock - 1) / kAgreementBlock;
-  std::vector<Sums> blocks(size_t(result.blocksX) * size_t(result.blocksY));
-  Sums all;
+  std::vector<BlockSums> blocks(size_t(result.blocksX) * size_t(result.blocksY));
+  BlockSums all;
   size_t beyond = 0;
   for (size_t pixel = 0; pixel < image.mean.size(); ++pixel) {
     const size_t x = pixel % size_t(image.width), y = pixel / size_t(image.width);
     blocks[y / kAgreementBlock * size_t(result.blocksX) + x / kAgreementBlock].add(image, reference, pixel);
     all.add(image, reference, pixel);
-    Sums one;
+    BlockSums one;
     one.add(image, reference, pixel);
     for (int c = 0; c < 3; ++c)
       if (std::abs(one.image[c] - one.reference[c]) > kAgreementErrors * std::sqrt(one.variance[c]) + 1e-30) {
@@ -83,7 +83,7 @@ Agreement agreement(const Estimate& image, const Estimate& reference) {
         break;
       }
   }
-  for (const Sums& block : blocks) {
+  for (const BlockSums& block : blocks) {
     result.excess.push_back(block.excess());
     result.agreeing += std::abs(result.excess.back()) <= 1;
   }

@@ -21,7 +21,7 @@ SceneAnalysis analyzeScene(const AnalyzeSettings& settings, const std::string& p
   options.seed = settings.seed ^ kReferenceSeed;
   options.threads = settings.methods.front().options.threads;
   const ColorImage reference{result.width, result.height,
-                             render::render(*scene, withDepths(options), progress).frame.color};
+                             render::render(*scene, withDepths(options), progress).image.color};
 
   for (const Method& method : settings.methods) {
     if (progress.cancelled()) return {};

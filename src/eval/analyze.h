@@ -26,8 +26,8 @@ struct SceneAnalysis {
   std::vector<VarianceSplit> splits;  // of each method; empty if progress was cancelled
 };
 
-// All methods draw the same numbers, as far as their paths use the same; the reference is a guided rendering of numbers
-// of its own. Throws SceneError, OptionError.
+// All methods draw the same numbers, as far as their paths use the same; the reference is a guided
+// rendering of numbers of its own. Throws SceneError, OptionError.
 SceneAnalysis analyzeScene(const AnalyzeSettings& settings, const std::string& path,
                            render::Warnings& warnings, render::Progress& progress);
 

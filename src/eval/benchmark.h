@@ -1,7 +1,7 @@
 // How fast rendering is, and what guiding adds to it.
 #pragma once
 
-#include "render/integrator/render.h"
+#include "render/integrators/render.h"
 
 namespace odis::eval {
 

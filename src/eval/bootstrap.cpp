@@ -10,7 +10,8 @@ namespace odis::eval {
 
 std::vector<double> resampledRatios(const std::vector<double>& a, const std::vector<double>& b,
                                     uint64_t seed) {
-  // The remainder, as the standard's distributions differ between libraries; a bias of 2^-60 matters to nobody.
+  // The remainder, as the standard's distributions differ between libraries; a bias of 2^-60 matters to
+  // nobody.
   std::mt19937_64 generator(seed);
   std::vector<double> ratios, drawnA(a.size()), drawnB(b.size());
   for (int resample = 0; resample < kResamples; ++resample) {

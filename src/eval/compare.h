@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "eval/measurement.h"
-#include "render/integrator/render.h"
+#include "render/integrators/render.h"
 
 namespace odis::eval {
 

@@ -19,8 +19,8 @@ struct Provenance {
 // The processor's name and how many threads of it are there, as far as the system tells.
 std::string machineName();
 
-// Everything: provenance and version, methods, scenes with their references, rows and runs. What is infinite or
-// unknown is null.
+// Everything: provenance and version, methods, scenes with their references, rows and runs. What is
+// infinite or unknown is null.
 nlohmann::ordered_json comparisonJson(const Comparison& comparison, const std::vector<ComparisonRow>& rows,
                                       const std::vector<Method>& methods, const Provenance& provenance);
 

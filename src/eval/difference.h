@@ -10,16 +10,18 @@ namespace odis::eval {
 enum class DifferenceKind {
   signedColor,  // A - B
   absolute,     // |A - B|
-  relative,  // (A - B)^2 / (B^2 + 0.01), both over B's mean luminance, mean of the channels: relMSE's summands
+  // (A - B)^2 / (B^2 + 0.01), both over B's mean luminance, mean of the channels: the summands of relMSE.
+  relative,
   flip       // as `flip` in metrics.h
 };
 
-// The difference of two images of one size; the last two kinds are grey. Throws std::invalid_argument if the sizes
-// differ.
+// The difference of two images of one size; the last two kinds are grey. Throws std::invalid_argument if
+// the sizes differ.
 ColorImage difference(const ColorImage& a, const ColorImage& b, DifferenceKind kind);
 
-// The mean of the channels in false colours, linear, to be written without a tone curve: signed ones red above zero
-// and blue below, others from black over violet and orange to pale yellow (magma). `full` is where the colours end.
+// The mean of the channels in false colours, linear, to be written without a tone curve: signed ones red
+// above zero and blue below, others from black over violet and orange to pale yellow (magma). `full` is
+// where the colours end.
 ColorImage heatMap(const ColorImage& difference, bool isSigned, double full);
 
 // A good end for the colours: the magnitude that 99 % of the pixels stay below; 1 if that is 0.

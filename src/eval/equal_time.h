@@ -12,8 +12,9 @@ struct TimePoint {
 };
 
 // The whole number of samples per pixel that a method renders in `seconds`, at least 1. `measured` (ascending
-// samples, not empty) is continued by straight lines: a method may have to pay before its first guided sample.
-// In proportion to the samples where there is one point only, or where noise lets more samples take less time.
+// samples, not empty) is continued by straight lines: a method may have to pay before its first guided
+// sample. In proportion to the samples where there is one point only, or where noise lets more samples take
+// less time.
 int samplesInTime(const std::vector<TimePoint>& measured, double seconds);
 
 }  // namespace odis::eval

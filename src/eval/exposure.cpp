@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "render/film/tonemap.h"
+#include "render/image/tonemap.h"
 
 namespace odis::eval {
 

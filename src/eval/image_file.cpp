@@ -63,7 +63,7 @@ ColorImage readColor(const std::string& path) {
   return colorOf(readChannels(path), path);
 }
 
-void writeColor(const std::string& path, const render::Frame2D& frame, int fullWidth, int fullHeight,
+void writeColor(const std::string& path, const render::RenderedImage& frame, int fullWidth, int fullHeight,
                 const std::map<std::string, std::string>& metadata) {
   std::array<std::vector<float>, 6> planes;
   const std::array<const char*, 6> names{"R", "G", "B", "variance.R", "variance.G", "variance.B"};
@@ -79,7 +79,7 @@ void writeColor(const std::string& path, const render::Frame2D& frame, int fullW
 }
 
 void writeColor(const std::string& path, const ColorImage& image) {
-  render::Frame2D frame;
+  render::RenderedImage frame;
   frame.width = image.width;
   frame.height = image.height;
   frame.color = image.pixels;

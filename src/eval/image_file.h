@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "render/image/write.h"
-#include "render/integrator/render.h"
+#include "render/integrators/render.h"
 
 namespace odis::eval {
 
@@ -28,9 +28,9 @@ render::ExrFile readChannels(const std::string& path);
 // Channels R, G and B of the layer without a name, else Y. `path` is for the message. Throws ImageError.
 ColorImage colorOf(const render::ExrFile& file, const std::string& path);
 ColorImage readColor(const std::string& path);
-// Writes the colour, and variance.R, G, B if the frame has a variance. Throws std::runtime_error with path and
-// reason.
-void writeColor(const std::string& path, const render::Frame2D& frame, int fullWidth, int fullHeight,
+// Writes the colour, and variance.R, G, B if the frame has a variance. Throws std::runtime_error with path
+// and reason.
+void writeColor(const std::string& path, const render::RenderedImage& frame, int fullWidth, int fullHeight,
                 const std::map<std::string, std::string>& metadata);
 void writeColor(const std::string& path, const ColorImage& image);
 

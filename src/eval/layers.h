@@ -19,15 +19,15 @@ struct ChannelSummary {
 };
 ChannelSummary summarizeChannel(const std::vector<float>& values);
 
-// R, G and B of the layer, "" for the one without a name; a single channel (Y, Z or the like) as grey, X Y Z as it
-// is. Throws ImageError that lists the layers there are.
+// R, G and B of the layer, "" for the one without a name; a single channel (Y, Z or the like) as grey, X Y
+// Z as it is. Throws ImageError that lists the layers there are.
 ColorImage layerColor(const LayeredImage& image, const std::string& layer);
 // The names of layers, "" first if there is one without a name.
 std::vector<std::string> layerNames(const LayeredImage& image);
 
-// The mean of each channel that all images have. variance.* and stderr.*, which belong to the mean of a pixel,
-// become those of the mean of independent images. The metadata is the first one's. Throws ImageError if sizes
-// or crops differ, std::invalid_argument if there are none.
+// The mean of each channel that all images have. variance.* and stderr.*, which belong to the mean of a
+// pixel, become those of the mean of independent images. The metadata is the first one's. Throws ImageError
+// if sizes or crops differ, std::invalid_argument if there are none.
 LayeredImage average(const std::vector<LayeredImage>& images);
 
 // All channels in one image; those of an image with a name get it in front: "odis" and "R" make "odis.R". The

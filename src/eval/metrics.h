@@ -9,8 +9,9 @@
 //   smape           |I - R| / ((|I| + |R|) / 2 + 0.01)
 // A pixel of the image that is not finite has an infinite error; only the trimmed metric can forget it.
 //
-//   flip            mean of LDR-FLIP (flip.h) at 67 pixels per degree, of both images as `displayed` shows them
-//                   (exposure.h) at the exposure of the reference; in [0, 1], pixels that are not finite count 1
+//   flip            mean of LDR-FLIP (flip.h) at 67 pixels per degree, of both images as `displayed` shows
+//                   them (exposure.h) at the exposure of the reference; in [0, 1], pixels that are not
+//                   finite count 1
 #pragma once
 
 #include <cstdint>
@@ -32,18 +33,20 @@ struct ErrorMetrics {
 // Throws std::invalid_argument if the sizes differ or are zero, or if the reference is not finite everywhere.
 ErrorMetrics compareImages(const ColorImage& image, const ColorImage& reference);
 
-// What relMSE multiplies the squared difference of each pixel's channels with before it adds them up and averages over
-// pixels, scales included. Throws std::invalid_argument if the reference is not finite everywhere.
+// What relMSE multiplies the squared difference of each pixel's channels with before it adds them up and
+// averages over pixels, scales included. Throws std::invalid_argument if the reference is not finite
+// everywhere.
 std::vector<render::Rgbd> relMseWeights(const ColorImage& reference);
 
-// The part of relMSE and of its trimmed mean that a reference brings in itself, from the variance of its pixels:
-// the mean of variance / (R^2 + 0.01), everything scaled as above. Throws as above.
+// The part of relMSE and of its trimmed mean that a reference brings in itself, from the variance of its
+// pixels: the mean of variance / (R^2 + 0.01), everything scaled as above. Throws as above.
 struct ReferenceError {
   double relMse = 0, trimmedRelMse = 0;
 };
 ReferenceError referenceError(const ColorImage& reference, const std::vector<render::Rgb>& variance);
 
-// The summand of relMSE of each pixel, a mean over channels; infinite where the image is not finite. Throws as above.
+// The summand of relMSE of each pixel, a mean over channels; infinite where the image is not finite. Throws
+// as above.
 std::vector<double> relativeErrors(const ColorImage& image, const ColorImage& reference);
 // FLIP of each pixel, as `flip` above averages it.
 std::vector<float> displayedFlip(const ColorImage& image, const ColorImage& reference);

@@ -13,7 +13,7 @@ namespace odis::eval {
 using namespace render;
 
 // No run that is compared with a reference should share its random numbers.
-static constexpr uint64_t kReferenceSeed = 0x9e3779b97f4a7c15u;
+static constexpr uint64_t kReferenceImageSeed = 0x9e3779b97f4a7c15u;
 
 static constexpr const char* kSettingsKey = "odis:reference";
 
@@ -50,7 +50,8 @@ Reference readReference(const std::string& path) {
 }
 
 Reference cachedReference(const Scene& scene, const std::string& name, uint64_t sceneHash,
-                          RenderOptions options, int spp, const std::string& folder, Progress& progress) {
+                          RenderOptions options, const std::string& folder, Progress& progress) {
+  const int spp = options.spp;
   const FilmSettings& film = scene.film();
   const auto settingsAt = [&](int samples) {
     return fmt::format("scene {} size {}x{} crop {},{},{},{} depth {} roulette {} filter {} {} spp {}",
@@ -69,15 +70,14 @@ Reference cachedReference(const Scene& scene, const std::string& name, uint64_t 
 
   options.integrator = IntegratorKind::path;
   options.sampler = SamplerKind::independent;  // its variance can be told from one image
-  options.spp = spp;
-  options.seed = kReferenceSeed;
+  options.seed = kReferenceImageSeed;
   options.timeLimit = 0;
   options.variance = true;
   options.features = options.records = false;
   const RenderResult result = render::render(scene, options, progress);
   if (result.stats.interrupted) return {};
   std::filesystem::create_directories(folder);
-  writeColor(path, result.frame, film.width, film.height,
+  writeColor(path, result.image, film.width, film.height,
              {{kSettingsKey, settings}, {"odis:version", ODIS_VERSION_STRING}});
   Reference reference = readReference(path);
   reference.secondsRendered = result.stats.secondsGuided;

@@ -6,7 +6,7 @@
 
 #include "eval/image_file.h"
 #include "eval/metrics.h"
-#include "render/integrator/render.h"
+#include "render/integrators/render.h"
 
 namespace odis::eval {
 
@@ -23,7 +23,7 @@ struct Reference {
 // samples). Otherwise it is rendered and put there with the variance of its pixels. Throws ImageError,
 // std::runtime_error if it can't be read or written.
 Reference cachedReference(const render::Scene& scene, const std::string& name, uint64_t sceneHash,
-                          render::RenderOptions options, int spp, const std::string& folder,
+                          render::RenderOptions options, const std::string& folder,
                           render::Progress& progress);
 
 // Any EXR file; its error is known if it has channels variance.R, ... (of each pixel's mean) or stderr.R, ...

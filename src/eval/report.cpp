@@ -55,10 +55,17 @@ Json addPicture(PictureStore& store, const ComparisonRow& row, const ColorImage&
           {"flip", store.add(encodeMap(displayedFlip(image, view.reference), image.width, image.height))}};
 }
 
-// The pictures of all scenes with these samples, filed under their scenes. Returns false and leaves everything
-// as it was if they would make the page larger than `most`.
-bool addSamples(PictureStore& store, Json& scenes, const std::vector<SceneView>& views,
-                const std::vector<ComparisonRow>& rows, int spp, const std::string& folder, size_t most) {
+// Where pictures come from: their scenes, what was measured, and the folder of the images.
+struct PictureSources {
+  const std::vector<SceneView>& views;
+  const std::vector<ComparisonRow>& rows;
+  const std::string& folder;
+};
+
+// The pictures of all scenes with these samples, filed under their scenes. Returns false and leaves
+// everything as it was if they would make the page larger than `most`.
+bool addSamples(PictureStore& store, Json& scenes, const PictureSources& sources, int spp, size_t most) {
+  const auto& [views, rows, folder] = sources;
   PictureStore grown = store;
   Json grownScenes = scenes;
   for (size_t i = 0; i < views.size(); ++i) {
@@ -118,7 +125,7 @@ std::string reportPage(const Comparison& comparison, const std::vector<Compariso
   bool full = false;
   for (const int spp : counts) {
     const bool least = spp == *counts.begin();
-    full = full || !addSamples(store, scenes, views, rows, spp, folder, least ? SIZE_MAX : pictureBytes);
+    full = full || !addSamples(store, scenes, {views, rows, folder}, spp, least ? SIZE_MAX : pictureBytes);
     if (full) json["leftOut"].push_back(spp);
   }
 

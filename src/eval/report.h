@@ -11,8 +11,8 @@
 
 namespace odis::eval {
 
-// So many bytes of pictures are put into a page: those with the fewest samples first, all methods of one number of
-// samples or none; the fewest always.
+// So many bytes of pictures are put into a page: those with the fewest samples first, all methods of one
+// number of samples or none; the fewest always.
 inline constexpr size_t kReportBytes = size_t(56) << 20;
 
 // `json` is what comparisonJson() made of the same rows; images are read from `folder`. Throws ImageError.

@@ -4,18 +4,16 @@
 #include <fstream>
 #include <limits>
 
-#include "render/image/replace_file.h"
+#include "render/files/replace_file.h"
 
 namespace odis::eval {
 
-using Json = nlohmann::json;
-
 // JSON has no infinity; nlohmann writes null.
-static double numberOrInfinity(const Json& value) {
+static double numberOrInfinity(const nlohmann::json& value) {
   return value.is_number() ? value.get<double>() : std::numeric_limits<double>::infinity();
 }
 
-static Measurement fromJson(const Json& json) {
+static Measurement fromJson(const nlohmann::json& json) {
   Measurement m;
   m.scene = json.at("scene");
   m.method = json.at("method");
@@ -62,9 +60,9 @@ ResultsLog::ResultsLog(std::string path, bool fresh) : m_path(std::move(path)) {
   std::ifstream stream(m_path);
   for (std::string line; std::getline(stream, line);) {
     try {
-      Measurement measurement = fromJson(Json::parse(line));
+      Measurement measurement = fromJson(nlohmann::json::parse(line));
       m_byKey[measurement.key] = measurement;
-    } catch (const Json::exception&) {
+    } catch (const nlohmann::json::exception&) {
       continue;  // cut off by a crash: rendered again
     }
   }

@@ -15,8 +15,8 @@ struct SamplesNeeded {
   double samples = 0;
 };
 
-// The least number of samples at which the curve (ascending samples) has no more than `error`, interpolated in
-// log samples and log error. `below`: its first point is better already, `beyond`: no point is as good.
+// The least number of samples at which the curve (ascending samples) has no more than `error`, interpolated
+// in log samples and log error. `below`: its first point is better already, `beyond`: no point is as good.
 // `unknown` if there are fewer than two points, or a number that has no logarithm.
 SamplesNeeded samplesNeeded(const std::vector<CurvePoint>& curve, double error);
 

@@ -34,7 +34,8 @@ SceneRun::SceneRun(const CompareSettings& settings, const std::string& path, Res
     options.maxDepth = m_record.maxDepth;
     options.rrDepth = m_record.rrDepth;
     options.threads = settings.methods.front().options.threads;
-    m_reference = cachedReference(*m_scene, m_record.name, m_record.hash, options, settings.referenceSpp,
+    options.spp = settings.referenceSpp;
+    m_reference = cachedReference(*m_scene, m_record.name, m_record.hash, options,
                                   settings.folder + "/references", observer.progress());
   } else {
     m_reference = readReference(settings.reference);
@@ -90,17 +91,18 @@ Measurement SceneRun::measure(const Method& method, const Budget& budget, uint64
   m.seed = seed;
   m.key = key;
   if (result.stats.interrupted) return m;
-  m.error = compareImages({result.frame.width, result.frame.height, result.frame.color}, m_reference.image);
+  m.error = compareImages({result.image.width, result.image.height, result.image.color}, m_reference.image);
   m.seconds = result.stats.secondsPilot + result.stats.secondsBuild + result.stats.secondsGuided;
   m.samples = result.stats.spp;
   m.rays = result.stats.rays + result.stats.shadowRays;
-  if (seed == 0) m.image = writeImage(m, method, result.frame);
+  if (seed == 0) m.image = writeImage(m, method, result.image);
   m_log.add(m);
   m_schedule.finish(m_record.name, planned, budget.spp, m.seconds);
   return m;
 }
 
-std::string SceneRun::writeImage(const Measurement& m, const Method& method, const Frame2D& frame) const {
+std::string SceneRun::writeImage(const Measurement& m, const Method& method,
+                                 const RenderedImage& frame) const {
   fs::create_directories(m_settings.folder + "/images");
   // The key keeps images of the same name but other settings apart.
   const std::string name = fmt::format("images/{}-{}-{}{}-{}.exr", m.scene, m.method, m.spp,

@@ -29,7 +29,8 @@ class SceneRun {
 
  private:
   std::string keyOf(const Method& method, const render::RenderOptions& options, const Budget& budget) const;
-  std::string writeImage(const Measurement& m, const Method& method, const render::Frame2D& frame) const;
+  std::string writeImage(const Measurement& m, const Method& method,
+                         const render::RenderedImage& frame) const;
 
   const CompareSettings& m_settings;
   ResultsLog& m_log;

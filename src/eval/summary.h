@@ -10,8 +10,8 @@
 
 namespace odis::eval {
 
-// A method on a scene with a number of samples: medians over its seeds. Ratios are to the first method with the
-// same `spp` on the same scene; "error" there is the 0.1 %-trimmed relMSE.
+// A method on a scene with a number of samples: medians over its seeds. Ratios are to the first method with
+// the same `spp` on the same scene; "error" there is the 0.1 %-trimmed relMSE.
 struct ComparisonRow {
   std::string scene, method;
   int spp = 0;

@@ -5,7 +5,7 @@
 #include <numeric>
 
 #include "eval/metrics.h"
-#include "render/integrator/sample_image.h"
+#include "render/integrators/sample_image.h"
 
 namespace odis::eval {
 
@@ -68,7 +68,8 @@ std::vector<uint32_t> keptPixels(const std::vector<std::vector<float>>& maps) {
   return pixels;
 }
 
-// The sum of `a` over that of `b` and its error by leaving out one group after the other (Quenouille 1956, Tukey 1958).
+// The sum of `a` over that of `b` and its error by leaving out one group after the other (Quenouille 1956,
+// Tukey 1958).
 Estimated jackknifedRatio(const std::vector<double>& a, const std::vector<double>& b) {
   const double sumA = std::accumulate(a.begin(), a.end(), 0.0),
                sumB = std::accumulate(b.begin(), b.end(), 0.0);

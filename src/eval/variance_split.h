@@ -1,12 +1,12 @@
 // Where the variance of one sample per pixel comes from: its split by the random decisions of a path.
 //
-// A path is a function f of independent random numbers, each with a purpose. With f_S the same path but for the numbers
-// of a set S of purposes, which are drawn anew, the total index of S is
+// A path is a function f of independent random numbers, each with a purpose. With f_S the same path but for
+// the numbers of a set S of purposes, which are drawn anew, the total index of S is
 //   T_S = E[(f - f_S)^2] / 2 = E[Var(f | all numbers but those of S)],
-// the part of the variance V that goes away if S is integrated perfectly and all else stays (Jansen 1999, "Analysis of
-// variance designs for model output"; Sobol' 1993, "Sensitivity estimates for nonlinear mathematical models"; Saltelli
-// et al. 2010, "Variance based sensitivity analysis of model output"). Shares T_S / V add up to more than one where
-// causes act together.
+// the part of the variance V that goes away if S is integrated perfectly and all else stays (Jansen 1999,
+// "Analysis of variance designs for model output"; Sobol' 1993, "Sensitivity estimates for nonlinear
+// mathematical models"; Saltelli et al. 2010, "Variance based sensitivity analysis of model output").
+// Shares T_S / V add up to more than one where causes act together.
 #pragma once
 
 #include <span>
@@ -14,7 +14,7 @@
 #include <vector>
 
 #include "eval/image_file.h"
-#include "render/integrator/render.h"
+#include "render/integrators/render.h"
 #include "render/sampler/purposes.h"
 
 namespace odis::eval {
@@ -32,8 +32,8 @@ struct Estimated {
   double value = 0, error = 0;
 };
 
-// Everything in units of relMSE (metrics.h): per pixel and channel over R^2 + epsilon, images scaled as there, summed
-// over the pixels but for those 0.1 % that have the largest of any figure here.
+// Everything in units of relMSE (metrics.h): per pixel and channel over R^2 + epsilon, images scaled as
+// there, summed over the pixels but for those 0.1 % that have the largest of any figure here.
 struct VarianceSplit {
   Estimated variance;             // V of one sample per pixel, by numbers that were all drawn anew
   std::vector<Estimated> shares;  // T_S / V in the order of causes(); zero where there is no variance
@@ -43,9 +43,10 @@ struct VarianceSplit {
   std::vector<std::vector<float>> maps;
 };
 
-// Splits the variance of the last sample of `options`, as render::renderSamples takes it. It is estimated from `samples`
-// samples of each pixel and as many more for each cause. Standard errors are jackknifed over samples (for this guide
-// and these pixels). Empty if progress is cancelled. Throws OptionError, std::invalid_argument.
+// Splits the variance of the last sample of `options`, as render::renderSamples takes it. It is estimated
+// from `samples` samples of each pixel and as many more for each cause. Standard errors are jackknifed over
+// samples (for this guide and these pixels). Empty if progress is cancelled. Throws OptionError,
+// std::invalid_argument.
 VarianceSplit splitVariance(const render::Scene& scene, const render::RenderOptions& options,
                             const ColorImage& reference, int samples, render::Progress& progress);
 

@@ -1,4 +1,5 @@
-// Data sets: folders of shards, made by any number of processes, and the manifest that says what belongs to one.
+// Data sets: folders of shards, made by any number of processes, and the manifest that says what belongs to
+// one.
 #pragma once
 
 #include <functional>
@@ -11,8 +12,8 @@ namespace odis::learn {
 
 // The generated scenes of these seeds, both included.
 std::vector<ShardSource> seedSources(uint64_t first, uint64_t last);
-// The scenes of a folder: its sub-folders with a scene.xml. Those that odis made have their seeds, others those of
-// their names. Throws GenerateError if there is none.
+// The scenes of a folder: its sub-folders with a scene.xml. Those that odis made have their seeds, others
+// those of their names. Throws GenerateError if there is none.
 std::vector<ShardSource> folderSources(const std::string& folder);
 // The parts from `first` to `last`, counted from 1, of all sources cut into `count` parts as even as can be.
 std::vector<ShardSource> partOf(const std::vector<ShardSource>& sources, int first, int last, int count);
@@ -26,8 +27,8 @@ class ShardObserver {
   virtual bool cancelled() const { return false; }
 };
 
-// Makes all shards that are not there, in any order, `jobs` at a time, each by one thread. A scene that can't be used fails alone. Throws
-// WriteError, after which nothing new begins.
+// Makes all shards that are not there, in any order, `jobs` at a time, each by one thread. A scene that
+// can't be used fails alone. Throws WriteError, after which nothing new begins.
 void makeShards(const std::vector<ShardSource>& sources, const DataSettings& settings, const Assets& assets,
                 const std::string& folder, int jobs, ShardObserver& observer);
 
@@ -42,17 +43,17 @@ struct FolderReport {
 // Called with how many shards are done, from any thread but never two at once.
 using CountProgress = std::function<void(size_t done, size_t total)>;
 
-// Puts the shards of other folders into this one: linked where that can be done, else copied. Throws WriteError, and
-// ShardError if two of them have the same name and are not the same.
+// Puts the shards of other folders into this one: linked where that can be done, else copied. Throws
+// WriteError, and ShardError if two of them have the same name and are not the same.
 void gatherShards(const std::vector<std::string>& folders, const std::string& into,
                   const CountProgress& progress);
 // Removes what killed processes left half-made of shards that are there.
 void removeLeftOvers(const std::string& folder);
-// Reads and unpacks all shards of a folder and describes them in a manifest. Shards that are damaged or were made with
-// other settings than the first are complained about, and left out.
+// Reads and unpacks all shards of a folder and describes them in a manifest. Shards that are damaged or
+// were made with other settings than the first are complained about, and left out.
 FolderReport describeShards(const std::string& folder, const CountProgress& progress);
-// Compares the shards with the folder's manifest: size and CRC-32, too few and too many, files left half-made. Throws
-// ShardError if there is no manifest.
+// Compares the shards with the folder's manifest: size and CRC-32, too few and too many, files left
+// half-made. Throws ShardError if there is no manifest.
 FolderReport checkShards(const std::string& folder, const CountProgress& progress);
 
 // Throws ShardError if there is none or if it is not one.

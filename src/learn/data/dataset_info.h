@@ -7,8 +7,8 @@
 
 namespace odis::learn {
 
-// Scenes, views, vertices, targets and bytes, by split and by kind. Throws nlohmann::json::exception for what is no
-// manifest.
+// Scenes, views, vertices, targets and bytes, by split and by kind. Throws nlohmann::json::exception for
+// what is no manifest.
 std::string datasetText(const nlohmann::ordered_json& manifest);
 // The scene of a shard, its views, and how many bytes each group of arrays takes. Throws ShardError.
 std::string shardText(const ShardHeader& shard);

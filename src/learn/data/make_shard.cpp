@@ -10,7 +10,7 @@
 #include "learn/scenes/generate.h"
 #include "learn/scenes/random.h"
 #include "odis_version.h"
-#include "render/image/replace_file.h"
+#include "render/files/replace_file.h"
 
 namespace odis::learn {
 

@@ -20,8 +20,8 @@ struct DataSettings {
 // As it stands in shards and manifests.
 nlohmann::ordered_json toJson(const DataSettings& settings);
 
-// A scene is on one side by a hash of its seed, with all that is made of it: nine of ten to learn from, the others to
-// validate. Scenes that have no seed have a hash of their name in its place.
+// A scene is on one side by a hash of its seed, with all that is made of it: nine of ten to learn from, the
+// others to validate. Scenes that have no seed have a hash of their name in its place.
 enum class Split { train, validation };
 Split splitOf(uint64_t seed);
 const char* splitName(Split split);
@@ -36,12 +36,13 @@ struct ShardSource {
 };
 std::string shardFile(const std::string& folder, const std::string& name);
 
-// Makes the shard in the folder, unless it is there: a function of source, settings and assets. Returns whether it was
-// made. Throws SceneError, GenerateError (another shard of that name is there), WriteError.
+// Makes the shard in the folder, unless it is there: a function of source, settings and assets. Returns
+// whether it was made. Throws SceneError, GenerateError (another shard of that name is there), WriteError.
 bool makeShard(const ShardSource& source, const DataSettings& settings, const Assets& assets,
                const std::string& folder);
 
-// Removes what processes of this machine left half-made that were killed: in the folder, and among temporary files.
+// Removes what processes of this machine left half-made that were killed: in the folder, and among
+// temporary files.
 void removeAbandoned(const std::string& folder);
 
 // The frame of a view of a shard, by its header. Throws ShardError.

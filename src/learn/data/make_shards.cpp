@@ -14,7 +14,7 @@
 #include "learn/data/dataset.h"
 #include "learn/scenes/generate.h"
 #include "learn/scenes/sheet.h"
-#include "render/image/replace_file.h"
+#include "render/files/replace_file.h"
 
 namespace odis::learn {
 
@@ -52,7 +52,8 @@ std::vector<ShardSource> partOf(const std::vector<ShardSource>& sources, int fir
 void makeShards(const std::vector<ShardSource>& sources, const DataSettings& settings, const Assets& assets,
                 const std::string& folder, int jobs, ShardObserver& observer) {
   removeAbandoned(folder);
-  // In an order of its own: several processes with the same task hardly ever make the same shard at the same time.
+  // In an order of its own: several processes with the same task hardly ever make the same shard at the
+  // same time.
   std::vector<size_t> order(sources.size());
   std::iota(order.begin(), order.end(), size_t(0));
   std::shuffle(order.begin(), order.end(), std::mt19937_64(std::random_device()()));

@@ -10,8 +10,8 @@
 #include <set>
 
 #include "learn/data/dataset.h"
-#include "render/image/checked_stream.h"
-#include "render/image/replace_file.h"
+#include "render/files/checked_stream.h"
+#include "render/files/replace_file.h"
 
 namespace odis::learn {
 

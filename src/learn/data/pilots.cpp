@@ -6,17 +6,17 @@
 #include <cmath>
 
 #include "odis/cells/statistics.h"
-#include "render/integrator/pass.h"
+#include "render/path/pass.h"
 
 namespace odis::learn {
 
 namespace {
 
 // Puts vertices that lie tile by tile in the order of the pixels.
-void sortByPixel(const render::Records& tiles, Pilot& pilot) {
-  std::vector<const PilotVertex*> paths(pilot.lengths.size(), nullptr);
-  for (const std::vector<PilotVertex>& tile : tiles)
-    for (const PilotVertex& v : tile) {
+void sortByPixel(const render::TileVertices& tiles, Pilot& pilot) {
+  std::vector<const PathVertex*> paths(pilot.lengths.size(), nullptr);
+  for (const std::vector<PathVertex>& tile : tiles)
+    for (const PathVertex& v : tile) {
       if (v.depth == 1) paths[v.pixel] = &v;
       pilot.lengths[v.pixel] = uint8_t(v.depth);
     }
@@ -34,26 +34,28 @@ Pilot tracePilot(const render::Scene& scene, const render::LightSampler& lights,
   pass.path.lights = &lights;
   pass.path.maxDepth = kDeepestPath;
   pass.seed = seed;
-  pass.samples = [](uint32_t) { return std::pair(0u, 1u); };
-  std::vector<render::PixelSums> image(pixels);
-  render::Records records;
-  pass.image = &image;
-  pass.records = &records;
+  pass.samples = [](uint32_t) { return SampleRange{0, 1}; };
+  pass.wantsVertices = true;
+  Pilot pilot;
+  pilot.image.assign(pixels, render::Rgb(0, 0, 0));
+  render::TileVertices tiles(render::tileCount(crop));
+  pass.deliver = [&](uint32_t tile, ArrayView<const FrameSample> samples,
+                     ArrayView<const PathVertex> vertices) {
+    for (const FrameSample& s : samples) pilot.image[s.pixel] = render::Rgb(s.value.x, s.value.y, s.value.z);
+    tiles[tile].assign(vertices.begin(), vertices.end());
+  };
   render::Progress silent;
   render::runPass(pass, silent, [] { return false; });
 
-  Pilot pilot;
   pilot.lengths.assign(pixels, 0);
-  sortByPixel(records, pilot);
-  for (const render::PixelSums& sums : image)
-    pilot.image.emplace_back(float(sums.sum.x), float(sums.sum.y), float(sums.sum.z));
+  sortByPixel(tiles, pilot);
   pilot.sampleWeight.assign(pixels, 1);
-  for (const PilotVertex& v : pilot.vertices) pilot.sampleWeight[v.pixel] = v.sampleWeight;
+  for (const PathVertex& v : pilot.vertices) pilot.sampleWeight[v.pixel] = v.sampleWeight;
   return pilot;
 }
 
 ViewFrame frameOf(std::span<const Pilot> pilots) {
-  std::vector<std::span<const PilotVertex>> parts;
+  std::vector<ArrayView<const PathVertex>> parts;
   double sum = 0;
   size_t pixels = 0;
   for (const Pilot& pilot : pilots) {

@@ -4,7 +4,7 @@
 #include <span>
 
 #include "learn/data/vertex_columns.h"
-#include "render/integrator/path.h"
+#include "render/path/path.h"
 
 namespace odis::learn {
 

@@ -19,7 +19,7 @@ namespace {
 
 constexpr int kGap = 6, kText = 11, kImageWidth = 160, kSide = 96, kBarWidth = 128, kWidestBar = 16;
 constexpr int kBins = 16;  // a side of what the pilots' vertices say
-constexpr int kMaps = 7;
+constexpr int kMapColumns = 7;
 constexpr int kRowHeight = kText + kSide + kGap;
 const Rgb kBackground(0.02f), kInk(0.7f), kFrame(0.06f), kUnsampled(0.0f, 0.015f, 0.08f), kMark(1, 0, 0);
 
@@ -52,8 +52,8 @@ struct ViewData {
     targets = readTargets(shard, targetPrefix(view), frame);
     grid = CellGrid(frame.origin, frame.edge);
   }
-  uint64_t cellOf(const PilotVertex& v) const { return grid.key(v.position, v.normal, 0); }
-  const PilotVertex& vertex(size_t index) const {
+  uint64_t cellOf(const PathVertex& v) const { return grid.key(v.position, v.normal, 0); }
+  const PathVertex& vertex(size_t index) const {
     for (const Pilot& pilot : pilots) {
       if (index < pilot.vertices.size()) return pilot.vertices[index];
       index -= pilot.vertices.size();
@@ -76,13 +76,13 @@ class Row {
       : m_canvas(canvas), m_view(view), m_target(target), m_top(top) {}
 
   void draw() {
-    const PilotVertex& middle = m_view.vertex(m_target.vertex);
+    const PathVertex& middle = m_view.vertex(m_target.vertex);
     const uint64_t cell = m_view.cellOf(middle);
     Map histogram{}, reference{};
     std::set<uint32_t> pixels;
     size_t count = 0;
     for (const Pilot& pilot : m_view.pilots)
-      for (const PilotVertex& v : pilot.vertices) {
+      for (const PathVertex& v : pilot.vertices) {
         if (!isUsable(v) || m_view.cellOf(v) != cell) continue;
         ++count;
         if (v.depth == 1) pixels.insert(v.pixel);
@@ -115,7 +115,7 @@ class Row {
 
  private:
   // What one vertex says of the texel of its direction.
-  static void addTo(Map& histogram, const PilotVertex& v) {
+  static void addTo(Map& histogram, const PathVertex& v) {
     const Float2 at = directionToSquare(v.wi);
     const auto bin = [](float x) { return size_t(std::clamp(int(x * kBins), 0, kBins - 1)); };
     constexpr size_t kEach = kTargetSize / kBins;
@@ -126,7 +126,7 @@ class Row {
   void caption(int columns, const std::string& text) { m_canvas.write(m_left, m_top, columns, text, kInk); }
 
   // The first pilot's image, and over it, red, where paths met the cell first.
-  void image(const std::set<uint32_t>& pixels, const PilotVertex& middle) {
+  void image(const std::set<uint32_t>& pixels, const PathVertex& middle) {
     const int width = std::min(kImageWidth, kSide * m_view.width / m_view.height),
               height = std::min(kSide, width * m_view.height / m_view.width);
     for (int y = 0; y < height; ++y)
@@ -160,7 +160,8 @@ class Row {
     m_left += kSide + kGap;
   }
 
-  // Bars: the root mean square of each group's next-event estimate, from the floor; grey behind it, without its weight.
+  // Bars: the root mean square of each group's next-event estimate, from the floor; grey behind it, without
+  // its weight.
   void lights() {
     m_canvas.fill(m_left, m_top + kText, kBarWidth, kSide, kFrame);
     float most = 0;
@@ -188,7 +189,7 @@ class Row {
 }  // namespace
 
 Canvas previewOf(const std::vector<std::string>& shards, int count) {
-  const int width = kGap + kImageWidth + kGap + kMaps * (kSide + kGap) + kBarWidth + kGap;
+  const int width = kGap + kImageWidth + kGap + kMapColumns * (kSide + kGap) + kBarWidth + kGap;
   Canvas canvas(width, kGap + count * (kRowHeight + kText), kBackground);
   // As many rows of each shard as of the others, as far as that can be.
   int row = 0;

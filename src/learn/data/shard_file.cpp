@@ -8,8 +8,8 @@
 #include <fstream>
 #include <memory>
 
-#include "render/image/checked_stream.h"
-#include "render/image/replace_file.h"
+#include "render/files/checked_stream.h"
+#include "render/files/replace_file.h"
 
 namespace odis::learn {
 
@@ -29,7 +29,8 @@ std::string shardBytes(const std::string& path) {
   return bytes;
 }
 
-// The lowest bytes of all elements come first, then the next ones: like stands beside like, which compresses better.
+// The lowest bytes of all elements come first, then the next ones: like stands beside like, which
+// compresses better.
 void ShardWriter::addBytes(const std::string& name, const char* type, const Shape& shape,
                            std::span<const std::byte> bytes, size_t elementSize) {
   const size_t count = bytes.size() / elementSize;

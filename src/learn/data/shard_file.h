@@ -38,8 +38,8 @@ class ShardWriter {
   void add(const std::string& name, const Shape& shape, std::span<const T> values) {
     addBytes(name, kElementName<T>, shape, std::as_bytes(values), sizeof(T));
   }
-  // Writes the file under a temporary name and renames it. `header` is what else there is to say, an object. Throws
-  // WriteError.
+  // Writes the file under a temporary name and renames it. `header` is what else there is to say, an
+  // object. Throws WriteError.
   void write(const std::string& path, nlohmann::ordered_json header) const;
 
  private:

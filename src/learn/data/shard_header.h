@@ -1,5 +1,5 @@
-// How a shard of the data set begins: magic number, format, and a header in JSON that says what arrays follow.
-// docs/dataset-format.md describes it for readers in other languages.
+// How a shard of the data set begins: magic number, format, and a header in JSON that says what arrays
+// follow. docs/dataset-format.md describes it for readers in other languages.
 #pragma once
 
 #include <cstdint>
@@ -28,8 +28,8 @@ using Shape = std::vector<uint64_t>;
 // How many elements an array of this shape has; kMostArrayBytes + 1 stands for all larger numbers.
 uint64_t elementCount(const Shape& shape);
 
-// What a shard says of itself. The file is as long as the header says; damage in its arrays is for those who read them
-// to find.
+// What a shard says of itself. The file is as long as the header says; damage in its arrays is for those
+// who read them to find.
 class ShardHeader {
  public:
   // Reads no further than the header goes. Throws ShardError.

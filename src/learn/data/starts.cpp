@@ -8,7 +8,7 @@ using render::Vec3;
 
 namespace {
 
-float distanceFromCamera(const render::Scene& scene, const PilotVertex& v) {
+float distanceFromCamera(const render::Scene& scene, const PathVertex& v) {
   const render::Crop& crop = scene.film().crop;
   const int x = crop.x + int(v.pixel) % crop.width, y = crop.y + int(v.pixel) / crop.width;
   const Vec2 pixel(float(x) + 0.5f, float(y) + 0.5f);
@@ -17,9 +17,9 @@ float distanceFromCamera(const render::Scene& scene, const PilotVertex& v) {
 
 }  // namespace
 
-std::optional<Start> findStart(const render::Scene& scene, std::span<const PilotVertex> vertices,
+std::optional<Start> findStart(const render::Scene& scene, std::span<const PathVertex> vertices,
                                size_t index) {
-  const PilotVertex& v = vertices[index];
+  const PathVertex& v = vertices[index];
   const float fromPrevious = v.depth > 1 ? vertices[index - 1].distance : distanceFromCamera(scene, v);
   // Nothing lies between a vertex and the one before it, or the camera: a ray from the middle finds it.
   const Vec3 wo = render::fromOdis(v.wo), position = render::fromOdis(v.position);

@@ -4,7 +4,7 @@
 #include <optional>
 #include <span>
 
-#include "render/integrator/path.h"
+#include "render/path/path.h"
 
 namespace odis::learn {
 
@@ -16,9 +16,9 @@ struct Start {
   render::Ray towards;
 };
 
-// The vertex at `index`, if it can be found: unless it is its path's first, the one before it in the list is the one
-// before it on the path.
-std::optional<Start> findStart(const render::Scene& scene, std::span<const PilotVertex> vertices,
+// The vertex at `index`, if it can be found: unless it is its path's first, the one before it in the list
+// is the one before it on the path.
+std::optional<Start> findStart(const render::Scene& scene, std::span<const PathVertex> vertices,
                                size_t index);
 
 }  // namespace odis::learn

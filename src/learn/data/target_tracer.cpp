@@ -1,5 +1,7 @@
 #include "learn/data/target_tracer.h"
 
+#include <odis/mixture.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -68,7 +70,8 @@ void TargetTracer::trace(std::span<const Start> starts, Target& target) {
 void TargetTracer::traceArriving(std::span<const Start> starts, Target& target) {
   std::vector<Path> paths;
   std::vector<int> texels;
-  // Once all texels had their turns, some have another one until there are as many samples as half of the texels make.
+  // Once all texels had their turns, some have another one until there are as many samples as half of the
+  // texels make.
   const int turns = m_settings.perTexel * kTargetTexels;
   const auto enough = size_t(turns / 2);
   for (int turn = 0; turn < turns || (paths.size() < enough && turn < 2 * turns); ++turn) {

@@ -8,8 +8,8 @@ namespace odis::learn {
 
 class TargetTracer {
  public:
-  // Of the same numbers for the same seed, others for each target. `maxDepth` is that of paths that leave a vertex, in
-  // segments.
+  // Of the same numbers for the same seed, others for each target. `maxDepth` is that of paths that leave a
+  // vertex, in segments.
   TargetTracer(const render::Scene& scene, const render::LightSampler& lights, const TargetSettings& settings,
                uint64_t seed, int maxDepth = kDeepestPath);
 

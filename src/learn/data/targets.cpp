@@ -25,7 +25,7 @@ class Vertices {
   void forEach(const Use& use) const {
     uint32_t index = 0;
     for (const Pilot& pilot : m_pilots)
-      for (const PilotVertex& v : pilot.vertices) use(index++, v);
+      for (const PathVertex& v : pilot.vertices) use(index++, v);
   }
   std::optional<Start> find(uint32_t index) const {
     const Pilot* pilot = m_pilots.data();
@@ -38,7 +38,8 @@ class Vertices {
   std::span<const Pilot> m_pilots;
 };
 
-// Puts the keys of a weighted draw without replacement in front, the first drawn first (Efraimidis and Spirakis 2006).
+// Puts the keys of a weighted draw without replacement in front, the first drawn first (Efraimidis and
+// Spirakis 2006).
 template <class Item>
 void drawInOrder(std::vector<std::pair<double, Item>>& weighted, Random& random) {
   for (auto& [weight, item] : weighted) weight = std::log(std::max(random.unit(), 1e-300)) / weight;
@@ -60,7 +61,7 @@ std::vector<Target> traceTargets(const render::Scene& scene, const render::Light
   std::map<uint64_t, Members> cells;
   std::vector<std::pair<double, uint32_t>> pixels;  // the first usable vertex of each path
   uint64_t lastPath = ~0ull, path = 0;
-  vertices.forEach([&](uint32_t index, const PilotVertex& v) {
+  vertices.forEach([&](uint32_t index, const PathVertex& v) {
     if (v.depth == 1) ++path;
     if (!isUsable(v)) return;
     Members& members =

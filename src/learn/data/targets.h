@@ -1,5 +1,5 @@
-// What a network is to predict, where that is worth many samples: for some cells and some pixels, maps of the light that
-// arrives, what is scattered back and what it costs, and what each group of lights gives.
+// What a network is to predict, where that is worth many samples: for some cells and some pixels, maps of
+// the light that arrives, what is scattered back and what it costs, and what each group of lights gives.
 #pragma once
 
 #include <odis/octahedral.h>
@@ -18,7 +18,7 @@ inline constexpr int kTargetTexels = kTargetSize * kTargetSize;
 // The direction of a point of a texel, its place within given from 0 to 1.
 inline Float3 directionInTexel(int texel, const Float2& within) {
   const int x = texel % kTargetSize, y = texel / kTargetSize;
-  return squareToDirection({(float(x) + within.x) / kTargetSize, (float(y) + within.y) / kTargetSize});
+  return squareToDirection(Float2{(float(x) + within.x) / kTargetSize, (float(y) + within.y) / kTargetSize});
 }
 
 struct TargetSettings {
@@ -28,8 +28,8 @@ struct TargetSettings {
   int lights = 1024;   // samples of next-event estimation, of all groups together
 };
 
-// What a group of lights gives, as next-event estimation that chooses the group sees it: f |cos| Le V over the density
-// within the group, luminance; with and without the weight of MIS against the BSDF.
+// What a group of lights gives, as next-event estimation that chooses the group sees it: f |cos| Le V over
+// the density within the group, luminance; with and without the weight of MIS against the BSDF.
 struct LightMoments {
   float mean = 0, rms = 0, misMean = 0, misRms = 0;
   float probability = 0;  // with which the group is chosen if nothing was learned
@@ -42,10 +42,10 @@ struct Target {
   uint32_t starts = 0;        // at how many of them samples start
   Float3 position, normal;    // means of these, the normal of unit length
 
-  // Maps of what arrives, each sample from one of these vertices: means and roots of mean squares of luminance.
-  // `indirect` is what is scattered, `emission` what lights shed without MIS weight; `lightPdf` the density with which
-  // next-event estimation finds that light (mean over the samples that met one), `rays` what a sample costs.
-  // Directions that no vertex scatters from have zero samples, and zeros.
+  // Maps of what arrives, each sample from one of these vertices: means and roots of mean squares of
+  // luminance. `indirect` is what is scattered, `emission` what lights shed without MIS weight; `lightPdf`
+  // the density with which next-event estimation finds that light (mean over the samples that met one),
+  // `rays` what a sample costs. Directions that no vertex scatters from have zero samples, and zeros.
   std::vector<float> indirect, indirectRms, emission, emissionRms, lightPdf, rays;
   std::vector<uint8_t> samples;
 
@@ -56,11 +56,12 @@ struct Target {
   std::vector<LightMoments> lights;  // of each group
 };
 
-// Paths of targets begin at their vertices: roulette by throughput, which pilots' paths meet at a fixed depth, is as far
-// away from each as it is from a camera. That changes second moments and rays, not means.
+// Paths of targets begin at their vertices: roulette by throughput, which pilots' paths meet at a fixed
+// depth, is as far away from each as it is from a camera. That changes second moments and rays, not means.
 
-// Chooses cells in proportion to the root of how many vertices they have and pixels evenly, and traces their samples: the
-// same for the same seed. There are fewer targets than asked for where the pilots saw fewer cells or pixels.
+// Chooses cells in proportion to the root of how many vertices they have and pixels evenly, and traces
+// their samples: the same for the same seed. There are fewer targets than asked for where the pilots saw
+// fewer cells or pixels.
 std::vector<Target> traceTargets(const render::Scene& scene, const render::LightSampler& lights,
                                  std::span<const Pilot> pilots, const ViewFrame& frame,
                                  const TargetSettings& settings, uint64_t seed);

@@ -17,45 +17,45 @@ constexpr uint8_t kNoGroup = 0xff;
 // A number of a vertex that is kept as a half; of radiance relative to the view's unit.
 struct HalfColumn {
   const char* name;
-  float PilotVertex::*field;
+  float PathVertex::*field;
   bool radiance, ofLight = false;
 };
 constexpr HalfColumn kHalves[] = {
-    {"pdf", &PilotVertex::pdf, false},
-    {"survival", &PilotVertex::survival, false},
-    {"guidablePdf", &PilotVertex::guidablePdf, false},
-    {"guidableProbability", &PilotVertex::guidableProbability, false},
-    {"roughness", &PilotVertex::roughness, false},
-    {"indirect", &PilotVertex::indirect, true},
-    {"emission", &PilotVertex::emission, true},
-    {"emissionLightPdf", &PilotVertex::emissionLightPdf, false},
-    {"light", &PilotVertex::light, true},
-    {"lightPdf", &PilotVertex::lightPdf, false},
-    {"lightBsdfPdf", &PilotVertex::lightBsdfPdf, false, true},
-    {"lightGuidablePdf", &PilotVertex::lightGuidablePdf, false, true},
-    {"lightGroupProbability", &PilotVertex::lightGroupProbability, false},
+    {"pdf", &PathVertex::pdf, false},
+    {"survival", &PathVertex::survival, false},
+    {"guidablePdf", &PathVertex::guidablePdf, false},
+    {"guidableProbability", &PathVertex::guidableProbability, false},
+    {"roughness", &PathVertex::roughness, false},
+    {"indirect", &PathVertex::indirect, true},
+    {"emission", &PathVertex::emission, true},
+    {"emissionLightPdf", &PathVertex::emissionLightPdf, false},
+    {"light", &PathVertex::light, true},
+    {"lightPdf", &PathVertex::lightPdf, false},
+    {"lightBsdfPdf", &PathVertex::lightBsdfPdf, false, true},
+    {"lightGuidablePdf", &PathVertex::lightGuidablePdf, false, true},
+    {"lightGroupProbability", &PathVertex::lightGroupProbability, false},
 };
 
 struct ColorColumn {
   const char* name;
-  Float3 PilotVertex::*field;
+  Float3 PathVertex::*field;
   bool radiance;
 };
 constexpr ColorColumn kColors[] = {
-    {"radiance", &PilotVertex::radiance, true},
-    {"weight", &PilotVertex::weight, false},
-    {"direct", &PilotVertex::direct, true},
+    {"radiance", &PathVertex::radiance, true},
+    {"weight", &PathVertex::weight, false},
+    {"direct", &PathVertex::direct, true},
 };
 
 struct DirectionColumn {
   const char* name;
-  Float3 PilotVertex::*field;
+  Float3 PathVertex::*field;
   bool ofLight = false;
 };
 constexpr DirectionColumn kDirections[] = {
-    {"normal", &PilotVertex::normal},
-    {"wi", &PilotVertex::wi},
-    {"lightDirection", &PilotVertex::lightDirection, true},
+    {"normal", &PathVertex::normal},
+    {"wi", &PathVertex::wi},
+    {"lightDirection", &PathVertex::lightDirection, true},
 };
 
 int32_t stepsAlong(float x, float origin, float edge) {
@@ -106,7 +106,7 @@ PackedDirection packed(const Float3& direction) {
 }
 
 Float3 unpacked(const PackedDirection& direction) {
-  return squareToDirection({(float(direction.x) + 0.5f) / 65536, (float(direction.y) + 0.5f) / 65536});
+  return squareToDirection(Float2{(float(direction.x) + 0.5f) / 65536, (float(direction.y) + 0.5f) / 65536});
 }
 
 PositionSteps stepsOf(const Float3& p, const ViewFrame& f) {
@@ -120,7 +120,7 @@ Float3 positionOf(const PositionSteps& steps, const ViewFrame& f) {
 }
 
 void addColumns(ShardWriter& writer, const std::string& prefix, const Pilot& pilot, const ViewFrame& frame) {
-  const std::vector<PilotVertex>& vertices = pilot.vertices;
+  const std::vector<PathVertex>& vertices = pilot.vertices;
   const size_t count = vertices.size(), pixels = pilot.lengths.size();
   const auto add = [&]<class T>(const char* name, const Shape& shape, const std::vector<T>& values) {
     writer.add(prefix + name, shape, std::span<const T>(values));
@@ -146,15 +146,15 @@ void addColumns(ShardWriter& writer, const std::string& prefix, const Pilot& pil
   std::vector<uint16_t> rays(count);
   std::vector<uint8_t> groups(count), flags(count), lit(count);
   for (size_t i = 0; i < count; ++i) {
-    const PilotVertex& v = vertices[i];
+    const PathVertex& v = vertices[i];
     const PositionSteps steps = stepsOf(v.position, frame);
     for (size_t axis = 0; axis < 3; ++axis) positions[axis * count + i] = steps[axis];
     distances[i] = toHalf(v.distance / frame.edge);
     rays[i] = uint16_t(std::clamp(v.raysAfter, 0.0f, 65535.0f));
-    groups[i] = v.lightGroup < kMostLightGroups ? uint8_t(v.lightGroup) : kNoGroup;
+    groups[i] = v.lightGroup < kMaxLightGroups ? uint8_t(v.lightGroup) : kNoGroup;
     // Of light that gave nothing, what its weight would have been is left out.
     lit[i] = v.light > 0;
-    flags[i] = uint8_t((v.discrete ? kDiscrete : 0) | (v.both ? kBoth : 0));
+    flags[i] = uint8_t((v.discrete ? kDiscrete : 0) | (v.scattersBothSides ? kBoth : 0));
   }
   add("position", {3, count}, positions);
   for (const DirectionColumn& c : kDirections)
@@ -193,7 +193,7 @@ Pilot readColumns(const ShardReader& reader, const std::string& prefix, const Vi
   // What lengths claim is believed, and memory asked for, when there are as many positions.
   const auto positions = readColumn<int32_t>(reader, prefix + "position", count, 3);
   pilot.vertices.resize(count);
-  std::vector<PilotVertex>& vertices = pilot.vertices;
+  std::vector<PathVertex>& vertices = pilot.vertices;
   for (const DirectionColumn& c : kDirections) {
     const auto values = readColumn<uint16_t>(reader, prefix + c.name, count, 2);
     for (size_t i = 0; i < count; ++i) vertices[i].*c.field = directionAt(values, count, i);
@@ -216,7 +216,7 @@ Pilot readColumns(const ShardReader& reader, const std::string& prefix, const Vi
   size_t i = 0;
   for (size_t pixel = 0; pixel < pixels; ++pixel)
     for (uint16_t depth = 1; depth <= pilot.lengths[pixel]; ++depth, ++i) {
-      PilotVertex& v = vertices[i];
+      PathVertex& v = vertices[i];
       v.position = positionOf({positions[i], positions[count + i], positions[2 * count + i]}, frame);
       v.wo = depth == 1 ? directionAt(wo, pixels, pixel) : vertices[i - 1].wi * -1.0f;
       v.distance = float(distances[i]) * frame.edge;
@@ -224,7 +224,7 @@ Pilot readColumns(const ShardReader& reader, const std::string& prefix, const Vi
       v.raysAfter = rays[i];
       if (groups[i] != kNoGroup) v.lightGroup = groups[i];
       v.discrete = flags[i] & kDiscrete;
-      v.both = flags[i] & kBoth;
+      v.scattersBothSides = flags[i] & kBoth;
       v.sampleWeight = pilot.sampleWeight[pixel];
       v.pixel = uint32_t(pixel);
       v.depth = depth;

@@ -1,7 +1,8 @@
-// Pilot vertices as columns of 16 bits where that is enough: about 75 bytes a vertex, some 40 compressed, instead of 176.
+// Pilot vertices as columns of 16 bits where that is enough: about 75 bytes a vertex, some 40 compressed,
+// instead of 176.
 #pragma once
 
-#include <odis/pilot.h>
+#include <odis/path_vertex.h>
 
 #include <array>
 #include <span>
@@ -25,10 +26,10 @@ inline constexpr int kStepsPerCell = 1024;
 
 // One sample of every pixel of a view.
 struct Pilot {
-  std::vector<PilotVertex> vertices;  // pixel by pixel, along each path
-  std::vector<uint8_t> lengths;       // vertices of each pixel's path
-  std::vector<float> sampleWeight;    // of each pixel's path (reconstruction filter)
-  std::vector<render::Rgb> image;     // what each pixel's path brought, that weight included
+  std::vector<PathVertex> vertices;  // pixel by pixel, along each path
+  std::vector<uint8_t> lengths;      // vertices of each pixel's path
+  std::vector<float> sampleWeight;   // of each pixel's path (reconstruction filter)
+  std::vector<render::Rgb> image;    // what each pixel's path brought, that weight included
 };
 
 // A position in steps from the frame's origin, rounded down; back comes the middle of the step.
@@ -38,7 +39,8 @@ Float3 positionOf(const PositionSteps& steps, const ViewFrame& frame);
 
 // Adds the pilot's arrays, their names beginning with `prefix`.
 void addColumns(ShardWriter& writer, const std::string& prefix, const Pilot& pilot, const ViewFrame& frame);
-// The pilot of these arrays. Every vertex is as close to what it was as its columns are precise. Throws ShardError.
+// The pilot of these arrays. Every vertex is as close to what it was as its columns are precise. Throws
+// ShardError.
 Pilot readColumns(const ShardReader& reader, const std::string& prefix, const ViewFrame& frame);
 
 // A number in 16 bits: as far as a half reaches, infinity and what is not a number as they are.

@@ -107,19 +107,20 @@ LightMoments Converged::lights(size_t group) const {
 }
 
 std::array<Converged, 2> traceConverged(const render::Scene& scene, const render::LightSampler& lights,
-                                        std::span<const Start> starts, int paths, int maxDepth, uint64_t seed,
+                                        std::span<const Start> starts, const ConvergedSettings& settings,
                                         render::Progress& progress) {
-  TargetSettings settings;
-  settings.perTexel = kPerTexel;
-  const auto rounds = size_t(std::max(2, paths / kPathsOfTarget));
+  TargetSettings target;
+  target.perTexel = kPerTexel;
+  const auto rounds = size_t(std::max(2, settings.paths / kPathsOfTarget));
   progress.begin("converged", rounds);
   std::vector<Target> targets(rounds);
   tbb::parallel_for(size_t(0), rounds, [&](size_t round) {
     if (progress.cancelled()) return;
     // Each round has numbers of its own: a tracer takes a few consecutive seeds.
     constexpr uint64_t kSeedsOfTracer = 16;
-    TargetTracer tracer(scene, lights, settings,
-                        render::mixBits(seed ^ kConvergedSeed) + kSeedsOfTracer * round, maxDepth);
+    TargetTracer tracer(scene, lights, target,
+                        render::mixBits(settings.seed ^ kConvergedSeed) + kSeedsOfTracer * round,
+                        settings.maxDepth);
     tracer.trace(starts, targets[round]);
     progress.advance(1);
   });

@@ -1,10 +1,12 @@
-// What really arrives at the vertices of a cell: the samples of a target (learn/data/targets.h), many times over.
+// What really arrives at the vertices of a cell: the samples of a target (learn/data/targets.h), many times
+// over.
 #pragma once
 
 #include <functional>
 
 #include "learn/data/starts.h"
 #include "learn/data/targets.h"
+#include "render/path/progress.h"
 
 namespace odis::learn {
 
@@ -34,10 +36,16 @@ class Converged {
   std::vector<LightMoments> m_lights;  // sums; of squares in the place of roots
 };
 
-// About so many paths from these vertices, not deeper than `maxDepth` segments, in two independent halves. The same for any
-// number of threads. Stops early if progress is cancelled.
+struct ConvergedSettings {
+  int paths = 0;     // about so many
+  int maxDepth = 0;  // in segments
+  uint64_t seed = 0;
+};
+
+// Traces paths from these vertices, in two independent halves. The same for any number of threads. Stops
+// early if progress is cancelled.
 std::array<Converged, 2> traceConverged(const render::Scene& scene, const render::LightSampler& lights,
-                                        std::span<const Start> starts, int paths, int maxDepth, uint64_t seed,
+                                        std::span<const Start> starts, const ConvergedSettings& settings,
                                         render::Progress& progress);
 
 }  // namespace odis::learn

@@ -9,9 +9,11 @@
 
 #include "learn/inspect/place.h"
 #include "learn/inspect/vertex_integral.h"
-#include "odis/decisions/pack.h"
-#include "odis/decisions/texel_directions.h"
-#include "render/integrator/pilot_pass.h"
+#include "odis/cells/shrinkage.h"
+#include "odis/maps/pack.h"
+#include "odis/maps/texel_directions.h"
+#include "odis/models/model_parts.h"
+#include "render/integrators/pilot_pass.h"
 
 namespace odis::learn {
 
@@ -23,26 +25,25 @@ namespace {
 // At how many of a cell's vertices converged samples start, at most.
 constexpr size_t kMostStarts = 256;
 
-// Its histogram alone, made into a map as the formula does it with what it blends.
-SamplingMap mapOfHistogram(const CellStatistics& cell, float floor) {
+// A cell's histogram alone, made into a map as the formula does it with what it blends.
+PackedMap mapOfHistogram(const CellStatistics& cell, float floor) {
   const Histogram cosines = cosinesTo(meanNormal(cell));
-  DirectionDistribution distribution;
-  distribution.probability = cell.histogram;
-  for (size_t t = 0; t < kMapTexels; ++t) distribution.perCosine[t] = perCosine(cosines[t]);
-  return pack(distribution, floor);
+  Histogram radiance;
+  for (size_t t = 0; t < kMapTexels; ++t) radiance[t] = cell.histogram[t] * inverseCosine(cosines[t]);
+  return packedMap(radiance, floor);
 }
 
-// A map of these texels' radiance.
-SamplingMap mapOfRadiance(const Histogram& radiance, float floor) {
-  DirectionDistribution distribution;
-  distribution.probability = radiance;
-  distribution.perCosine.fill(1);
-  return pack(distribution, floor);
+// The map of a cell of a guide.
+PackedMap mapOfCell(const GuideView& view, uint32_t cell) {
+  PackedMap map;
+  std::copy_n(view.maps.sums + size_t(cell) * kSumsPerMap, kSumsPerMap, map.sums);
+  std::copy_n(view.maps.texels + size_t(cell) * kMapTexels, kMapTexels, map.texels);
+  return map;
 }
 
-Histogram texelsOf(const SamplingMap& map) {
+Histogram texelsOf(const PackedMap& map) {
   Histogram result;
-  std::copy(map.texels.begin(), map.texels.end(), result.begin());
+  std::copy_n(map.texels, kMapTexels, result.begin());
   return result;
 }
 
@@ -56,8 +57,8 @@ std::vector<Rgb> imageOf(const PilotPass& pilot, const render::Crop& crop) {
       for (int reach = 0; reach <= 8 && count == 0; ++reach)
         for (int py = std::max(y - reach, 0); py <= std::min(y + reach, crop.height - 1); ++py)
           for (int px = std::max(x - reach, 0); px <= std::min(x + reach, crop.width - 1); ++px) {
-            const render::PixelSums& pixel = pilot.image[size_t(py) * size_t(crop.width) + size_t(px)];
-            sum += pixel.sum;
+            const PixelSums& pixel = pilot.image[size_t(py) * size_t(crop.width) + size_t(px)];
+            sum += render::Rgbd(pixel.sum[0], pixel.sum[1], pixel.sum[2]);
             count += pixel.count;
           }
       if (count > 0)
@@ -110,12 +111,12 @@ class Inspector {
       m_guides.push_back({name, builder.build(m_pilot.vertices, m_pilot.pixelValues)});
     };
     GuideOptions formula = m_pilot.guideOptions;
-    formula.model = nullptr;
+    formula.model = formula.model.withDirectionFormula();
     build("formula", formula);
-    if (m_pilot.guideOptions.model)
-      build(m_options.guideOptions.model ? "model" : "network", m_pilot.guideOptions);
+    if (m_pilot.guideOptions.model.parts().directions) build("network", m_pilot.guideOptions);
     // The statistics that they were made from: the builder's own, with the same numbers.
-    m_store.add(PilotParts(&m_vertices, 1), m_pilot.guideOptions.cellsPerDiagonal);
+    const ArrayView<const PathVertex> vertices = m_pilot.vertices;
+    m_store.add(VertexParts(&vertices, 1), m_pilot.guideOptions.cellsPerDiagonal);
     m_cells = m_store.rollUp();
   }
 
@@ -143,8 +144,9 @@ class Inspector {
         starts.push_back(*start);
     if (starts.empty()) starts.push_back(m_place.start);
     const int depth = m_options.maxDepth < 0 ? kDeepestPath : m_options.maxDepth - int(m_place.vertex.depth);
-    m_halves = traceConverged(m_scene, m_lights, starts, m_settings.paths, std::clamp(depth, 1, kDeepestPath),
-                              m_options.seed, m_progress);
+    m_halves =
+        traceConverged(m_scene, m_lights, starts,
+                       {m_settings.paths, std::clamp(depth, 1, kDeepestPath), m_options.seed}, m_progress);
     m_truth = m_halves[0];
     m_truth.add(m_halves[1]);
     m_result.starts = uint32_t(starts.size());
@@ -155,10 +157,12 @@ class Inspector {
   }
 
   const Guide& guide() const { return m_guides.back().guide; }
-  const Cell& cellOf(const Guide& guide) const { return *guide.find(m_place.position, m_place.normal); }
+  uint32_t cellOf(const Guide& guide) const {
+    return odis::findCell(guide.view(), {m_place.position, m_place.normal, 0, 0});
+  }
 
   void describeVertex() {
-    const PilotVertex& v = m_result.vertex = m_place.vertex;
+    const PathVertex& v = m_result.vertex = m_place.vertex;
     const render::Crop& crop = m_result.crop = m_scene.film().crop;
     m_result.pixel = render::Vec2i(crop.x + int(v.pixel) % crop.width, crop.y + int(v.pixel) / crop.width);
     m_result.image = imageOf(m_pilot, crop);
@@ -167,28 +171,32 @@ class Inspector {
       if (m_vertices[i].depth == 1) pixels.insert(m_vertices[i].pixel);
     m_result.cellPixels.assign(pixels.begin(), pixels.end());
     m_result.guidable = v.guidableProbability;
-    m_result.cell = cellOf(guide());
-    m_result.alpha = v.guidableProbability > 0 ? m_result.cell.alpha[int(materialClass(v.roughness))] : 1;
+    m_result.cell = guide().view().decisions[cellOf(guide())];
+    m_result.bsdfFraction =
+        v.guidableProbability > 0
+            ? m_result.cell.bsdfFraction[roughnessClass(guide().view().rules, v.roughness)]
+            : 1;
     m_result.pixelValue = m_pilot.pixelValues[v.pixel];
-    m_result.survival = m_options.roulette != render::RouletteKind::throughput
-                            ? survivalProbability(m_result.cell, 1 / m_result.pixelValue)
-                            : 1;
+    m_result.survival =
+        m_options.roulette != render::RouletteKind::throughput
+            ? survivalProbability(guide().view().rules, m_result.cell.survivalFactor, 1 / m_result.pixelValue)
+            : 1;
   }
 
   void describeLevels() {
     const VertexIntegral integral(m_place.start, m_truth);
     const float floor = m_pilot.guideOptions.floor;
-    const SamplingMap converged = mapOfRadiance(integral.texels(), floor);
+    const PackedMap converged = packedMap(integral.texels(), floor);
     for (uint32_t c = m_cell; c != kNoCell; c = m_cells[c].parent) {
       const CellStatistics& cell = m_cells[c];
       LevelView& level = m_result.levels.emplace_back();
       level.cell = c;
       level.edge = m_store.grid().finestEdge() * float(1 << cell.level);
       level.effective = effectiveSamples(cell.sum, cell.sumSquares);
-      level.own = level.effective / (level.effective + m_pilot.guideOptions.trust[cell.level]);
+      level.own = ownWeight(level.effective, m_pilot.guideOptions.priorSamples[cell.level]);
       level.statistics = cell;
       level.histogram = squareOf(cell.histogram);
-      level.judgement = integral.judge(mapOfHistogram(cell, floor), converged, m_result.alpha);
+      level.judgement = integral.judge(mapOfHistogram(cell, floor), converged, m_result.bsdfFraction);
       level.judgement.entropy = entropyOf(cell.histogram);
     }
   }
@@ -199,29 +207,30 @@ class Inspector {
     for (const size_t i : m_members) sum += sampleValue(m_vertices[i]);
     const double scale = sum > 0 ? double(m_members.size()) / sum : 0;
     for (const size_t i : m_members) {
-      const PilotVertex& v = m_vertices[i];
+      const PathVertex& v = m_vertices[i];
       m_result.samples.push_back({directionToSquare(reaim(v.position, v.wi, v.distance, cell.centroid)),
                                   float(sampleValue(v) * scale)});
     }
   }
 
   void describeMaps() {
-    const float floor = m_pilot.guideOptions.floor, alpha = m_result.alpha;
+    const float floor = m_pilot.guideOptions.floor, bsdfFraction = m_result.bsdfFraction;
     const VertexIntegral integral(m_place.start, m_truth);
-    const SamplingMap truth = mapOfRadiance(integral.texels(), floor);
-    const auto fill = [&](MapView& view, const SamplingMap& map) {
-      const VertexMap here = integral.at(map);
+    const PackedMap truth = packedMap(integral.texels(), floor);
+    const auto fill = [&](MapView& view, const PackedMap& map) {
+      const VertexMap<float> here = integral.at(map);
       view.timesCosine = squareOf(here);
-      view.mixture = integral.mixture(here, alpha);
-      view.judgement = integral.judge(map, truth, alpha);
+      view.mixture = integral.mixture(here, bsdfFraction);
+      view.judgement = integral.judge(map, truth, bsdfFraction);
     };
     for (const NamedGuide& g : m_guides) {
-      const Cell& cell = cellOf(g.guide);
+      const uint32_t cell = cellOf(g.guide);
+      const PackedMap map = mapOfCell(g.guide.view(), cell);
       MapView& view = m_result.maps.emplace_back();
       view.name = g.name;
-      view.radiance = squareOf(texelsOf(cell.map));
-      std::copy_n(cell.alpha, kMaterialClasses, view.alpha);
-      fill(view, cell.map);
+      view.radiance = squareOf(texelsOf(map));
+      std::copy_n(g.guide.view().decisions[cell].bsdfFraction, kRoughnessClasses, view.bsdfFraction);
+      fill(view, map);
     }
     m_result.converged.name = "converged";
     m_result.converged.radiance = integral.radiance();
@@ -230,14 +239,14 @@ class Inspector {
     m_result.best = integral.best();
     m_result.bsdfAlone.moment = m_result.bsdfAlone.bestMoment = integral.moment(integral.at(truth), 1);
 
-    SamplingMap halves[2];
+    PackedMap halves[2];
     for (size_t i = 0; i < 2; ++i)
-      halves[i] = mapOfRadiance(VertexIntegral(m_place.start, m_halves[i]).texels(), floor);
+      halves[i] = packedMap(VertexIntegral(m_place.start, m_halves[i]).texels(), floor);
     m_result.noise = divergence(integral.at(halves[0]), integral.at(halves[1]));
   }
 
   void describeLights() {
-    m_result.lightShare = m_result.cell.lightShare;
+    m_result.lightShare = m_result.cell.learnedLightFraction;
     render::LightReference reference = m_place.start.reference;
     for (uint32_t group = 0; group < m_lights.groupCount(); ++group) {
       GroupView& view = m_result.groups.emplace_back();
@@ -245,7 +254,7 @@ class Inspector {
       reference.learned = {};
       view.unlearned = m_lights.groupProbability(reference, group);
       if (m_options.lights != render::LightChoiceKind::hierarchy)
-        reference.learned = guide().lights(cellOf(guide()));
+        reference.learned = learnedLights(guide().view(), cellOf(guide()));
       view.learned = m_lights.groupProbability(reference, group);
       view.converged = m_truth.lights(group);
     }
@@ -257,7 +266,7 @@ class Inspector {
   render::Progress& m_progress;
   render::LightSampler m_lights;
   PilotPass m_pilot;
-  std::span<const PilotVertex> m_vertices;  // the pilot's
+  std::span<const PathVertex> m_vertices;  // the pilot's
   std::vector<NamedGuide> m_guides;
   CellStore m_store;
   std::vector<CellStatistics> m_cells;

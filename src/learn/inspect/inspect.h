@@ -8,23 +8,21 @@
 
 #include "learn/data/targets.h"
 #include "odis/cells/statistics.h"
-#include "render/integrator/render.h"
+#include "render/integrators/render.h"
 
 namespace odis::learn {
 
 struct InspectSettings {
   // The first vertex of a pixel's path that may be guided; the pixel counts in the full image.
   std::optional<render::Vec2i> pixel;
-  // Or the cell at a point, of surfaces that face about this way; without a normal the finest cell there, and of several
-  // that with the most samples.
+  // Or the cell at a point, of surfaces that face about this way; without a normal the finest cell there,
+  // and of several that with the most samples.
   std::optional<Float3> point, normal;
   int paths = 1 << 17;  // that what really arrives is measured with, about
 };
 
-inline constexpr float kUnknown = std::numeric_limits<float>::quiet_NaN();
-
-// A function of direction: an equal-area octahedral square of `side` texels a side, row by row, over its mean on the whole
-// sphere: 1 everywhere if it is even. kUnknown where nothing was measured.
+// A function of direction: an equal-area octahedral square of `side` texels a side, row by row, over its
+// mean on the whole sphere: 1 everywhere if it is even. kUnknown where nothing was measured.
 struct SquareMap {
   int side = 0;
   std::vector<float> values;
@@ -34,10 +32,11 @@ struct SquareMap {
 struct Judgement {
   float entropy = 0;     // of the map in bits; 8: even
   float divergence = 0;  // of (map x cosine) from (converged map x cosine): Kullback and Leibler's, in bits
-  // The second moment of what the vertex scatters, next-event estimate and one sampled direction, over its squared mean:
-  // with the cell's alpha, and with the best one. kUnknown where nothing arrives.
+  // The second moment of what the vertex scatters, next-event estimate and one sampled direction, over its
+  // squared mean: with the cell's BSDF sampling fraction, and with the best one. kUnknown where nothing
+  // arrives.
   float moment = kUnknown, bestMoment = kUnknown;
-  float bestAlpha = 1;
+  float bestBsdfFraction = 1;
 };
 
 // A cell, or one around it.
@@ -55,9 +54,9 @@ struct LevelView {
 struct MapView {
   std::string name;
   SquareMap radiance, timesCosine;  // the map, and its density at the vertex
-  SquareMap mixture;                // with the BSDF, at the cell's alpha
+  SquareMap mixture;                // with the BSDF, at the cell's BSDF sampling fraction
   Judgement judgement;
-  float alpha[kMaterialClasses] = {1, 1, 1};  // that the guide chose for its map
+  float bsdfFraction[kRoughnessClasses] = {1, 1, 1};  // that the guide chose for its map
 };
 
 struct GroupView {
@@ -67,8 +66,8 @@ struct GroupView {
   LightMoments converged;
 };
 
-// A pilot's sample of the cell: where it came from, seen from the cell's centroid, and its radiance x cosine / density over
-// the mean of the cell's samples.
+// A pilot's sample of the cell: where it came from, seen from the cell's centroid, and its radiance x
+// cosine / density over the mean of the cell's samples.
 struct SampleDot {
   Float2 at;
   float value = 0;
@@ -81,12 +80,12 @@ struct Inspection {
   render::Vec2i pixel{0, 0};         // of the vertex, in the full image
   std::vector<uint32_t> cellPixels;  // of the crop, whose first vertices are in the cell
 
-  PilotVertex vertex;  // that everything is looked at from
-  float guidable = 0;  // probability that its BSDF draws a direction that may be guided
-  float alpha = 1;     // of its material class
+  PathVertex vertex;       // that everything is looked at from
+  float guidable = 0;      // probability that its BSDF draws a direction that may be guided
+  float bsdfFraction = 1;  // of its material class
   float pixelValue = 0;
   float survival = 1;  // by learned roulette, of a path whose throughput is one
-  Cell cell;           // what the guide says; by the chosen model
+  CellDecisions cell;  // what the guide says; by the chosen model
 
   std::vector<LevelView>
       levels;  // from the finest that the pilot saw something in; its statistics()'s level says which
@@ -106,8 +105,8 @@ struct Inspection {
   float outgoingRays = 0;  // rays that this takes
 };
 
-// Traces the scene's pilot as `render` with these options does, builds its guide, and looks into it. Throws OptionError
-// where there is no such place or the pilot saw nothing there. Nothing if it was interrupted.
+// Traces the scene's pilot as `render` with these options does, builds its guide, and looks into it. Throws
+// OptionError where there is no such place or the pilot saw nothing there. Nothing if it was interrupted.
 std::optional<Inspection> inspect(const render::Scene& scene, const render::RenderOptions& options,
                                   const InspectSettings& settings, render::Progress& progress);
 

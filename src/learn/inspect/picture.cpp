@@ -100,7 +100,8 @@ class Painter {
     map(view.timesCosine);
     caption(view.name + ": map x cosine");
     map(view.mixture);
-    caption(fmt::format("mixture, alpha {:.2g}{}", m_in.alpha, m_in.alpha < 1 ? "" : ": the BSDF"));
+    caption(fmt::format("mixture, BSDF fraction {:.2g}{}", m_in.bsdfFraction,
+                        m_in.bsdfFraction < 1 ? "" : ": the BSDF"));
     ratio(view.mixture, m_in.best);
     caption("mixture over BSDF x radiance");
     lines(mapWords(m_in, view), 3);

@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "render/integrator/pass.h"
+#include "render/path/pass.h"
 
 namespace odis::learn {
 
@@ -21,10 +21,10 @@ std::string text(const Float3& v) {
   return fmt::format("{:.4g},{:.4g},{:.4g}", v.x, v.y, v.z);
 }
 
-[[noreturn]] void failNear(std::span<const PilotVertex> pilot, const CellGrid& grid, const Float3& point,
+[[noreturn]] void failNear(std::span<const PathVertex> pilot, const CellGrid& grid, const Float3& point,
                            const char* facing) {
-  const PilotVertex* nearest = nullptr;
-  for (const PilotVertex& v : pilot)
+  const PathVertex* nearest = nullptr;
+  for (const PathVertex& v : pilot)
     if (isUsable(v) && (!nearest || distance(v.position, point) < distance(nearest->position, point)))
       nearest = &v;
   const float widest = grid.finestEdge() * float(1 << (kCellLevels - 1));
@@ -56,7 +56,7 @@ InspectedPlace placeOfPixel(const render::Scene& scene, const render::LightSampl
   float filterWeight;
   const render::Ray ray = render::cameraRay(scene, pixel, sampler, filterWeight);
   render::Path path(ray, sampler);
-  std::vector<PilotVertex> vertices;
+  std::vector<PathVertex> vertices;
   render::tracePaths(settings, std::span(&path, 1), &vertices);
   for (size_t i = 0; i < vertices.size(); ++i) {
     vertices[i].pixel = uint32_t((pixel.y - crop.y) * crop.width + pixel.x - crop.x);
@@ -77,7 +77,7 @@ uint32_t finestCell(const CellStore& store, const Float3& position, const Float3
   return kNoCell;
 }
 
-std::vector<size_t> membersOf(std::span<const PilotVertex> pilot, const CellGrid& grid, uint64_t key,
+std::vector<size_t> membersOf(std::span<const PathVertex> pilot, const CellGrid& grid, uint64_t key,
                               int level) {
   std::vector<size_t> members;
   for (size_t i = 0; i < pilot.size(); ++i)
@@ -86,7 +86,7 @@ std::vector<size_t> membersOf(std::span<const PilotVertex> pilot, const CellGrid
   return members;
 }
 
-InspectedPlace placeAtPoint(const render::Scene& scene, std::span<const PilotVertex> pilot,
+InspectedPlace placeAtPoint(const render::Scene& scene, std::span<const PathVertex> pilot,
                             const CellStore& store, std::span<const CellStatistics> cells,
                             const Float3& point, const std::optional<Float3>& normal) {
   // Cells are split by the axis that normals are nearest to: without a normal, all six are asked.

@@ -16,7 +16,7 @@ std::string number(float value) {
 std::string judgementRow(const std::string& name, const Judgement& j, const Judgement& truth) {
   return fmt::format("{:<22} {:>8.2f} {:>11.3f} {:>9} {:>7} {:>9} {:>6.2g} {:>7}\n", name, j.entropy,
                      j.divergence, number(j.moment), number(j.moment / truth.moment), number(j.bestMoment),
-                     j.bestAlpha, number(j.bestMoment / truth.bestMoment));
+                     j.bestBsdfFraction, number(j.bestMoment / truth.bestMoment));
 }
 
 std::string lightName(const render::LightGroup& group) {
@@ -43,13 +43,13 @@ nlohmann::ordered_json jsonJudgement(const Judgement& j, const Judgement& truth)
           {"divergence", jsonNumber(j.divergence)},
           {"moment", jsonNumber(j.moment)},
           {"momentRatio", jsonNumber(j.moment / truth.moment)},
-          {"bestAlpha", j.bestAlpha},
+          {"bestBsdfFraction", j.bestBsdfFraction},
           {"bestMoment", jsonNumber(j.bestMoment)},
           {"bestMomentRatio", jsonNumber(j.bestMoment / truth.bestMoment)}};
 }
 nlohmann::ordered_json jsonView(const MapView& view, const Judgement& truth) {
   return {{"name", view.name},
-          {"alpha", view.alpha},
+          {"bsdfFraction", view.bsdfFraction},
           {"judgement", jsonJudgement(view.judgement, truth)},
           {"radiance", jsonMap(view.radiance)},
           {"timesCosine", jsonMap(view.timesCosine)},
@@ -71,14 +71,14 @@ std::string inspectionText(const Inspection& in, const std::string& title) {
 
   const Judgement& truth = in.converged.judgement;
   out += fmt::format("\n{:<22} {:>8} {:>11} {:>9} {:>7} {:>9} {:>6} {:>7}\n", "map", "entropy", "divergence",
-                     "moment", "ratio", "at best", "alpha", "ratio");
+                     "moment", "ratio", "at best", "fraction", "ratio");
   for (const MapView& map : in.maps) out += judgementRow(map.name, map.judgement, truth);
   for (const LevelView& l : in.levels)
     out += judgementRow(fmt::format("histogram of level {}", l.statistics.level), l.judgement, truth);
   out += judgementRow("converged", truth, truth);
   for (const MapView& map : in.maps)
-    out += fmt::format("alpha by {}: diffuse {:.2g}, rough {:.2g}, glossy {:.2g}\n", map.name, map.alpha[0],
-                       map.alpha[1], map.alpha[2]);
+    out += fmt::format("BSDF fraction by {}: diffuse {:.2g}, rough {:.2g}, glossy {:.2g}\n", map.name,
+                       map.bsdfFraction[0], map.bsdfFraction[1], map.bsdfFraction[2]);
 
   if (!in.groups.empty())
     out += fmt::format("\n{:<6} {:<36} {:>9} {:>9} {:>11} {:>11}\n", "group", "lights", "unlearned",
@@ -115,23 +115,23 @@ nlohmann::ordered_json toJson(const Inspection& in) {
                       {"rms", jsonNumber(g.converged.misRms)}});
   nlohmann::ordered_json samples = nlohmann::ordered_json::array();
   for (const SampleDot& dot : in.samples) samples.push_back({dot.at.x, dot.at.y, jsonNumber(dot.value)});
-  const PilotVertex& v = in.vertex;
+  const PathVertex& v = in.vertex;
   return {{"vertex",
            {{"pixel", {in.pixel.x, in.pixel.y}},
             {"depth", v.depth},
             {"position", jsonVector(v.position)},
             {"normal", jsonVector(v.normal)},
             {"roughness", v.roughness},
-            {"materialClass", className(materialClass(v.roughness))},
+            {"roughnessClass", className(roughnessClass(GuideRules(), v.roughness))},
             {"guidable", in.guidable},
-            {"alpha", in.alpha},
+            {"bsdfFraction", in.bsdfFraction},
             {"pixelValue", jsonNumber(in.pixelValue)},
             {"survival", in.survival}}},
           {"cell",
-           {{"alpha", in.cell.alpha},
-            {"worth", jsonNumber(in.cell.worth)},
-            {"expected", jsonVector(in.cell.expected)},
-            {"lightShare", in.lightShare}}},
+           {{"bsdfFraction", in.cell.bsdfFraction},
+            {"survivalFactor", jsonNumber(in.cell.survivalFactor)},
+            {"outgoingRadiance", jsonVector(in.cell.outgoingRadiance)},
+            {"learnedLightFraction", in.lightShare}}},
           {"levels", levels},
           {"maps", maps},
           {"converged", jsonView(in.converged, truth)},

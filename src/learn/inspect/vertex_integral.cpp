@@ -2,16 +2,17 @@
 
 #include <cmath>
 
-#include "odis/decisions/selection.h"
-#include "render/integrator/features.h"
+#include "odis/mixture.h"
+#include "odis/models/second_moments.h"
+#include "render/path/features.h"
 
 namespace odis::learn {
 
 namespace {
 
 constexpr int kEach = 4;  // directions a side of a texel of targets
-constexpr int kSide = kEach * kTargetSize;
-constexpr int kDirections = kSide * kSide;
+constexpr int kGridSide = kEach * kTargetSize;
+constexpr int kDirections = kGridSide * kGridSide;
 constexpr double kSphere = 4 * M_PI;
 
 // Radiance from a direction as MIS weights it where it has this density.
@@ -33,20 +34,19 @@ void normalize(SquareMap& map) {
 }  // namespace
 
 VertexIntegral::VertexIntegral(const Start& start, const Converged& arriving)
-    : m_normal(render::toOdis(start.reference.n)),
-      m_sides(start.reference.both ? Sides::both : Sides::reflection) {
+    : m_normal(render::toOdis(start.reference.n)), m_belowSign(start.reference.both ? -1.0f : 0.0f) {
   const render::Bsdf& bsdf = start.at.shape->bsdf();
   m_guidable = bsdf.guidableProbability(start.at, start.wo);
   for (size_t t = 0; t < kTargetTexels; ++t) m_arriving.push_back(arriving.texel(t));
   m_directions.resize(kDirections);
   for (int i = 0; i < kDirections; ++i) {
-    const int x = i % kSide, y = i / kSide;
-    constexpr int kOfMap = kSide / kMapSize;
+    const int x = i % kGridSide, y = i / kGridSide;
+    constexpr int kOfMap = kGridSide / kMapSize;
     Direction& d = m_directions[size_t(i)];
     d.texel = texelAt(x / kOfMap, y / kOfMap);
     d.target = y / kEach * kTargetSize + x / kEach;
     if (!bsdf.traits().evaluable) continue;
-    const Float3 wi = squareToDirection({(float(x) + 0.5f) / kSide, (float(y) + 0.5f) / kSide});
+    const Float3 wi = squareToDirection(Float2{(float(x) + 0.5f) / kGridSide, (float(y) + 0.5f) / kGridSide});
     const render::BsdfValue value =
         bsdf.evaluate(start.at, start.wo, start.at.shading.toLocal(render::fromOdis(wi)));
     d.value = render::luminance(value.value);
@@ -55,22 +55,23 @@ VertexIntegral::VertexIntegral(const Start& start, const Converged& arriving)
   }
 }
 
-VertexMap VertexIntegral::at(const SamplingMap& map) const {
-  VertexMap result;
-  result.prepare(map, m_normal, m_sides);
+VertexMap<float> VertexIntegral::at(const PackedMap& map) const {
+  VertexMap<float> result;
+  result.prepare(map.arrays(), 0, m_normal, m_belowSign);
   return result;
 }
 
-// With f the BSDF times the cosine, q the mixture's density and l that of next-event estimation, indirect radiance I and
-// emission E that arrive, and w = q^2 / (q^2 + l^2): the direction's estimate is D = f (I + w E) / q, next-event
-// estimation's N = f (1 - w) E / l. Given the vertex they are independent: E[(D + N)^2] = E[D^2] + 2 E[D] E[N] + E[N^2].
-float VertexIntegral::moment(const VertexMap& map, float alpha) const {
+// With f the BSDF times the cosine, q the mixture's density and l that of next-event estimation, indirect
+// radiance I and emission E that arrive, and w = q^2 / (q^2 + l^2): the direction's estimate is D = f (I +
+// w E) / q, next-event estimation's N = f (1 - w) E / l. Given the vertex they are independent: E[(D +
+// N)^2] = E[D^2] + 2 E[D] E[N] + E[N^2].
+float VertexIntegral::moment(const VertexMap<float>& map, float bsdfFraction) const {
   std::array<float, kMapTexels> mapPdf;
   for (int t = 0; t < kMapTexels; ++t) mapPdf[size_t(t)] = map.texelPdf(t);
   double direction = 0, directionSquares = 0, light = 0, lightSquares = 0;
   for (const Direction& d : m_directions) {
     if (!(d.value > 0)) continue;
-    const double q = mixturePdf(d.pdf, d.guidablePdf, m_guidable, alpha, mapPdf[size_t(d.texel)]);
+    const double q = mixturePdf(d.pdf, d.guidablePdf, m_guidable, bsdfFraction, mapPdf[size_t(d.texel)]);
     if (!(q > 0)) continue;
     const Converged::Texel& from = m_arriving[size_t(d.target)];
     const double l = from.lightPdf, ofDirection = q * q / (q * q + l * l);
@@ -90,17 +91,17 @@ float VertexIntegral::moment(const VertexMap& map, float alpha) const {
                   : kUnknown;
 }
 
-Judgement VertexIntegral::judge(const SamplingMap& map, const SamplingMap& converged, float alpha) const {
-  const VertexMap here = at(map);
+Judgement VertexIntegral::judge(const PackedMap& map, const PackedMap& converged, float bsdfFraction) const {
+  const VertexMap<float> here = at(map);
   Judgement result;
-  result.entropy = render::entropy(map);
+  result.entropy = render::entropy(map.texels);
   result.divergence = divergence(here, at(converged));
-  result.moment = moment(here, alpha);
-  for (const float candidate : kAlphas) {
+  result.moment = moment(here, bsdfFraction);
+  for (const float candidate : kBsdfFractions) {
     const float moment = this->moment(here, candidate);
     if (std::isnan(moment) || result.bestMoment <= moment) continue;
     result.bestMoment = moment;
-    result.bestAlpha = candidate;
+    result.bestBsdfFraction = candidate;
   }
   return result;
 }
@@ -133,9 +134,9 @@ SquareMap VertexIntegral::best() const {
   return means(
       [](const Direction& d, const Converged::Texel& from) { return d.value * weighted(from, d.pdf); });
 }
-SquareMap VertexIntegral::mixture(const VertexMap& map, float alpha) const {
+SquareMap VertexIntegral::mixture(const VertexMap<float>& map, float bsdfFraction) const {
   return means([&](const Direction& d, const Converged::Texel&) {
-    return mixturePdf(d.pdf, d.guidablePdf, m_guidable, alpha, map.texelPdf(d.texel));
+    return mixturePdf(d.pdf, d.guidablePdf, m_guidable, bsdfFraction, map.texelPdf(d.texel));
   });
 }
 
@@ -147,7 +148,7 @@ SquareMap squareOf(const Histogram& texels) {
   return result;
 }
 
-SquareMap squareOf(const VertexMap& map) {
+SquareMap squareOf(const VertexMap<float>& map) {
   Histogram density;
   for (int t = 0; t < kMapTexels; ++t) density[size_t(t)] = map.texelPdf(t);
   return squareOf(density);
@@ -163,7 +164,7 @@ float entropyOf(const Histogram& weights) {
   return sum > 0 ? float(std::log2(sum) - logs / sum) : 0;
 }
 
-float divergence(const VertexMap& map, const VertexMap& other) {
+float divergence(const VertexMap<float>& map, const VertexMap<float>& other) {
   double sum = 0;
   for (int t = 0; t < kMapTexels; ++t) {
     const double p = other.texelPdf(t), q = map.texelPdf(t);

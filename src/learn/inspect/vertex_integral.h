@@ -3,34 +3,35 @@
 
 #include "learn/inspect/converged.h"
 #include "learn/inspect/inspect.h"
+#include "odis/maps/pack.h"
 
 namespace odis::learn {
 
-// Directions lie on a grid finer than any map's: 128 x 128 points of the equal-area octahedral square, so that lobes of
-// roughness 0.05 and more are resolved. BSDF and densities are evaluated there; what arrives is known a texel of
-// targets. Perfect mirrors and glass, which no density changes, are left out.
+// Directions lie on a grid finer than any map's: 128 x 128 points of the equal-area octahedral square, so
+// that lobes of roughness 0.05 and more are resolved. BSDF and densities are evaluated there; what arrives
+// is known a texel of targets. Perfect mirrors and glass, which no density changes, are left out.
 class VertexIntegral {
  public:
   VertexIntegral(const Start& start, const Converged& arriving);
 
   // A map as the vertex sees it. The map must outlive the result.
-  VertexMap at(const SamplingMap& map) const;
+  VertexMap<float> at(const PackedMap& map) const;
 
-  // The second moment over the squared mean of what the vertex scatters: next-event estimation (of emitters that can be
-  // met; without a choice among them that was learned) and one direction from `map` times the cosine, mixed with the BSDF
-  // as mixturePdf() says, both weighted by MIS. The direction's radiance has the noise of single paths. kUnknown where
-  // nothing is scattered.
-  float moment(const VertexMap& map, float alpha) const;
+  // The second moment over the squared mean of what the vertex scatters: next-event estimation (of emitters
+  // that can be met; without a choice among them that was learned) and one direction from `map` times the
+  // cosine, mixed with the BSDF as mixturePdf() says, both weighted by MIS. The direction's radiance has
+  // the noise of single paths. kUnknown where nothing is scattered.
+  float moment(const VertexMap<float>& map, float bsdfFraction) const;
   // All there is to say of a map: `converged` is the one that its divergence is measured from.
-  Judgement judge(const SamplingMap& map, const SamplingMap& converged, float alpha) const;
+  Judgement judge(const PackedMap& map, const PackedMap& converged, float bsdfFraction) const;
 
-  // Radiance that arrives, emission weighted by MIS against the BSDF as the pilot's is; of radiance() kUnknown where
-  // nothing was measured, 0 there of texels(), which has those of maps.
+  // Radiance that arrives, emission weighted by MIS against the BSDF as the pilot's is; of radiance()
+  // kUnknown where nothing was measured, 0 there of texels(), which has those of maps.
   SquareMap radiance() const;
   Histogram texels() const;
   SquareMap bsdf() const;  // f |cos|, luminance
   SquareMap best() const;  // that times the radiance
-  SquareMap mixture(const VertexMap& map, float alpha) const;
+  SquareMap mixture(const VertexMap<float>& map, float bsdfFraction) const;
 
  private:
   struct Direction {
@@ -45,17 +46,17 @@ class VertexIntegral {
   std::vector<Converged::Texel> m_arriving;
   float m_guidable;
   Float3 m_normal;
-  Sides m_sides;
+  float m_belowSign;  // as VertexMap::prepare() takes it
 };
 
 // The map as texels row by row, over its mean.
 SquareMap squareOf(const Histogram& texels);
 // The density of each texel, over the even one.
-SquareMap squareOf(const VertexMap& map);
+SquareMap squareOf(const VertexMap<float>& map);
 
 // In bits, of densities over a map's texels that need not sum to one; 0 log 0 is 0.
 float entropyOf(const Histogram& weights);
 // Of the density of `other` from that of `map`.
-float divergence(const VertexMap& map, const VertexMap& other);
+float divergence(const VertexMap<float>& map, const VertexMap<float>& other);
 
 }  // namespace odis::learn

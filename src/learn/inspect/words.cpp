@@ -8,25 +8,25 @@ namespace odis::learn {
 
 namespace {
 
-std::string text(const Float3& v) {
+std::string vectorText(const Float3& v) {
   return fmt::format("{:.4g},{:.4g},{:.4g}", v.x, v.y, v.z);
 }
-std::string number(float value) {
+std::string roundedText(float value) {
   return std::isnan(value) ? "-" : fmt::format("{:.3g}", value);
 }
 
 }  // namespace
 
-const char* className(MaterialClass materialClass) {
-  constexpr const char* kNames[kMaterialClasses] = {"diffuse", "rough", "glossy"};
-  return kNames[int(materialClass)];
+const char* className(int roughnessClass) {
+  constexpr const char* kNames[kRoughnessClasses] = {"diffuse", "rough", "glossy"};
+  return kNames[roughnessClass];
 }
 
 std::string placeWords(const Inspection& in) {
-  const PilotVertex& v = in.vertex;
+  const PathVertex& v = in.vertex;
   return fmt::format("vertex {} of pixel {},{} at {}, normal {}, {} (roughness {:.2g}), guidable {:.2g}",
-                     v.depth, in.pixel.x, in.pixel.y, text(v.position), text(v.normal),
-                     className(materialClass(v.roughness)), v.roughness, in.guidable);
+                     v.depth, in.pixel.x, in.pixel.y, vectorText(v.position), vectorText(v.normal),
+                     className(roughnessClass(GuideRules(), v.roughness)), v.roughness, in.guidable);
 }
 
 std::string cellWords(const Inspection& in) {
@@ -38,32 +38,33 @@ std::string cellWords(const Inspection& in) {
 }
 
 std::vector<std::string> decisionWords(const Inspection& in) {
-  const float* alpha = in.cell.alpha;
-  return {fmt::format("alpha: diffuse {:.2g}, rough {:.2g}, glossy {:.2g}; here {:.2g}", alpha[0], alpha[1],
-                      alpha[2], in.alpha),
-          fmt::format("survival {:.2f} at throughput 1, worth {:.3g}, pixel {:.3g}", in.survival,
-                      in.cell.worth, in.pixelValue),
-          fmt::format("expected {}", text(in.cell.expected)),
-          fmt::format("converged {}, rms {:.3g}, {:.1f} rays", text(in.outgoing), in.outgoingRms,
-                      in.outgoingRays),
-          fmt::format("lights: {:.0f} % of the choices are learned", 100 * in.lightShare),
-          fmt::format("{} paths from {} vertices; noise {:.3f} bits", in.paths, in.starts, in.noise),
-          fmt::format("second moment: BSDF alone {}, converged {}", number(in.bsdfAlone.moment),
-                      number(in.converged.judgement.moment)),
-          fmt::format("at its best alpha {:.2g} converged {}", in.converged.judgement.bestAlpha,
-                      number(in.converged.judgement.bestMoment))};
+  const float* bsdfFraction = in.cell.bsdfFraction;
+  return {
+      fmt::format("BSDF fraction: diffuse {:.2g}, rough {:.2g}, glossy {:.2g}; here {:.2g}", bsdfFraction[0],
+                  bsdfFraction[1], bsdfFraction[2], in.bsdfFraction),
+      fmt::format("survival {:.2f} at throughput 1, survival factor {:.3g}, pixel {:.3g}", in.survival,
+                  in.cell.survivalFactor, in.pixelValue),
+      fmt::format("mean outgoing radiance {}", vectorText(in.cell.outgoingRadiance)),
+      fmt::format("converged {}, rms {:.3g}, {:.1f} rays", vectorText(in.outgoing), in.outgoingRms,
+                  in.outgoingRays),
+      fmt::format("lights: {:.0f} % of the choices are learned", 100 * in.lightShare),
+      fmt::format("{} paths from {} vertices; noise {:.3f} bits", in.paths, in.starts, in.noise),
+      fmt::format("second moment: BSDF alone {}, converged {}", roundedText(in.bsdfAlone.moment),
+                  roundedText(in.converged.judgement.moment)),
+      fmt::format("at its best BSDF fraction {:.2g} converged {}", in.converged.judgement.bestBsdfFraction,
+                  roundedText(in.converged.judgement.bestMoment))};
 }
 
 std::vector<std::string> mapWords(const Inspection& in, const MapView& map) {
   const Judgement &own = map.judgement, &truth = in.converged.judgement;
   return {fmt::format("entropy {:.2f} bits (converged: {:.2f})", own.entropy, truth.entropy),
           fmt::format("divergence from the converged map {:.3f} bits", own.divergence),
-          fmt::format("second moment over squared mean {}: {} x converged's", number(own.moment),
-                      number(own.moment / truth.moment)),
-          fmt::format("at its best alpha {:.2g}: {}, {} x converged's", own.bestAlpha, number(own.bestMoment),
-                      number(own.bestMoment / truth.bestMoment)),
-          fmt::format("alpha by this map: diffuse {:.2g}, rough {:.2g}, glossy {:.2g}", map.alpha[0],
-                      map.alpha[1], map.alpha[2])};
+          fmt::format("second moment over squared mean {}: {} x converged's", roundedText(own.moment),
+                      roundedText(own.moment / truth.moment)),
+          fmt::format("at its best BSDF fraction {:.2g}: {}, {} x converged's", own.bestBsdfFraction,
+                      roundedText(own.bestMoment), roundedText(own.bestMoment / truth.bestMoment)),
+          fmt::format("BSDF fraction by this map: diffuse {:.2g}, rough {:.2g}, glossy {:.2g}",
+                      map.bsdfFraction[0], map.bsdfFraction[1], map.bsdfFraction[2])};
 }
 
 }  // namespace odis::learn

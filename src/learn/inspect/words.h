@@ -8,7 +8,7 @@
 
 namespace odis::learn {
 
-const char* className(MaterialClass materialClass);
+const char* className(int roughnessClass);
 std::string placeWords(const Inspection& inspection);
 std::string cellWords(const Inspection& inspection);
 // What the guide decides there, a line each.

@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "learn/scenes/write_scene.h"
-#include "render/integrator/render.h"
+#include "render/integrators/render.h"
 #include "render/sensor/perspective.h"
 
 namespace odis::learn {
@@ -16,8 +16,8 @@ namespace {
 constexpr int kAttempts = 400;
 // Of the brightness of a scene's two views.
 constexpr double kMostContrast = 8;
-// The share of an image's blocks that some hundred paths each must find light in, relative to the mean so much; and of
-// its pixels that one of a few paths must.
+// The share of an image's blocks that some hundred paths each must find light in, relative to the mean so
+// much; and of its pixels that one of a few paths must.
 constexpr double kLeastLit = 0.7, kLeastLight = 0.03, kLeastPixels = 0.5;
 
 std::shared_ptr<const render::Sensor> sensorOf(const View& view, const Vec2i& resolution) {
@@ -143,8 +143,8 @@ float interest(const Description& scene, const render::Scene& loaded, const View
   return std::sqrt(float(look.planes) * std::min(look.middle, 5.0f)) * (1 - look.flattest);
 }
 
-// The mean luminance without the brightest tenth of the image, which are lights; 0 if too much of it is next to black.
-// Pixels are put together in blocks first, so that noise is not taken for lights.
+// The mean luminance without the brightest tenth of the image, which are lights; 0 if too much of it is
+// next to black. Pixels are put together in blocks first, so that noise is not taken for lights.
 float brightness(render::Scene& loaded, const View& world) {
   constexpr int kWidth = 40, kBlock = 4;
   render::Progress silent;
@@ -166,7 +166,7 @@ float brightness(render::Scene& loaded, const View& world) {
   int lit = 0;
   for (int y = 0; y < resolution.y; ++y)
     for (int x = 0; x < resolution.x; ++x) {
-      const float light = render::luminance(result.frame.color[size_t(y) * size_t(resolution.x) + size_t(x)]);
+      const float light = render::luminance(result.image.color[size_t(y) * size_t(resolution.x) + size_t(x)]);
       lit += light > 0;
       blocks[size_t(y / kBlock) * size_t(blocksX) + size_t(x / kBlock)] += light / (kBlock * kBlock);
     }

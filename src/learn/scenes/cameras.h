@@ -7,12 +7,12 @@
 
 namespace odis::learn {
 
-// Chooses two views of the scene, which has been loaded from what was written of it. False if there are no two
-// places that see enough.
+// Chooses two views of the scene, which has been loaded from what was written of it. False if there are no
+// two places that see enough.
 bool chooseViews(Description& scene, render::Scene& loaded, Random random);
 
-// Scales the scene's lights so that its views are about as bright as `target`, by a few hundred test paths each.
-// False if a view is black or next to it, or much darker than the other.
+// Scales the scene's lights so that its views are about as bright as `target`, by a few hundred test paths
+// each. False if a view is black or next to it, or much darker than the other.
 bool expose(Description& scene, render::Scene& loaded, float target);
 
 }  // namespace odis::learn

@@ -9,7 +9,7 @@
 
 #include "learn/scenes/cameras.h"
 #include "learn/scenes/write_scene.h"
-#include "render/image/replace_file.h"
+#include "render/files/replace_file.h"
 
 namespace odis::learn {
 

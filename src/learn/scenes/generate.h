@@ -21,9 +21,8 @@ std::string sceneName(uint64_t seed, const Kind& kind);
 
 // Writes the scene into `folder`/sceneName(), a function of seed, kind and assets alone: scene.xml and
 // scene-b.xml (its two views), content.xml, scene.json (what was drawn), meshes and textures. Made under a
-// temporary name; what is there already stays as it is, if it was made of the same assets, else GenerateError.
-// Returns whether it was made. Throws WriteError,
-// std::filesystem::filesystem_error.
+// temporary name; what is there already stays as it is, if it was made of the same assets, else
+// GenerateError. Returns whether it was made. Throws WriteError, std::filesystem::filesystem_error.
 bool generateScene(uint64_t seed, const Kind& kind, const Assets& assets, const std::string& folder);
 
 }  // namespace odis::learn

@@ -6,12 +6,13 @@
 
 namespace odis::learn {
 
-std::optional<Room> attachRoom(Random& random, Room& room, size_t wall, float from, float to, float depth,
-                               float doorWidth, float doorHeight) {
+std::optional<Room> attachRoom(Random& random, Room& room, const WallSpan& span, float depth,
+                               const Vec2& door) {
+  const auto [wall, from, to] = span;
+  const float doorWidth = door.x, doorHeight = std::min(door.y, room.height - 0.1f);
   const float margin = 0.2f, space = to - from - doorWidth - 2 * margin;
   if (space < 0 || from < 0 || to > room.length(wall)) return {};
   const float left = from + margin + space * float(random.unit()), right = left + doorWidth;
-  doorHeight = std::min(doorHeight, room.height - 0.1f);
   for (const Opening& o : room.openings)
     if (o.wall == wall && left < o.right + 0.1f && o.left < right + 0.1f) return {};
   room.openings.push_back({wall, left, right, 0, doorHeight});

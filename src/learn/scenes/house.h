@@ -5,11 +5,17 @@
 
 namespace odis::learn {
 
-// A box-shaped room behind a wall of another, joined by an opening in the wall between them, which is cut into
-// both (the last of `room`, the only one of the new room's wall 0). None if there is no space: the new room lies
-// between `from` and `to` along the wall.
-std::optional<Room> attachRoom(Random& random, Room& room, size_t wall, float from, float to, float depth,
-                               float doorWidth, float doorHeight);
+// A part of a wall, in metres along it.
+struct WallSpan {
+  size_t wall;
+  float from, to;
+};
+
+// A box-shaped room behind a part of a wall of another, joined by an opening of the size `door` in the wall
+// between them, which is cut into both (the last of `room`, the only one of the new room's wall 0). None if
+// there is no space.
+std::optional<Room> attachRoom(Random& random, Room& room, const WallSpan& span, float depth,
+                               const Vec2& door);
 
 // Cuts windows into a wall: as many as fit of one size.
 int cutWindows(Random& random, Room& room, size_t wall, int count);

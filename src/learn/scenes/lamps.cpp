@@ -49,8 +49,9 @@ Piece makeTableLamp(Draft& draft, double power) {
                           {0.012f, 0.04f}, {0.012f, height},   {0, height}};
   addLathe(foot, Vec3(0), profile, 20);
   piece.add(std::move(foot), draft.materials.anything());
-  addShade(shade, {0, 0, height - 0.02f}, radius, radius * float(random.range(0.5, 1)),
-           radius * float(random.range(0.9, 1.6)), 0.003f, 32);
+  const float shadeHeight = radius * float(random.range(0.9, 1.6)),
+              upper = radius * float(random.range(0.5, 1));
+  addShade(shade, {0, 0, height - 0.02f}, {radius, upper, shadeHeight, 0.003f}, 32);
   piece.add(std::move(shade), shadeMaterial(draft));
   addBulb(draft, piece, {0, 0, height + radius * 0.4f + 0.03f}, power, radius * 0.48f);
   piece.size = {2 * radius, 2 * radius, height + 1.5f * radius};
@@ -76,8 +77,9 @@ Piece makeFloorLamp(Draft& draft, double power) {
                          {0, height + 0.008f}};
     addLathe(shade, Vec3(0), dish, 32);
   } else {
-    addShade(shade, {0, 0, height - 0.05f}, radius, radius * float(random.range(0.5, 1)),
-             radius * float(random.range(0.9, 1.5)), 0.003f, 32);
+    const float shadeHeight = radius * float(random.range(0.9, 1.5)),
+                upper = radius * float(random.range(0.5, 1));
+    addShade(shade, {0, 0, height - 0.05f}, {radius, upper, shadeHeight, 0.003f}, 32);
   }
   piece.add(std::move(shade), bowl ? draft.materials.lacquer() : shadeMaterial(draft));
   addBulb(draft, piece, {0, 0, height + (bowl ? 0.07f : 0.09f)}, power, bowl ? 0.03f : radius * 0.48f);
@@ -96,8 +98,8 @@ Piece makePendant(Draft& draft, float drop, double power) {
   switch (random.integer(0, 2)) {
     case 0: {  // a cone or cylinder, open at both ends
       const float height = radius * float(random.range(0.8, 1.8));
-      addShade(shade, {0, 0, -drop - 0.05f - height}, radius, radius * float(random.range(0.4, 1)), height,
-               0.003f, 32);
+      addShade(shade, {0, 0, -drop - 0.05f - height},
+               {radius, radius * float(random.range(0.4, 1)), height, 0.003f}, 32);
       piece.add(std::move(shade), shadeMaterial(draft));
       break;
     }
@@ -132,8 +134,8 @@ Piece makePendant(Draft& draft, float drop, double power) {
   return piece;
 }
 
-void addLightPanel(Draft& draft, const Vec3& corner, const Vec3& u, const Vec3& v, const Vec3& facing,
-                   double power, bool housing) {
+void addLightPanel(Draft& draft, const Rectangle& rectangle, const Vec3& facing, double power, bool housing) {
+  const auto& [corner, u, v] = rectangle;
   MeshData panel;
   addQuad(panel, corner, u, v, facing);
   draft.add(std::move(panel), kNoMaterial,
@@ -152,14 +154,15 @@ void addLightPanel(Draft& draft, const Vec3& corner, const Vec3& u, const Vec3& 
 }
 
 void addCeilingPanel(Draft& draft, const Room& room, const Vec2& at, const Vec2& half, double power) {
-  addLightPanel(draft, {at.x - half.x, at.y - half.y, room.height - 0.03f}, {2 * half.x, 0, 0},
-                {0, 2 * half.y, 0}, {0, 0, -1}, power, true);
+  addLightPanel(draft,
+                {{at.x - half.x, at.y - half.y, room.height - 0.03f}, {2 * half.x, 0, 0}, {0, 2 * half.y, 0}},
+                {0, 0, -1}, power, true);
 }
 
 void addDownlight(Draft& draft, const Vec3& ceiling, float radius, double power) {
   MeshData tube, disc;
   const float depth = radius * float(draft.random.range(0.5, 2));
-  addShade(tube, ceiling - Vec3(0, 0, depth), radius * 1.05f, radius * 1.05f, depth, radius * 0.05f, 20);
+  addShade(tube, ceiling - Vec3(0, 0, depth), {radius * 1.05f, radius * 1.05f, depth, radius * 0.05f}, 20);
   draft.add(std::move(tube), draft.materials.metal());
   const Vec2 profile[] = {{0, 0}, {radius, 0}};
   addLathe(disc, ceiling - Vec3(0, 0, 0.01f), profile, 16);  // faces down
@@ -212,13 +215,15 @@ void addCove(Draft& draft, const Room& room, size_t wall, double power) {
   draft.add(ledge, room.at(wall, 0, 0.001f, 0), room.angle(wall));
   const Vec2 u = room.along(wall), n = room.inward(wall);
   const float margin = std::min(0.3f, length * 0.1f);
-  addLightPanel(draft, room.at(wall, margin, depth * 0.3f, z + 0.008f),
-                Vec3(u.x, u.y, 0) * (length - 2 * margin),
-                Vec3(n.x, n.y, 0) * float(random.range(0.02, 0.08)), {0, 0, 1}, power, false);
+  addLightPanel(draft,
+                {room.at(wall, margin, depth * 0.3f, z + 0.008f), Vec3(u.x, u.y, 0) * (length - 2 * margin),
+                 Vec3(n.x, n.y, 0) * float(random.range(0.02, 0.08))},
+                {0, 0, 1}, power, false);
 }
 
-void addGlowingBoard(Draft& draft, const Room& room, size_t wall, float s, const Vec2& half, float z,
+void addGlowingBoard(Draft& draft, const Room& room, size_t wall, const Vec2& center, const Vec2& half,
                      double power) {
+  const float s = center.x, z = center.y;
   Random& random = draft.random;
   const auto gap = float(random.range(0.05, 0.2));
   Piece board;
@@ -235,7 +240,7 @@ void addGlowingBoard(Draft& draft, const Room& room, size_t wall, float s, const
     const Vec3 offset = upright ? across * (side * (half.x - inset)) : Vec3(0, 0, side * (half.y - inset));
     const Vec3 run = upright ? Vec3(0, 0, 2 * (half.y - inset)) : across * (2 * (half.x - inset));
     const Vec3 thick = upright ? across * width : Vec3(0, 0, width);
-    addLightPanel(draft, middle + offset - run * 0.5f, run, thick, facing, power / 2, false);
+    addLightPanel(draft, {middle + offset - run * 0.5f, run, thick}, facing, power / 2, false);
   }
 }
 
@@ -248,8 +253,9 @@ static void addWallPanel(Draft& draft, Room& room, double power) {
   const std::optional<Opening> place = room.open(random, wall, width, bottom, top);
   if (!place) return addCeilingPanel(draft, room, {room.middle().x, room.middle().y}, {0.3f, 0.3f}, power);
   const Vec2 u = room.along(wall), n = room.inward(wall);
-  addLightPanel(draft, room.at(wall, place->left, 0.03f, bottom), Vec3(u.x, u.y, 0) * width,
-                {0, 0, top - bottom}, {n.x, n.y, 0}, power, true);
+  addLightPanel(draft,
+                {room.at(wall, place->left, 0.03f, bottom), Vec3(u.x, u.y, 0) * width, {0, 0, top - bottom}},
+                {n.x, n.y, 0}, power, true);
 }
 
 void lightRoom(Draft& draft, Room& room, double power) {

@@ -27,8 +27,13 @@ class WallBoxes {
   size_t m_wall;
 };
 
-void addFrame(WallBoxes& boxes, const Opening& o, float width, float front, float back, bool sill,
-              MaterialId material) {
+// Width of its bars, and how far it reaches to the front and to the back of the wall's inner side.
+struct FrameSize {
+  float width, front, back;
+};
+
+void addFrame(WallBoxes& boxes, const Opening& o, const FrameSize& size, bool sill, MaterialId material) {
+  const auto [width, front, back] = size;
   boxes.add({o.left, back, o.bottom}, {o.left + width, front, o.top}, material);
   boxes.add({o.right - width, back, o.bottom}, {o.right, front, o.top}, material);
   boxes.add({o.left + width, back, o.top - width}, {o.right - width, front, o.top}, material);
@@ -83,7 +88,7 @@ void addDoor(Draft& draft, const Room& room, const Opening& o, float angle) {
   WallBoxes boxes(draft, room, o.wall);
   const MaterialId wood = draft.materials.wood();
   constexpr float kFrame = 0.05f, kLeaf = 0.04f;
-  addFrame(boxes, o, kFrame, 0.02f, -room.thickness - 0.02f, false, wood);
+  addFrame(boxes, o, {kFrame, 0.02f, -room.thickness - 0.02f}, false, wood);
   // The leaf hangs on the left or on the right.
   const bool left = draft.random.chance(0.5);
   const float width = o.width() - 2 * kFrame - 0.01f;
@@ -106,7 +111,7 @@ void addWindow(Draft& draft, const Room& room, const Opening& o) {
   Random& random = draft.random;
   const MaterialId frame = random.chance(0.5) ? draft.materials.matt(Rgb(0.8f)) : draft.materials.wood();
   const float back = -room.thickness * 0.7f, front = back + 0.06f;
-  addFrame(boxes, o, 0.06f, front, back, true, frame);
+  addFrame(boxes, o, {0.06f, front, back}, true, frame);
   // Bars cut it into panes.
   const int columns = std::max(1, int(std::lround(o.width() / random.range(0.5, 1.5))));
   const int rows = random.chance(0.3) ? 2 : 1;

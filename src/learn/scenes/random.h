@@ -12,8 +12,8 @@
 
 namespace odis::learn {
 
-// A stream of numbers. fork() gives another one, so that what one part of a scene draws doesn't shift what the
-// others get.
+// A stream of numbers. fork() gives another one, so that what one part of a scene draws doesn't shift what
+// the others get.
 class Random {
  public:
   explicit Random(uint64_t key) : m_key(mix(key + 0x9e3779b97f4a7c15ull)) {}

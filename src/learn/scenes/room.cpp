@@ -114,23 +114,9 @@ Room anyRoom(Random& random) {
   }
 }
 
-void addShell(Draft& draft, const Room& room) {
-  const Box box = room.box();
+// Walls with their openings, and skirting boards by chance.
+static void addWalls(Draft& draft, const Room& room) {
   const float t = room.thickness;
-  draft.addBox(box.min - Vec3(t, t, t), {box.max.x + t, box.max.y + t, 0}, draft.materials.floor());
-  MeshData ceiling;
-  addPanel(ceiling,
-           {{0, 0, room.height},
-            {1, 0, 0},
-            {0, 1, 0},
-            {0, 0, -1},
-            box.min.x - t,
-            box.max.x + t,
-            box.min.y - t,
-            box.max.y + t,
-            t},
-           room.skylights);
-  draft.add(std::move(ceiling), draft.materials.ceiling());
   const bool accents = draft.random.chance(0.3), skirting = draft.random.chance(0.5);
   const MaterialId wall = draft.materials.wall(), skirt = draft.materials.wood();
   for (size_t w = 0; w < room.corners.size(); ++w) {
@@ -175,6 +161,26 @@ void addShell(Draft& draft, const Room& room) {
              low);
     draft.add(std::move(board), skirt);
   }
+}
+
+void addShell(Draft& draft, const Room& room) {
+  const Box box = room.box();
+  const float t = room.thickness;
+  draft.addBox(box.min - Vec3(t, t, t), {box.max.x + t, box.max.y + t, 0}, draft.materials.floor());
+  MeshData ceiling;
+  addPanel(ceiling,
+           {{0, 0, room.height},
+            {1, 0, 0},
+            {0, 1, 0},
+            {0, 0, -1},
+            box.min.x - t,
+            box.max.x + t,
+            box.min.y - t,
+            box.max.y + t,
+            t},
+           room.skylights);
+  draft.add(std::move(ceiling), draft.materials.ceiling());
+  addWalls(draft, room);
   draft.scene.standing.push_back({room.corners, 0, room.height});
 }
 

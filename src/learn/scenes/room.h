@@ -33,16 +33,16 @@ struct Room {
   Vec3 middle() const;
   bool contains(const Vec2& p, float margin) const;
 
-  // Cuts an opening of this size into a wall, somewhere that is free, at least a hand from the corners; none if
-  // it doesn't fit.
+  // Cuts an opening of this size into a wall, somewhere that is free, at least a hand from the corners;
+  // none if it doesn't fit.
   std::optional<Opening> open(Random& random, size_t wall, float width, float bottom, float top);
   // The walls, the longest first.
   std::vector<size_t> longestWalls() const;
 
   // Takes a rectangle of the floor for something; false if a part of it is taken or outside.
   bool claim(const Vec3& center, const Vec2& half, float margin);
-  // Gives a wall away that something of this depth stands before, all along: takes the floor below it, less `inset`, and
-  // leaves no place for openings.
+  // Gives a wall away that something of this depth stands before, all along: takes the floor below it, less
+  // `inset`, and leaves no place for openings.
   void giveAway(size_t wall, float depth, float inset);
 
  private:

@@ -50,10 +50,10 @@ bool SheetPainter::add(const std::string& folder, const std::string& name, rende
   if (result.stats.interrupted) return false;
 
   const int column = int(m_next % size_t(m_options.columns)), row = int(m_next / size_t(m_options.columns));
-  const int left = kGap + column * (m_options.width + kGap) + (m_options.width - result.frame.width) / 2;
+  const int left = kGap + column * (m_options.width + kGap) + (m_options.width - result.image.width) / 2;
   const int top = kGap + row * m_cellHeight;
-  for (int y = 0; y < result.frame.height; ++y)
-    std::copy_n(result.frame.color.begin() + std::ptrdiff_t(y) * result.frame.width, result.frame.width,
+  for (int y = 0; y < result.image.height; ++y)
+    std::copy_n(result.image.color.begin() + std::ptrdiff_t(y) * result.image.width, result.image.width,
                 m_sheet.pixels.begin() + (std::ptrdiff_t(top) + y) * m_sheet.width + left);
   m_sheet.write(kGap + column * (m_options.width + kGap), top + m_options.width * 3 / 4 + 2, m_options.width,
                 name, kInk);

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "learn/scenes/canvas.h"
-#include "render/integrator/render.h"
+#include "render/integrators/render.h"
 
 namespace odis::learn {
 
@@ -15,15 +15,16 @@ struct SheetOptions {
   int columns = 8;
 };
 
-// The scenes of a folder: its sub-folders that hold a scene.xml, by name. Throws std::filesystem::filesystem_error.
+// The scenes of a folder: its sub-folders that hold a scene.xml, by name. Throws
+// std::filesystem::filesystem_error.
 std::vector<std::string> scenesIn(const std::string& folder);
 
 // Adds pictures one by one.
 class SheetPainter {
  public:
   SheetPainter(const SheetOptions& options, size_t count);
-  // Renders DIR/scene.xml by plain path tracing and puts it in the next place, with `name` below. False if the
-  // rendering was stopped. Throws SceneError.
+  // Renders DIR/scene.xml by plain path tracing and puts it in the next place, with `name` below. False if
+  // the rendering was stopped. Throws SceneError.
   bool add(const std::string& folder, const std::string& name, render::Progress& progress);
   const Canvas& sheet() const { return m_sheet; }
 

@@ -6,8 +6,8 @@
 #include <memory>
 #include <stdexcept>
 
-#include "render/film/tonemap.h"
 #include "render/image/image.h"
+#include "render/image/tonemap.h"
 #include "render/image/write.h"
 
 namespace odis::learn {

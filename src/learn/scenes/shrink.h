@@ -10,7 +10,8 @@ namespace odis::learn {
 
 // The bytes of a PNG of at most 320 pixels either side. Throws SceneError if the file can't be read.
 std::string shrunkTexture(const std::string& path);
-// Whether its mean has a channel that reflects much and one that reflects less than a tenth of that. Throws as above.
+// Whether its mean has a channel that reflects much and one that reflects less than a tenth of that. Throws
+// as above.
 bool isVividTexture(const std::string& path);
 // The bytes of a HDR file of at most 512 x 256 pixels, averages over whole pixels.
 std::string shrunkEnvironment(const std::string& path);

@@ -5,8 +5,8 @@
 
 namespace odis::learn {
 
-// A clear sky with a sun, an overcast one, a drawn one or one of the user's; `toSun` is where the sun is best, a
-// unit vector above the horizon.
+// A clear sky with a sun, an overcast one, a drawn one or one of the user's; `toSun` is where the sun is
+// best, a unit vector above the horizon.
 void addSky(Draft& draft, const Vec3& toSun);
 // A sun and a clear sky, for certain.
 void addDaylight(Draft& draft, const Vec3& toSun, float sunScale);

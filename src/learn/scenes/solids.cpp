@@ -138,8 +138,8 @@ void addBall(MeshData& mesh, const Vec3& center, float radius, int segments) {
   addLathe(mesh, center, profile, segments, true);
 }
 
-void addShade(MeshData& mesh, const Vec3& base, float lower, float upper, float height, float thickness,
-              int segments) {
+void addShade(MeshData& mesh, const Vec3& base, const Shade& shade, int segments) {
+  const auto [lower, upper, height, thickness] = shade;
   const Vec2 profile[] = {{lower - thickness, 0},
                           {lower, 0},
                           {upper, height},
@@ -196,7 +196,7 @@ void addBar(MeshData& mesh, const Vec3& from, const Vec3& to, float radius, int 
   const Vec3 axis = to - from;
   MeshData bar;
   addCylinder(bar, Vec3(0), radius, render::length(axis), segments);
-  const render::Frame frame(normalize(axis));
+  const render::CoordinateFrame frame(normalize(axis));
   append(mesh, bar,
          Matrix4(frame.s.x, frame.s.y, frame.s.z, 0, frame.t.x, frame.t.y, frame.t.z, 0, frame.n.x, frame.n.y,
                  frame.n.z, 0, from.x, from.y, from.z, 1));

@@ -25,22 +25,26 @@ struct Hole {
 void addQuad(MeshData& mesh, const Vec3& corner, const Vec3& u, const Vec3& v, const Vec3& facing,
              const Vec2& uv = {0, 0});
 void addBox(MeshData& mesh, const Vec3& min, const Vec3& max);
-// A slab with holes: its front is origin + s u + t v for s from left to right and t from bottom to top, facing
-// n; it is `thickness` thick behind that. u, v and n are unit vectors.
+// A slab with holes: its front is origin + s u + t v for s from left to right and t from bottom to top,
+// facing n; it is `thickness` thick behind that. u, v and n are unit vectors.
 struct Panel {
   Vec3 origin, u, v, n;
   float left, right, bottom, top, thickness;
 };
 void addPanel(MeshData& mesh, const Panel& panel, std::span<const Hole> holes);
-// The surface that a profile of (radius, height) sweeps about the vertical through `center`. The outside is to
-// the right of the way along the profile: bottom to top for what is convex. `smooth` blends normals along it.
+// The surface that a profile of (radius, height) sweeps about the vertical through `center`. The outside is
+// to the right of the way along the profile: bottom to top for what is convex. `smooth` blends normals
+// along it.
 void addLathe(MeshData& mesh, const Vec3& center, std::span<const Vec2> profile, int segments,
               bool smooth = false);
 void addCylinder(MeshData& mesh, const Vec3& base, float radius, float height, int segments);
 void addBall(MeshData& mesh, const Vec3& center, float radius, int segments);
 // A tube of thin walls about the vertical, open at both ends, from the lower to the upper radius: shades.
-void addShade(MeshData& mesh, const Vec3& base, float lower, float upper, float height, float thickness,
-              int segments);
+struct Shade {
+  float lower, upper;  // radii
+  float height, thickness;
+};
+void addShade(MeshData& mesh, const Vec3& base, const Shade& shade, int segments);
 // A box with rounded edges (a superellipsoid): exponent 1 is an ellipsoid, towards 0 a box.
 void addCushion(MeshData& mesh, const Vec3& center, const Vec3& half, float exponent);
 // The polygon (counter-clockwise) extruded from `bottom` to `top`.

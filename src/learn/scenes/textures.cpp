@@ -4,7 +4,7 @@
 #include <functional>
 #include <vector>
 
-#include "render/film/tonemap.h"
+#include "render/image/tonemap.h"
 #include "render/image/write.h"
 
 namespace odis::learn {

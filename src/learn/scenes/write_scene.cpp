@@ -6,8 +6,8 @@
 #include <map>
 
 #include "learn/scenes/write_ply.h"
-#include "render/image/checked_stream.h"
-#include "render/image/replace_file.h"
+#include "render/files/checked_stream.h"
+#include "render/files/replace_file.h"
 
 namespace odis::learn {
 

@@ -7,10 +7,11 @@
 
 namespace odis::learn {
 
-// Writes meshes, textures and content.xml: everything but the cameras; `again`: only content.xml, since nothing
-// but the exposure has changed. Throws WriteError, std::filesystem::filesystem_error.
+// Writes meshes, textures and content.xml: everything but the cameras; `again`: only content.xml, since
+// nothing but the exposure has changed. Throws WriteError, std::filesystem::filesystem_error.
 void writeContent(const Description& scene, const std::string& folder, bool again = false);
-// Writes scene.xml for the first view, scene-b.xml for the second: a camera each and an include of content.xml.
+// Writes scene.xml for the first view, scene-b.xml for the second: a camera each and an include of
+// content.xml.
 void writeViews(const Description& scene, const std::string& folder);
 
 // The view in the world of the files.

@@ -1,5 +1,5 @@
-// The learner on libtorch, a library of its own that `odis train` loads: nobody else waits for libtorch to be loaded, and
-// no other source for its headers.
+// The learner on libtorch, a library of its own that `odis train` loads: nobody else waits for libtorch to
+// be loaded, and no other source for its headers.
 #include <torch/torch.h>
 #ifdef ODIS_GLOO
 #include <torch/csrc/distributed/c10d/ProcessGroupGloo.hpp>
@@ -24,25 +24,23 @@ namespace odis::learn {
 namespace {
 
 constexpr int64_t kTexels = kMapTexels;
-// Every map has so much of the uniform distribution in it (GuideOptions::floor), and the share of the BSDF's draws that
-// the variance is computed for.
+// Every map has so much of the uniform distribution in it (GuideOptions::floor), and the share of the
+// BSDF's draws that the variance is computed for.
 constexpr double kFloor = 0.03, kAlpha = 0.4;
 // Gradients longer than this are shortened.
 constexpr double kLongestGradient = 1;
-// Width of the lights' layers, and the share of choices that follows the network (odis/decisions/lights.cpp).
+// Width of the lights' layers, and the share of choices that follows the network (odis/models/lights.cpp).
 constexpr int64_t kPairWidth = 16;
 constexpr double kLearnedShare = 0.9;
-// Width of the continuations' layers, and errors of the worth's logarithm that count as no larger.
-constexpr int64_t kContinuationWidth = 32;
-constexpr double kLargestError = 6;
 
-// A layer in a precision of its own, its result in that of the losses: what autocast does, the same in every libtorch.
+// A layer in a precision of its own, its result in that of the losses: what autocast does, the same in
+// every libtorch.
 torch::Tensor through(const torch::nn::Linear& layer, const torch::Tensor& x, torch::Dtype precision) {
   return torch::linear(x.to(precision), layer->weight.to(precision), layer->bias.to(precision))
       .to(torch::kFloat32);
 }
 
-// The same as DirectionNetwork (odis/network).
+// The same as DirectionNetwork (src/odis/models).
 struct DirectionModuleImpl : torch::nn::Module {
   DirectionModuleImpl(int64_t hidden, torch::Dtype dtype)
       : precision(dtype),
@@ -86,27 +84,6 @@ struct LightModuleImpl : torch::nn::Module {
 };
 TORCH_MODULE(LightModule);
 
-// The same as ContinuationNetwork.
-struct ContinuationModuleImpl : torch::nn::Module {
-  explicit ContinuationModuleImpl(torch::Dtype dtype)
-      : precision(dtype),
-        cell0(register_module("cell0", torch::nn::Linear(kContinuationScalars, kContinuationWidth))),
-        cell1(register_module("cell1", torch::nn::Linear(kContinuationWidth, kContinuationWidth))),
-        worth(register_module("worth", torch::nn::Linear(kContinuationWidth, 1))),
-        mean(register_buffer("mean", torch::zeros({kContinuationScalars}))),
-        scale(register_buffer("scale", torch::ones({kContinuationScalars}))) {}
-
-  torch::Tensor forward(const torch::Tensor& scalars) {
-    const torch::Tensor x = torch::relu(through(cell0, (scalars - mean) * scale, precision));
-    return through(worth, torch::relu(through(cell1, x, precision)), precision).squeeze(-1);
-  }
-
-  torch::Dtype precision;
-  torch::nn::Linear cell0, cell1, worth;
-  torch::Tensor mean, scale;
-};
-TORCH_MODULE(ContinuationModule);
-
 torch::Tensor toDevice(const std::vector<float>& values, at::IntArrayRef shape, const torch::Device& device) {
   return torch::from_blob(const_cast<float*>(values.data()), shape, torch::kFloat32).to(device);
 }
@@ -116,7 +93,7 @@ struct LightRows {
   torch::Tensor pairs, formula, rms, probability;
 
   LightRows(const LightBatch& b, const torch::Device& device) {
-    const auto count = int64_t(b.count), groups = int64_t(kMostLightGroups);
+    const auto count = int64_t(b.count), groups = int64_t(kMaxLightGroups);
     pairs = toDevice(b.pairs, {count, groups, kPairFeatures}, device);
     formula = toDevice(b.formula, {count, groups}, device);
     rms = toDevice(b.rms, {count, groups}, device);
@@ -124,34 +101,25 @@ struct LightRows {
   }
 };
 
-struct ContinuationRows {
-  torch::Tensor scalars, target;
-
-  ContinuationRows(const ContinuationBatch& b, const torch::Device& device) {
-    const auto count = int64_t(b.count);
-    scalars = toDevice(b.scalars, {count, kContinuationScalars}, device);
-    target = toDevice(b.target, {count}, device);
-  }
-};
-
 struct Rows {
-  torch::Tensor scalars, basis, there, perCosine, diffuse, mass, square;
+  torch::Tensor scalars, basis, there, inverseCosine, diffuse, mass, square;
 
   Rows(const DirectionBatch& b, const torch::Device& device) {
     const auto count = int64_t(b.count);
     scalars = toDevice(b.scalars, {count, kCellScalars}, device);
     basis = toDevice(b.basis, {count, kBasisMaps, kTexels}, device);
     there = toDevice(b.there, {count, kBasisMaps}, device);
-    perCosine = toDevice(b.perCosine, {count, kTexels}, device);
+    inverseCosine = toDevice(b.inverseCosine, {count, kTexels}, device);
     diffuse = toDevice(b.diffuse, {count, kTexels}, device);
     mass = toDevice(b.mass, {count, kTexels}, device);
     square = toDevice(b.square, {count, kTexels}, device);
   }
 };
 
-// The second moment of a sample from the mixture of a diffuse BSDF and the map, over that from the BSDF alone.
+// The second moment of a sample from the mixture of a diffuse BSDF and the map, over that from the BSDF
+// alone.
 torch::Tensor secondMoment(const torch::Tensor& map, const Rows& rows) {
-  torch::Tensor radiance = map * rows.perCosine;
+  torch::Tensor radiance = map * rows.inverseCosine;
   radiance = (1 - kFloor) * radiance / radiance.sum(-1, true) + kFloor / double(kTexels);
   torch::Tensor drawn = radiance * rows.diffuse;
   drawn = drawn / drawn.sum(-1, true);
@@ -193,10 +161,10 @@ Tensor toTensor(const std::string& name, const torch::Tensor& tensor) {
 struct Modules {
   DirectionModule directions;
   LightModule lights;
-  ContinuationModule continuations;
 };
 
-// The same in every process, whatever it drew before. Processes may be threads, and the generator is one for all.
+// The same in every process, whatever it drew before. Processes may be threads, and the generator is one
+// for all.
 Modules makeModules(const TrainConfig& config) {
   static std::mutex mutex;
   const std::lock_guard lock(mutex);
@@ -204,7 +172,7 @@ Modules makeModules(const TrainConfig& config) {
   // Small layers: more threads than these would mostly wait for each other.
   at::set_num_threads(int(std::clamp(std::thread::hardware_concurrency() / 2, 1u, 4u)));
   const torch::Dtype precision = config.precision == Precision::mixed ? torch::kBFloat16 : torch::kFloat32;
-  return {DirectionModule(config.hidden, precision), LightModule(precision), ContinuationModule(precision)};
+  return {DirectionModule(config.hidden, precision), LightModule(precision)};
 }
 
 class TorchLearner : public Learner {
@@ -213,13 +181,10 @@ class TorchLearner : public Learner {
       : m_device(chooseDevice(config.device)), m_processes(processes), m_modules(makeModules(config)) {
     m_modules.directions->to(m_device);
     m_modules.lights->to(m_device);
-    m_modules.continuations->to(m_device);
     m_adam = std::make_unique<torch::optim::Adam>(m_modules.directions->parameters(),
                                                   torch::optim::AdamOptions(1e-3));
     m_lightAdam =
         std::make_unique<torch::optim::Adam>(m_modules.lights->parameters(), torch::optim::AdamOptions(1e-3));
-    m_continuationAdam = std::make_unique<torch::optim::Adam>(m_modules.continuations->parameters(),
-                                                              torch::optim::AdamOptions(1e-3));
     if (processes.count > 1) join();
   }
 
@@ -230,13 +195,6 @@ class TorchLearner : public Learner {
     const Rows rows(batch, m_device);
     m_modules.directions->mean.copy_(rows.scalars.mean(0));
     m_modules.directions->scale.copy_(1 / rows.scalars.std(0).clamp_min(0.1));
-  }
-
-  void standardize(const ContinuationBatch& batch) override {
-    const torch::NoGradGuard guard;
-    const ContinuationRows rows(batch, m_device);
-    m_modules.continuations->mean.copy_(rows.scalars.mean(0));
-    m_modules.continuations->scale.copy_(1 / rows.scalars.std(0).clamp_min(0.1));
   }
 
   double step(const DirectionBatch& batch, Loss loss, double learningRate) override {
@@ -254,14 +212,6 @@ class TorchLearner : public Learner {
     return descend(*m_modules.lights, *m_lightAdam, torch::log(moment).mean(), learningRate);
   }
 
-  double step(const ContinuationBatch& batch, double learningRate) override {
-    const ContinuationRows rows(batch, m_device);
-    // The worth is the root of what the network corrects.
-    const torch::Tensor error = 0.5 * (m_modules.continuations(rows.scalars) - rows.target);
-    const torch::Tensor cost = torch::cosh(error.clamp(-kLargestError, kLargestError)).mean();
-    return descend(*m_modules.continuations, *m_continuationAdam, cost, learningRate);
-  }
-
   std::vector<float> predict(const DirectionBatch& batch) override {
     const torch::NoGradGuard guard;
     const Rows rows(batch, m_device);
@@ -272,11 +222,6 @@ class TorchLearner : public Learner {
     const torch::NoGradGuard guard;
     const LightRows rows(batch, m_device);
     return toTensor("", m_modules.lights(rows.pairs, rows.formula)).values;
-  }
-
-  std::vector<float> predict(const ContinuationBatch& batch) override {
-    const torch::NoGradGuard guard;
-    return toTensor("", m_modules.continuations(ContinuationRows(batch, m_device).scalars)).values;
   }
 
   std::vector<Tensor> tensors() const override {
@@ -296,25 +241,19 @@ class TorchLearner : public Learner {
     add("lights.0", m_modules.lights->layer0);
     add("lights.1", m_modules.lights->layer1);
     add("lights.2", m_modules.lights->layer2);
-    addTrunk("continuations.cell", *m_modules.continuations);
-    add("continuations.worth", m_modules.continuations->worth);
     return result;
   }
 
   std::string state() const override {
-    torch::serialize::OutputArchive archive, module, adam, lights, lightAdam, continuations, continuationAdam;
+    torch::serialize::OutputArchive archive, module, adam, lights, lightAdam;
     m_modules.directions->save(module);
     m_adam->save(adam);
     m_modules.lights->save(lights);
     m_lightAdam->save(lightAdam);
-    m_modules.continuations->save(continuations);
-    m_continuationAdam->save(continuationAdam);
     archive.write("module", module);
     archive.write("adam", adam);
     archive.write("lights", lights);
     archive.write("lightAdam", lightAdam);
-    archive.write("continuations", continuations);
-    archive.write("continuationAdam", continuationAdam);
     std::ostringstream stream;
     archive.save_to(stream);
     return stream.str();
@@ -322,20 +261,16 @@ class TorchLearner : public Learner {
 
   void restore(const std::string& state) override {
     std::istringstream stream(state);
-    torch::serialize::InputArchive archive, module, adam, lights, lightAdam, continuations, continuationAdam;
+    torch::serialize::InputArchive archive, module, adam, lights, lightAdam;
     archive.load_from(stream, m_device);
     archive.read("module", module);
     archive.read("adam", adam);
     archive.read("lights", lights);
     archive.read("lightAdam", lightAdam);
-    archive.read("continuations", continuations);
-    archive.read("continuationAdam", continuationAdam);
     m_modules.directions->load(module);
     m_adam->load(adam);
     m_modules.lights->load(lights);
     m_lightAdam->load(lightAdam);
-    m_modules.continuations->load(continuations);
-    m_continuationAdam->load(continuationAdam);
   }
 
   std::string agree(const std::string& text) override {
@@ -435,7 +370,7 @@ class TorchLearner : public Learner {
   torch::Device m_device;
   Processes m_processes;
   Modules m_modules;
-  std::unique_ptr<torch::optim::Adam> m_adam, m_lightAdam, m_continuationAdam;
+  std::unique_ptr<torch::optim::Adam> m_adam, m_lightAdam;
 };
 
 }  // namespace

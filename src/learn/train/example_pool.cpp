@@ -4,19 +4,23 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
-#include <cmath>
 #include <filesystem>
 #include <numeric>
 #include <utility>
 
 #include "learn/scenes/random.h"
-#include "odis/decisions/texel_directions.h"
+#include "odis/maps/texel_directions.h"
+#include "odis/weights/weights.h"
 
 namespace odis::learn {
 
 namespace fs = std::filesystem;
 
 namespace {
+
+// The format of files of examples: counts up whenever the arrays of ViewExamples change. Version 1 wrote no
+// number.
+constexpr uint32_t kExampleFormat = 2;
 
 std::string viewPrefix(size_t view) {
   return fmt::format("view{}/", view);
@@ -34,6 +38,7 @@ std::vector<ViewExamples> ExamplePool::load(const std::string& shardFile, std::s
   if (fs::exists(kept)) {
     const ShardReader reader(kept.string());
     if (reader.header().value("origin", nlohmann::json()) == nlohmann::json(origin) &&
+        reader.header().value("format", 1u) == kExampleFormat &&
         reader.header().value("features", 0u) == kFeatureVersion) {
       for (size_t v = 0; v < reader.header().at("views").get<size_t>(); ++v)
         views.push_back(readExamples(reader, viewPrefix(v)));
@@ -43,7 +48,10 @@ std::vector<ViewExamples> ExamplePool::load(const std::string& shardFile, std::s
   views = makeExamples(ShardReader(shardFile));
   ShardWriter writer;
   for (size_t v = 0; v < views.size(); ++v) addColumns(writer, viewPrefix(v), views[v]);
-  writer.write(kept.string(), {{"origin", origin}, {"features", kFeatureVersion}, {"views", views.size()}});
+  writer.write(kept.string(), {{"origin", origin},
+                               {"format", kExampleFormat},
+                               {"features", kFeatureVersion},
+                               {"views", views.size()}});
   return views;
 }
 
@@ -77,7 +85,7 @@ void ExamplePool::draw(uint64_t seed, uint64_t step, size_t count, double shiftP
   batch.scalars.resize(count * kCellScalars);
   batch.basis.resize(count * kBasisMaps * kMapTexels);
   batch.there.resize(count * kBasisMaps);
-  for (std::vector<float>* maps : {&batch.perCosine, &batch.diffuse, &batch.mass, &batch.square})
+  for (std::vector<float>* maps : {&batch.inverseCosine, &batch.diffuse, &batch.mass, &batch.square})
     maps->resize(count * kMapTexels);
   const Random stream = Random(seed).fork(fmt::format("step {}", step));
   tbb::parallel_for(size_t(0), count, [&](size_t row) {
@@ -99,7 +107,7 @@ void ExamplePool::draw(uint64_t seed, uint64_t step, size_t count, double shiftP
     for (const float cosine : features.cosines) cosines += std::max(cosine, 0.0f) + 1e-4f;
     for (size_t t = 0; t < kMapTexels; ++t) {
       const size_t at = row * kMapTexels + t;
-      batch.perCosine[at] = perCosine(features.cosines[t]);
+      batch.inverseCosine[at] = inverseCosine(features.cosines[t]);
       batch.diffuse[at] = (std::max(features.cosines[t], 0.0f) + 1e-4f) / cosines;
       batch.mass[at] = view.mass[example * kMapTexels + t];
       batch.square[at] = view.square[example * kMapTexels + t];
@@ -109,9 +117,9 @@ void ExamplePool::draw(uint64_t seed, uint64_t step, size_t count, double shiftP
 
 void ExamplePool::draw(uint64_t seed, uint64_t step, size_t count, LightBatch& batch) const {
   batch.count = count;
-  batch.pairs.assign(count * kMostLightGroups * kPairFeatures, 0);
+  batch.pairs.assign(count * kMaxLightGroups * kPairFeatures, 0);
   for (std::vector<float>* values : {&batch.formula, &batch.rms, &batch.probability})
-    values->assign(count * kMostLightGroups, 0);
+    values->assign(count * kMaxLightGroups, 0);
   const Random stream = Random(seed).fork(fmt::format("lights of step {}", step));
   tbb::parallel_for(size_t(0), count, [&](size_t row) {
     Random random = stream.fork(fmt::format("{}", row));
@@ -124,37 +132,12 @@ void ExamplePool::draw(uint64_t seed, uint64_t step, size_t count, LightBatch& b
     const float* rms = &view.lightRms[example * view.groups];
     const float sum = std::accumulate(rms, rms + view.groups, 0.0f);
     for (size_t g = 0; g < view.groups; ++g) {
-      const size_t at = row * kMostLightGroups + g;
+      const size_t at = row * kMaxLightGroups + g;
       for (size_t f = 0; f < kPairFeatures; ++f) batch.pairs[at * kPairFeatures + f] = features.pairs[f][g];
       batch.formula[at] = std::max(features.formula[g], 1e-6f);
       batch.rms[at] = rms[g] / sum;
       batch.probability[at] = view.lightProbability[example * view.groups + g];
     }
-  });
-}
-
-void ExamplePool::draw(uint64_t seed, uint64_t step, size_t count, double shiftProbability,
-                       ContinuationBatch& batch) const {
-  batch.count = count;
-  batch.scalars.resize(count * kContinuationScalars);
-  batch.target.resize(count);
-  const Random stream = Random(seed).fork(fmt::format("continuations of step {}", step));
-  tbb::parallel_for(size_t(0), count, [&](size_t row) {
-    Random random = stream.fork(fmt::format("{}", row));
-    const auto [viewIndex, example] = random.pick(std::span(m_usable));
-    const ViewExamples& view = m_views[viewIndex];
-    const int variant = random.integer(0, kInputVariants - 1);
-    const bool shift = random.chance(shiftProbability);
-    ViewExamples::Storage storage;
-    ContinuationFeatures features;
-    computeFeatures(view.chain(variant, example, shift, storage), features);
-    std::copy(features.scalars.begin(), features.scalars.end(), &batch.scalars[row * kContinuationScalars]);
-    // Where the formula knows of nothing it is not corrected.
-    const Continuation& formula = features.formula;
-    const float* outgoing = &view.outgoing[3 * example];
-    const double known = double(outgoing[1]) * outgoing[1] / std::max(double(outgoing[2]), 0.5);
-    const double ratio = formula.square > 0 ? known * formula.rays / formula.square : 1;
-    batch.target[row] = float(std::log(std::clamp(ratio, 1e-6, 1e6)));
   });
 }
 

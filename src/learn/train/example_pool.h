@@ -1,13 +1,13 @@
-// All examples of many shards in memory, and batches of them: a function of the shards, a seed and the step alone.
+// All examples of many shards in memory, and batches of them: a function of the shards, a seed and the step
+// alone.
 #pragma once
 
 #include <string>
 #include <vector>
 
 #include "learn/train/examples.h"
-#include "odis/features/cell_features.h"
-#include "odis/features/continuation_features.h"
-#include "odis/features/light_features.h"
+#include "odis/models/direction_features.h"
+#include "odis/models/light_features.h"
 
 namespace odis::learn {
 
@@ -17,10 +17,10 @@ struct DirectionBatch {
   std::vector<float> scalars;  // [count][kCellScalars]
   std::vector<float> basis;    // [count][kBasisMaps][texel]
   std::vector<float> there;    // [count][kBasisMaps]: 1 or 0
-  // Of a diffuse surface with the cell's mean normal: what turns a share of radiance times cosine into radiance, and how
-  // often the surface draws each texel.
-  std::vector<float> perCosine, diffuse;  // [count][texel]
-  std::vector<float> mass, square;        // [count][texel]: ViewExamples
+  // Of a diffuse surface with the cell's mean normal: what turns a share of radiance times cosine into
+  // radiance, and how often the surface draws each texel.
+  std::vector<float> inverseCosine, diffuse;  // [count][texel]
+  std::vector<float> mass, square;            // [count][texel]: ViewExamples
 };
 
 // The same for a network that chooses among groups of lights.
@@ -30,13 +30,6 @@ struct LightBatch {
   std::vector<float> formula;      // [count][group]: shares; zero of groups that are not there
   std::vector<float> rms;          // [count][group]: ViewExamples::lightRms, over their sum
   std::vector<float> probability;  // [count][group]: if nothing is learned
-};
-
-// The same for a network that says what going on is worth.
-struct ContinuationBatch {
-  size_t count = 0;
-  std::vector<float> scalars;  // [count][kContinuationScalars]
-  std::vector<float> target;   // [count]: the logarithm of mean square over rays, over the formula's
 };
 
 class ExamplePool {
@@ -58,9 +51,6 @@ class ExamplePool {
   void draw(uint64_t seed, uint64_t step, size_t count, double shiftProbability, DirectionBatch& batch) const;
   // The same of examples with lights, of which there must be some.
   void draw(uint64_t seed, uint64_t step, size_t count, LightBatch& batch) const;
-  // The same of all examples.
-  void draw(uint64_t seed, uint64_t step, size_t count, double shiftProbability,
-            ContinuationBatch& batch) const;
 
  private:
   std::vector<ViewExamples> load(const std::string& shardFile, std::string& origin) const;

@@ -1,12 +1,13 @@
 #include "learn/train/examples.h"
 
 #include <odis/guide.h>
+#include <odis/mixture.h>
 
 #include <cmath>
 
 #include "learn/data/make_shard.h"
 #include "learn/data/targets.h"
-#include "odis/decisions/texel_directions.h"
+#include "odis/maps/texel_directions.h"
 
 namespace odis::learn {
 
@@ -30,8 +31,8 @@ size_t coarseTexel(int texel) {
   return size_t(texelAt(texel % kTargetSize / kRatio, texel / kTargetSize / kRatio));
 }
 
-// Puts a target's maps together: emission counts as much as multiple importance sampling beside next-event estimation
-// leaves of it, with the density of a diffuse surface.
+// Puts a target's maps together: emission counts as much as multiple importance sampling beside next-event
+// estimation leaves of it, with the density of a diffuse surface.
 void addMaps(const Target& target, ViewExamples& examples) {
   std::array<double, kTexels> mass{}, square{};
   double massSum = 0, squareSum = 0;
@@ -55,7 +56,7 @@ void addMaps(const Target& target, ViewExamples& examples) {
 }
 
 // Adds the chain of the cell that a vertex lies in.
-void addInput(const CellStore& store, std::span<const CellStatistics> cells, const PilotVertex& vertex,
+void addInput(const CellStore& store, std::span<const CellStatistics> cells, const PathVertex& vertex,
               float unit, ViewExamples& examples) {
   CellChain chain{};
   for (int level = 0; level < kCellLevels; ++level) {
@@ -83,10 +84,6 @@ void addInput(const CellStore& store, std::span<const CellStatistics> cells, con
     kept.count = float(s.count);
     kept.sum = scaled(s.sum, 1);
     kept.sumSquares = scaled(s.sumSquares, 2);
-    for (size_t i = 0; i < 3; ++i) kept.outgoing[i] = scaled(s.outgoing[i], 1);
-    kept.outgoingSquares = scaled(s.outgoingSquares, 2);
-    kept.rays = float(s.rays);
-    kept.nearness = float(s.nearness);
     kept.normal[0] = s.normal.x;
     kept.normal[1] = s.normal.y;
     kept.normal[2] = s.normal.z;
@@ -105,8 +102,8 @@ ViewExamples examplesOf(const ShardReader& shard, size_t view, size_t pilotCount
 
   ViewExamples examples;
   examples.count = targets.size();
-  examples.groups = targets.empty() ? 0 : std::min(targets.front().lights.size(), size_t(kMostLightGroups));
-  std::vector<const PilotVertex*> vertices;  // of the targets
+  examples.groups = targets.empty() ? 0 : std::min(targets.front().lights.size(), size_t(kMaxLightGroups));
+  std::vector<const PathVertex*> vertices;  // of the targets
   for (const Target& target : targets) {
     size_t at = target.vertex, pilot = 0;
     while (pilot < pilots.size() && at >= pilots[pilot].vertices.size())
@@ -114,9 +111,6 @@ ViewExamples examplesOf(const ShardReader& shard, size_t view, size_t pilotCount
     if (pilot == pilots.size()) throw ShardError(targetPrefix(view) + "vertex: there is no such vertex");
     vertices.push_back(&pilots[pilot].vertices[at]);
     addMaps(target, examples);
-    const Float3& back = target.outgoing;
-    examples.outgoing.insert(examples.outgoing.end(), {luminance(back) / frame.unit,
-                                                       target.outgoingRms / frame.unit, target.outgoingRays});
     for (size_t g = 0; g < examples.groups; ++g) {
       examples.lightRms.push_back(target.lights[g].misRms / frame.unit);
       examples.lightProbability.push_back(target.lights[g].probability);
@@ -125,12 +119,12 @@ ViewExamples examplesOf(const ShardReader& shard, size_t view, size_t pilotCount
   for (int variant = 0; variant < kInputVariants; ++variant) {
     CellStore store(GuideOptions().clamp, true);
     store.place(CellGrid(frame.origin, frame.edge));
-    std::vector<std::span<const PilotVertex>> parts;
+    std::vector<ArrayView<const PathVertex>> parts;
     for (const size_t pilot : pilotsOf(variant, view, pilots.size()))
       parts.emplace_back(pilots[pilot].vertices);
     store.add(parts, 0);
     const std::vector<CellStatistics>& cells = store.rollUp();
-    for (const PilotVertex* vertex : vertices) addInput(store, cells, *vertex, frame.unit, examples);
+    for (const PathVertex* vertex : vertices) addInput(store, cells, *vertex, frame.unit, examples);
   }
   return examples;
 }
@@ -154,13 +148,9 @@ CellChain ViewExamples::chain(int variant, size_t example, bool shift, Storage& 
     if (!(kept.count > 0)) break;
     CellStatistics& cell = storage.cells[length];
     cell.level = int(kept.level);
-    cell.count = kept.count;
+    cell.count = cell.lightCount = kept.count;
     cell.sum = kept.sum;
     cell.sumSquares = kept.sumSquares;
-    std::copy_n(kept.outgoing, 3, cell.outgoing.begin());
-    cell.outgoingSquares = kept.outgoingSquares;
-    cell.rays = kept.rays;
-    cell.nearness = kept.nearness;
     cell.normal = {kept.normal[0], kept.normal[1], kept.normal[2]};
     for (size_t t = 0; t < kTexels; ++t) cell.histogram[t] = float(histograms[at * kTexels + t]) * kept.sum;
     for (size_t g = 0; g < groups; ++g) cell.lightSquares[g] = lightSquares[at * groups + g];
@@ -185,7 +175,6 @@ void addColumns(ShardWriter& writer, const std::string& prefix, const ViewExampl
   add("lightSquares", {kInputVariants, e.count, kCellLevels, e.groups}, e.lightSquares);
   add("mass", {e.count, kTexels}, e.mass);
   add("square", {e.count, kTexels}, e.square);
-  add("outgoing", {e.count, 3}, e.outgoing);
   add("lightRms", {e.count, e.groups}, e.lightRms);
   add("lightProbability", {e.count, e.groups}, e.lightProbability);
 }
@@ -205,7 +194,6 @@ ViewExamples readExamples(const ShardReader& reader, const std::string& prefix) 
   e.lightSquares = readColumn<float>(reader, prefix + "lightSquares", e.count, kChains * e.groups);
   e.mass = readColumn<Half>(reader, prefix + "mass", e.count, kTexels);
   e.square = readColumn<Half>(reader, prefix + "square", e.count, kTexels);
-  e.outgoing = readColumn<float>(reader, prefix + "outgoing", e.count, 3);
   e.lightRms = readColumn<float>(reader, prefix + "lightRms", e.count, e.groups);
   e.lightProbability = readColumn<float>(reader, prefix + "lightProbability", e.count, e.groups);
   return e;

@@ -1,5 +1,5 @@
-// What networks learn from: for each target of a shard the statistics of its cell and of those around it, as pilots of
-// several sizes make them, and what should have been known.
+// What networks learn from: for each target of a shard the statistics of its cell and of those around it,
+// as pilots of several sizes make them, and what should have been known.
 #pragma once
 
 #include <span>
@@ -13,8 +13,7 @@ namespace odis::learn {
 
 // Statistics as they are kept: what CellStatistics has beside its arrays.
 struct KeptStatistics {
-  float level = 0, count = 0, sum = 0, sumSquares = 0, outgoing[3] = {}, outgoingSquares = 0, rays = 0,
-        nearness = 0, normal[3] = {};
+  float level = 0, count = 0, sum = 0, sumSquares = 0, normal[3] = {};
 };
 inline constexpr size_t kKeptNumbers = sizeof(KeptStatistics) / sizeof(float);
 
@@ -32,13 +31,11 @@ struct ViewExamples {
   std::vector<Half> around;                // [variant][example][first level: 0, 1][2][texel], likewise
   std::vector<float> lightSquares;         // [variant][example][level][group], sums
 
-  // What arrives at a cell and next-event estimation does not cover, times the cosine: its mean and its mean square for
-  // each texel. Over their sums.
+  // What arrives at a cell and next-event estimation does not cover, times the cosine: its mean and its
+  // mean square for each texel. Over their sums.
   std::vector<Half> mass, square;  // [example][texel]
-  // What is scattered back: mean and root of the mean square of its luminance, and rays.
-  std::vector<float> outgoing;  // [example][3]
-  // What next-event estimation that chooses the group gives: root of the mean square; probability of the group if nothing
-  // is learned.
+  // What next-event estimation that chooses the group gives: root of the mean square; probability of the
+  // group if nothing is learned.
   std::vector<float> lightRms, lightProbability;  // [example][group]
 
   // The chain of an example, `storage` holding what it points to. With `shift` it begins at the parent.

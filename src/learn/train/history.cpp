@@ -7,7 +7,7 @@
 #include <cstring>
 #include <functional>
 
-#include "render/image/checked_stream.h"
+#include "render/files/checked_stream.h"
 #include "render/image/write.h"
 
 namespace odis::learn {
@@ -97,7 +97,8 @@ void putRecord(std::string& file, const std::string& event) {
   put(file, maskedCrc(event));
 }
 
-// Keys of a protocol buffer: number of the field times 8, and 0 for integers, 1 and 5 for 64 and 32 bits, 2 for texts.
+// Keys of a protocol buffer: number of the field times 8, and 0 for integers, 1 and 5 for 64 and 32 bits, 2
+// for texts.
 constexpr char kWallTime = 1 * 8 + 1, kStep = 2 * 8, kFileVersion = 3 * 8 + 2, kSummary = 5 * 8 + 2,
                kValue = 1 * 8 + 2, kTag = 1 * 8 + 2, kSimpleValue = 2 * 8 + 5;
 
@@ -118,12 +119,11 @@ void putScalar(std::string& file, double seconds, int step, const std::string& t
 }  // namespace
 
 Canvas drawHistory(const History& history) {
-  Canvas canvas(kWidth, 4 * kPanel, kPaper);
-  Points losses, lights, continuations, network, formula;
+  Canvas canvas(kWidth, 3 * kPanel, kPaper);
+  Points losses, lights, network, formula;
   for (const LossRow& row : history.losses) {
     losses.emplace_back(row.step, row.loss);
     lights.emplace_back(row.step, row.lights);
-    continuations.emplace_back(row.step, row.continuations);
   }
   for (const ValidationRow& row : history.validations) {
     network.emplace_back(row.step, row.variance);
@@ -131,8 +131,7 @@ Canvas drawHistory(const History& history) {
   }
   drawPanel(canvas, 0, "loss of maps", {{losses, kLine}});
   drawPanel(canvas, kPanel, "loss of choices among lights", {{lights, kLine}});
-  drawPanel(canvas, 2 * kPanel, "loss of what going on is worth", {{continuations, kLine}});
-  drawPanel(canvas, 3 * kPanel, "predicted variance on held-out scenes: network (blue), formula (orange)",
+  drawPanel(canvas, 2 * kPanel, "predicted variance on held-out scenes: network (blue), formula (orange)",
             {{network, kLine}, {formula, kOther}});
   return canvas;
 }
@@ -146,7 +145,6 @@ std::string tensorboardEvents(const History& history) {
   for (const LossRow& row : history.losses) {
     putScalar(file, row.seconds, row.step, "loss/maps", row.loss);
     putScalar(file, row.seconds, row.step, "loss/lights", row.lights);
-    putScalar(file, row.seconds, row.step, "loss/continuations", row.continuations);
     putScalar(file, row.seconds, row.step, "learning rate", row.learningRate);
   }
   for (const ValidationRow& row : history.validations) {
@@ -157,11 +155,11 @@ std::string tensorboardEvents(const History& history) {
 }
 
 void writeHistory(const std::string& folder, const History& history) {
-  std::string losses = "step,loss,loss of lights,loss of continuations,learning rate,seconds\n",
+  std::string losses = "step,loss,loss of lights,learning rate,seconds\n",
               validations = "step,network,formula\n";
   for (const LossRow& row : history.losses)
-    losses += fmt::format("{},{},{},{},{},{:.1f}\n", row.step, row.loss, row.lights, row.continuations,
-                          row.learningRate, row.seconds);
+    losses +=
+        fmt::format("{},{},{},{},{:.1f}\n", row.step, row.loss, row.lights, row.learningRate, row.seconds);
   for (const ValidationRow& row : history.validations)
     validations += fmt::format("{},{},{}\n", row.step, row.variance, row.formula);
   render::writeFile(folder + "/losses.csv", losses);

@@ -11,8 +11,7 @@ namespace odis::learn {
 // The mean over the steps since the row before.
 struct LossRow {
   int step = 0;
-  double loss = 0, lights = 0,
-         continuations = 0;  // of maps, of choices among lights, of what going on is worth
+  double loss = 0, lights = 0;  // of maps, of choices among lights
   double learningRate = 0;
   double seconds = 0;  // since the training began, pauses left out
 };
@@ -28,7 +27,8 @@ struct History {
   std::vector<ValidationRow> validations;
 };
 
-// Writes losses.csv, validation.csv, curves.png and events.out.tfevents.odis to the folder. Throws WriteError.
+// Writes losses.csv, validation.csv, curves.png and events.out.tfevents.odis to the folder. Throws
+// WriteError.
 void writeHistory(const std::string& folder, const History& history);
 
 // The curves: losses above, predicted variance below.

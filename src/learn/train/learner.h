@@ -30,23 +30,18 @@ class Learner {
   virtual ~Learner() = default;
   // Where it computes: "cpu" or "cuda".
   virtual std::string device() const = 0;
-  // Takes from a batch what the cells' numbers are standardized by. To be called once, before anything is learned.
+  // Takes from a batch what the cells' numbers are standardized by. To be called once, before anything is
+  // learned.
   virtual void standardize(const DirectionBatch& batch) = 0;
-  virtual void standardize(const ContinuationBatch& batch) = 0;
   // A step of Adam; returns the mean loss of the batch before it, over all processes.
   virtual double step(const DirectionBatch& batch, Loss loss, double learningRate) = 0;
-  // The same for lights: the logarithm of the second moment of a contribution whose group of lights is chosen by the
-  // network, a tenth of the time as if nothing were learned, over that of the best choice.
+  // The same for lights: the logarithm of the second moment of a contribution whose group of lights is
+  // chosen by the network, a tenth of the time as if nothing were learned, over that of the best choice.
   virtual double step(const LightBatch& batch, double learningRate) = 0;
-  // The same for what going on is worth: with the worth w in the place of w', what roulette adds to the variance and what
-  // it leaves of the rays is (w' / w + w / w') / 2 times as much, the hyperbolic cosine of the logarithm of their ratio.
-  virtual double step(const ContinuationBatch& batch, double learningRate) = 0;
   // The distributions that the network gives for a batch: [count][texel].
   virtual std::vector<float> predict(const DirectionBatch& batch) = 0;
   // The shares that the network gives the groups of lights: [count][group].
   virtual std::vector<float> predict(const LightBatch& batch) = 0;
-  // The corrections that the network gives: [count].
-  virtual std::vector<float> predict(const ContinuationBatch& batch) = 0;
   // What the run time needs.
   virtual std::vector<Tensor> tensors() const = 0;
   // Everything that the next step depends on, as bytes.

@@ -10,9 +10,10 @@
 
 #include "learn/data/dataset.h"
 #include "learn/train/validation.h"
-#include "odis/network/direction_network.h"
+#include "odis/models/direction_formula.h"
+#include "odis/models/direction_network.h"
 #include "odis_version.h"
-#include "render/image/checked_stream.h"
+#include "render/files/checked_stream.h"
 
 namespace odis::learn {
 
@@ -50,10 +51,6 @@ class Training {
       DirectionBatch batch;
       m_pool.draw(uint64_t(m_config.seed), ~uint64_t(0), kStandardizedBy, m_config.shiftProbability, batch);
       m_learner->standardize(batch);
-      ContinuationBatch continuations;
-      m_pool.draw(uint64_t(m_config.seed), ~uint64_t(0), kStandardizedBy, m_config.shiftProbability,
-                  continuations);
-      m_learner->standardize(continuations);
     }
     while (m_step < m_config.steps) {
       if (stopAgreed()) return false;
@@ -158,7 +155,6 @@ class Training {
     const int end = std::min(m_config.steps, (m_step / m_config.roundSteps + 1) * m_config.roundSteps);
     DirectionBatch batch;
     LightBatch lights;
-    ContinuationBatch continuations;
     while (m_step < end) {
       const bool tuning = m_step >= m_config.steps - m_config.fineTuneSteps;
       const uint64_t draw = uint64_t(m_step) * uint64_t(m_processes.count) + uint64_t(m_processes.rank);
@@ -169,17 +165,13 @@ class Training {
         m_pool.draw(uint64_t(m_config.seed), draw, size_t(m_config.batch), lights);
         m_lightSum += m_learner->step(lights, rate);
       }
-      m_pool.draw(uint64_t(m_config.seed), draw, size_t(m_config.batch), m_config.shiftProbability,
-                  continuations);
-      m_continuationSum += m_learner->step(continuations, rate);
       ++m_inSum;
       ++m_step;
       m_seconds = before + std::chrono::duration<double>(Clock::now() - start).count();
       if (m_step % kStepsPerRow == 0 || m_step == m_config.steps) {
-        m_history.losses.push_back(
-            {m_step, m_sum / m_inSum, m_lightSum / m_inSum, m_continuationSum / m_inSum, rate, m_seconds});
+        m_history.losses.push_back({m_step, m_sum / m_inSum, m_lightSum / m_inSum, rate, m_seconds});
         m_observer.step(m_config.steps, m_history.losses.back());
-        m_sum = m_lightSum = m_continuationSum = m_inSum = 0;
+        m_sum = m_lightSum = m_inSum = 0;
       }
       if (first() && (m_step % m_config.validateSteps == 0 || m_step == m_config.steps)) validate();
     }
@@ -192,7 +184,7 @@ class Training {
       if (int(files.size()) < m_config.validationScenes) files.push_back(shardFile(m_config.data, name));
     if (files.empty()) return;
     if (files != m_formulaOf) {
-      m_formula = predictedVariance(files, std::make_shared<HistogramModel>(GuideOptions()));
+      m_formula = predictedVariance(files, std::make_shared<DirectionFormula>(GuideOptions()));
       m_formulaOf = files;
     }
     const auto network = std::make_shared<DirectionNetwork>(Weights("", m_learner->tensors()));
@@ -221,7 +213,7 @@ class Training {
     nlohmann::ordered_json losses = nlohmann::ordered_json::array(),
                            validations = nlohmann::ordered_json::array();
     for (const LossRow& r : m_history.losses)
-      losses.push_back({r.step, r.loss, r.lights, r.continuations, r.learningRate, r.seconds});
+      losses.push_back({r.step, r.loss, r.lights, r.learningRate, r.seconds});
     for (const ValidationRow& r : m_history.validations)
       validations.push_back({r.step, r.variance, r.formula});
     const std::string state = m_learner->state();
@@ -231,7 +223,6 @@ class Training {
     writer.write(checkpointPath(), {{"step", m_step},
                                     {"sum", m_sum},
                                     {"lightSum", m_lightSum},
-                                    {"continuationSum", m_continuationSum},
                                     {"inSum", m_inSum},
                                     {"seconds", m_seconds},
                                     {"shards", m_shards},
@@ -250,11 +241,10 @@ class Training {
     m_step = h.at("step");
     m_sum = h.at("sum");
     m_lightSum = h.at("lightSum");
-    m_continuationSum = h.at("continuationSum");
     m_inSum = h.at("inSum");
     m_seconds = h.at("seconds");
     for (const nlohmann::json& r : h.at("losses"))
-      m_history.losses.push_back({r.at(0), r.at(1), r.at(2), r.at(3), r.at(4), r.at(5)});
+      m_history.losses.push_back({r.at(0), r.at(1), r.at(2), r.at(3), r.at(4)});
     for (const nlohmann::json& r : h.at("validations"))
       m_history.validations.push_back({r.at(0), r.at(1), r.at(2)});
     const std::vector<uint8_t> state = reader.read<uint8_t>("learner");
@@ -272,8 +262,8 @@ class Training {
   std::vector<std::string> m_shards;  // taken up, in this order
   size_t m_filesSeen = 0;
   int m_step = 0;
-  double m_sum = 0, m_lightSum = 0, m_continuationSum = 0;  // of losses since the last row
-  double m_inSum = 0;                                       // of how many steps
+  double m_sum = 0, m_lightSum = 0;  // of losses since the last row
+  double m_inSum = 0;                // of how many steps
   double m_seconds = 0;
   History m_history;
   std::vector<std::string> m_formulaOf;

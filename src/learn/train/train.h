@@ -19,10 +19,11 @@ class TrainObserver {
   virtual bool cancelled() const { return false; }
 };
 
-// Trains in the folder, which afterwards holds config.json (with what it was run with), losses.csv, validation.csv,
-// curves.png, an event file for TensorBoard, checkpoint and odis.weights. Where there is a checkpoint it goes on from there:
-// the same weights to the bit as without the pause, unless shards arrived meanwhile. Returns false if cancelled, after a
-// checkpoint. Throws TrainError (the folder holds another training), ConfigError, ShardError, WriteError.
+// Trains in the folder, which afterwards holds config.json (with what it was run with), losses.csv,
+// validation.csv, curves.png, an event file for TensorBoard, checkpoint and odis.weights. Where there is a
+// checkpoint it goes on from there: the same weights to the bit as without the pause, unless shards arrived
+// meanwhile. Returns false if cancelled, after a checkpoint. Throws TrainError (the folder holds another
+// training), ConfigError, ShardError, WriteError.
 bool train(const TrainConfig& config, const std::string& folder, const Processes& processes,
            TrainObserver& observer);
 

@@ -1,12 +1,14 @@
 #include "learn/train/validation.h"
 
 #include <odis/guide.h>
+#include <odis/pixel_sums.h>
 #include <tbb/parallel_for.h>
 
 #include <cmath>
 #include <mutex>
 
 #include "learn/data/make_shard.h"
+#include "odis/models/model_parts.h"
 
 namespace odis::learn {
 
@@ -27,31 +29,15 @@ class Unseen : public DirectionModel {
   std::shared_ptr<const DirectionModel> m_model;
 };
 
-// What contributions are divided by: the luminance of all pilots around each pixel, with a little of the whole image's.
-std::vector<float> pixelValues(const std::vector<Pilot>& pilots, int width, int height) {
-  constexpr int kReach = 2;
-  constexpr float kShareOfImage = 0.05f;
-  const size_t pixels = size_t(width) * size_t(height);
-  std::vector<float> mean(pixels), values(pixels);
-  double image = 0;
+// Each pixel's luminance, estimated from all pilots.
+std::vector<float> pixelValues(const std::vector<Pilot>& pilots, uint32_t width) {
+  std::vector<PixelSums> image(pilots.front().image.size());
   for (const Pilot& pilot : pilots)
-    for (size_t i = 0; i < pixels; ++i) {
-      const render::Rgb& c = pilot.image[i];
-      mean[i] += luminance(Float3{c.x, c.y, c.z}) / float(pilots.size());
+    for (size_t i = 0; i < image.size(); ++i) {
+      const render::Rgb& value = pilot.image[i];
+      image[i].add(Float3{value.x, value.y, value.z}, 0);
     }
-  for (const float value : mean) image += value;
-  image /= double(pixels);
-  for (int y = 0; y < height; ++y)
-    for (int x = 0; x < width; ++x) {
-      float sum = 0, count = 0;
-      for (int v = std::max(y - kReach, 0); v <= std::min(y + kReach, height - 1); ++v)
-        for (int u = std::max(x - kReach, 0); u <= std::min(x + kReach, width - 1); ++u) {
-          sum += mean[size_t(v) * size_t(width) + size_t(u)];
-          ++count;
-        }
-      values[size_t(y) * size_t(width) + size_t(x)] = sum / count + kShareOfImage * float(image);
-    }
-  return values;
+  return estimatePixelValues(image, width);
 }
 
 double varianceOf(const ShardReader& shard, size_t view, const std::shared_ptr<const DirectionModel>& model) {
@@ -61,11 +47,11 @@ double varianceOf(const ShardReader& shard, size_t view, const std::shared_ptr<c
   for (size_t i = 0; i < header.at("pilots").get<size_t>(); ++i)
     pilots.push_back(readColumns(shard, pilotPrefix(view, i), frame));
   if (pilots.size() < 2) return 1;
-  const std::vector<float> values = pixelValues(pilots, header.at("width"), header.at("height"));
+  const std::vector<float> values = pixelValues(pilots, header.at("width"));
   GuideOptions options;
-  options.model = model;
+  options.model = makeModel(model);
   GuideBuilder builder(options);
-  std::vector<std::span<const PilotVertex>> seen;
+  std::vector<ArrayView<const PathVertex>> seen;
   for (size_t i = 0; i + 1 < pilots.size(); ++i) seen.emplace_back(pilots[i].vertices);
   builder.add(seen);
   return builder.build(pilots.back().vertices, values).predictedVarianceRatio();

@@ -24,7 +24,7 @@ void buildCorridor(Draft& draft) {
   for (int i = 0; i < doors; ++i) {
     const float from = length * float(i) / float(doors), to = length * float(i + 1) / float(doors) - 0.25f;
     if (random.chance(0.75))
-      if (auto room = attachRoom(random, hall, 0, from, to, float(random.range(2, 4)), 0.9f, 2.05f))
+      if (auto room = attachRoom(random, hall, {0, from, to}, float(random.range(2, 4)), {0.9f, 2.05f}))
         rooms.push_back(*room);
   }
   const bool day = random.chance(0.4);

@@ -26,7 +26,7 @@ void buildCove(Draft& draft) {
       for (const Opening& o : room.openings)
         free = free && (o.wall != wall || o.right < s - half.x || o.left > s + half.x);
       if (!free) continue;
-      addGlowingBoard(draft, room, wall, s, half, room.height * 0.5f, random.logRange(10, 60));
+      addGlowingBoard(draft, room, wall, {s, room.height * 0.5f}, half, random.logRange(10, 60));
       // What is in front of the board stays low.
       room.openings.push_back({wall, s - half.x, s + half.x, room.height * 0.5f - half.y, room.height});
       draft.scene.interests.push_back(room.at(wall, s, 0.2f, room.height * 0.5f));

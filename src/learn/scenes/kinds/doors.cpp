@@ -8,7 +8,8 @@
 
 namespace odis::learn {
 
-// One to three rooms about a first one; light in some, which enters the others through doors more or less open.
+// One to three rooms about a first one; light in some, which enters the others through doors more or less
+// open.
 void buildDoors(Draft& draft) {
   Random& random = draft.random;
   Room room =
@@ -20,8 +21,9 @@ void buildDoors(Draft& draft) {
     const auto wall = size_t(firstWall + i) % 4;
     const float length = room.length(wall), width = length * float(random.range(0.55, 1)),
                 from = (length - width) * float(random.unit());
-    std::optional<Room> other = attachRoom(random, room, wall, from, from + width, float(random.range(2, 5)),
-                                           random.chance(0.8) ? 0.9f : 1.6f, 2.05f);
+    std::optional<Room> other =
+        attachRoom(random, room, {wall, from, from + width}, float(random.range(2, 5)),
+                   {random.chance(0.8) ? 0.9f : 1.6f, 2.05f});
     if (other) rooms.push_back(*other);
   }
   const std::vector<Opening> doors = room.openings;

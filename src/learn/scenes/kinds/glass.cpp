@@ -96,8 +96,11 @@ void addGlassWall(Draft& draft, Room& room, size_t wall) {
              height = room.height - bottom - 0.2f;
   const Vec2 u = room.along(wall), n = room.inward(wall);
   const Vec3 across(u.x, u.y, 0), facing(n.x, n.y, 0);
-  addLightPanel(draft, room.at(wall, length * 0.2f, 0.05f, bottom + height * 0.1f), across * (length * 0.6f),
-                {0, 0, height * 0.8f}, facing, random.logRange(50, 200), false);
+  addLightPanel(draft,
+                {room.at(wall, length * 0.2f, 0.05f, bottom + height * 0.1f),
+                 across * (length * 0.6f),
+                 {0, 0, height * 0.8f}},
+                facing, random.logRange(50, 200), false);
   const int columns = random.chance(0.5) ? 1 : std::max(1, int(length / 0.3f)),
             rows = columns == 1 ? 1 : std::max(1, int(height / 0.3f));
   MeshData blocks;

@@ -18,13 +18,13 @@ void addSoftBoxes(Draft& draft, const Vec3& subject, float distance, int count, 
     const Vec3 at = Vec3(subject.x, subject.y, float(random.range(1.3, 2.2))) + out * distance;
     const Vec3 facing = render::normalize(subject - at), up = render::cross(side, facing);
     const auto half = float(random.logRange(0.05, mostHalf));
-    addLightPanel(draft, at - side * half - up * half, side * (2 * half), up * (2 * half), facing,
+    addLightPanel(draft, {at - side * half - up * half, side * (2 * half), up * (2 * half)}, facing,
                   random.logRange(0.1, 1) * power, true);
   }
 }
 
-// Things on a floor without a room around them, before a backdrop or under a sky: light comes straight from soft boxes
-// and from the surroundings, and little of it is reflected twice.
+// Things on a floor without a room around them, before a backdrop or under a sky: light comes straight from
+// soft boxes and from the surroundings, and little of it is reflected twice.
 void buildStage(Draft& draft) {
   Random& random = draft.random;
   draft.tag("stage");

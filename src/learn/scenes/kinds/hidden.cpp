@@ -93,8 +93,10 @@ void addNiches(Draft& draft, Room& room, double power) {
     if (!random.chance(0.8)) continue;
     const float width = hole.right - hole.left;
     // Behind a lip, so that only the niche shows it.
-    addLightPanel(draft, room.at(wall, hole.left + width * 0.1f, 0.03f, height - 0.004f),
-                  across * (width * 0.8f), facing * 0.03f, {0, 0, -1}, power / count, false);
+    addLightPanel(draft,
+                  {room.at(wall, hole.left + width * 0.1f, 0.03f, height - 0.004f), across * (width * 0.8f),
+                   facing * 0.03f},
+                  {0, 0, -1}, power / count, false);
     Piece stand;
     stand.size = {width * 0.7f, depth * 0.6f, 0.01f};
     const Vec3 at = room.at(wall, (hole.left + hole.right) / 2, depth / 2, bottom);

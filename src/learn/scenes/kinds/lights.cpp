@@ -8,7 +8,8 @@ namespace odis::learn {
 
 namespace {
 
-// Where the lights of a hall are: in a grid below the ceiling, on strings, on the walls, in clusters, anywhere.
+// Where the lights of a hall are: in a grid below the ceiling, on strings, on the walls, in clusters,
+// anywhere.
 std::vector<Vec3> arrange(Random& random, const Room& room, int count) {
   const Box box = room.box();
   const Vec3 size = box.max - box.min;

@@ -57,7 +57,7 @@ void addTree(Draft& draft, const Vec3& at) {
       if (render::length(d) > 1) continue;
       const Vec3 p = at + Vec3(0, 0, height * 0.7f) + d * Vec3(crown, crown, height * 0.3f);
       const Vec3 u = render::normalize(Vec3(float(random.range(-1, 1)), float(random.range(-1, 1)), 0.3f));
-      const render::Frame frame(u);
+      const render::CoordinateFrame frame(u);
       const float size = crown * 0.22f;
       addQuad(leaves, p, frame.s * size, frame.t * size, {0, 0, 1});
     }
@@ -73,7 +73,7 @@ void addStreetLamp(Draft& draft, const Vec3& at, double power) {
   addCylinder(pole, Vec3(0), 0.05f, height, 12);
   addBar(pole, {0, 0, height}, {0, 0.6f, height + 0.1f}, 0.03f, 8);
   lamp.add(std::move(pole), draft.materials.metal());
-  addShade(hood, {0, 0.6f, height - 0.05f}, 0.22f, 0.05f, 0.15f, 0.01f, 20);
+  addShade(hood, {0, 0.6f, height - 0.05f}, {0.22f, 0.05f, 0.15f, 0.01f}, 20);
   lamp.add(std::move(hood), draft.materials.metal());
   lamp.balls.push_back({{0, 0.6f, height}, 0.06f, kNoMaterial, radianceOf(random, power, 4 * M_PI * 0.0036)});
   draft.add(lamp, at, float(random.range(0, 2 * M_PI)));

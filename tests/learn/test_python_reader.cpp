@@ -40,7 +40,7 @@ TEST(PythonReader, ReadsWhatIsWritten) {
   const Float3 wi[] = {{0.6f, 0, 0.8f}, {0, -0.6f, -0.8f}, {-0.48f, 0.64f, 0.6f}};
   const Float3 wo[] = {{0, 0, 1}, {-0.6f, 0, -0.8f}, {0.64f, -0.48f, -0.6f}};
   for (size_t i = 0; i < 3; ++i) {
-    PilotVertex& v = pilot.vertices[i];
+    PathVertex& v = pilot.vertices[i];
     v.position = {float(i) - 1.37f, 0.11f * float(i), -12.3f};
     v.normal = wi[(i + 1) % 3];
     v.wi = wi[i];
@@ -50,7 +50,7 @@ TEST(PythonReader, ReadsWhatIsWritten) {
   nlohmann::ordered_json expected = {{"arrays", arrays}};
   for (const char* name : {"position", "normal", "wi", "wo"})
     expected[name] = nlohmann::ordered_json::array();
-  for (const PilotVertex& v : pilot.vertices) {
+  for (const PathVertex& v : pilot.vertices) {
     expected["position"].push_back(toJson(v.position));
     expected["normal"].push_back(toJson(v.normal));
     expected["wi"].push_back(toJson(v.wi));

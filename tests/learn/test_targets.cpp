@@ -1,5 +1,5 @@
-// Targets against what is known: a sky, a furnace, a lamp; and against the means of pilots, which estimate the same.
-// z-tests have 4 as their bound: a true difference apart, one of 16,000 fails.
+// Targets against what is known: a sky, a furnace, a lamp; and against the means of pilots, which estimate
+// the same. z-tests have 4 as their bound: a true difference apart, one of 16,000 fails.
 #include "learn/data/targets.h"
 
 #include <gtest/gtest.h>
@@ -31,10 +31,10 @@ struct View {
   std::vector<Target> targets(const TargetSettings& settings, uint64_t seed = 9) const {
     return traceTargets(*scene, lights, pilots, frame, settings, seed);
   }
-  std::vector<const PilotVertex*> vertices() const {
-    std::vector<const PilotVertex*> result;
+  std::vector<const PathVertex*> vertices() const {
+    std::vector<const PathVertex*> result;
     for (const Pilot& pilot : pilots)
-      for (const PilotVertex& v : pilot.vertices) result.push_back(&v);
+      for (const PathVertex& v : pilot.vertices) result.push_back(&v);
     return result;
   }
 };
@@ -66,7 +66,8 @@ TEST(Targets, OfABallUnderAWhiteSky) {
       EXPECT_NEAR(t.lightPdf[i], 1 / (4 * M_PI), 1e-6);
       EXPECT_EQ(t.rays[i], 1);
     }
-    // Next-event estimation from uniform directions, MIS-weighted, and one ray of the BSDF: noisy, the means are not.
+    // Next-event estimation from uniform directions, MIS-weighted, and one ray of the BSDF: noisy, the means
+    // are not.
     EXPECT_NEAR(t.outgoing.y, 0.4, 0.02);
     EXPECT_GE(t.outgoingRms, t.outgoing.y);
     EXPECT_NEAR(t.outgoingRays, 1.5, 0.1) << "a shadow ray in half of the directions, and the path's";
@@ -158,7 +159,8 @@ struct Mean {
   double varianceOfMean() const { return (squares / count - mean() * mean()) / count; }
 };
 
-// What the vertices of a cell scatter back, and what that costs, is what pilots estimate of the same vertices.
+// What the vertices of a cell scatter back, and what that costs, is what pilots estimate of the same
+// vertices.
 TEST(Targets, AgreeWithPilots) {
   // The camera sees little of the room, so that the few cells there have many vertices.
   const std::string room = test::indirectRoom();
@@ -174,35 +176,37 @@ TEST(Targets, AgreeWithPilots) {
   const std::vector<Target> targets = view.targets(settings);
   ASSERT_EQ(targets.size(), 150u);
   const CellGrid grid(view.frame.origin, view.frame.edge);
-  const auto cellOf = [&](const PilotVertex& v) {
+  const auto cellOf = [&](const PathVertex& v) {
     return grid.key(positionOf(stepsOf(v.position, view.frame), view.frame), unpacked(packed(v.normal)), 0);
   };
-  const std::vector<const PilotVertex*> vertices = view.vertices();
-  std::map<uint64_t, std::vector<const PilotVertex*>> cells;
-  for (const PilotVertex* v : vertices)
+  const std::vector<const PathVertex*> vertices = view.vertices();
+  std::map<uint64_t, std::vector<const PathVertex*>> cells;
+  for (const PathVertex* v : vertices)
     if (isUsable(*v)) cells[cellOf(*v)].push_back(v);
   int tests = 0, dark = 0;
   for (const Target& t : targets) {
-    const std::vector<const PilotVertex*>& members = cells.at(cellOf(*vertices[t.vertex]));
+    const std::vector<const PathVertex*>& members = cells.at(cellOf(*vertices[t.vertex]));
     EXPECT_EQ(t.cellVertices, members.size());
     EXPECT_EQ(t.starts, std::min<size_t>(members.size(), 256));
     if (members.size() < 400) continue;
     ++tests;
     Mean scattered, arriving, rays, depths;
-    for (const PilotVertex* v : members) {
-      scattered.add(luminance(outgoing(*v)));
+    for (const PathVertex* v : members) {
+      scattered.add(luminance(returnedRadiance(*v)));
       arriving.add(sampleValue(*v));
       depths.add(v->depth);
       rays.add(v->raysAfter + float(v->lightGroup != kNoLightGroup));  // and a shadow ray
     }
-    // Samples start at some of the vertices only: what these scatter back differs by a tenth or so across a cell.
+    // Samples start at some of the vertices only: what these scatter back differs by a tenth or so across a
+    // cell.
     const double ofStarts = scattered.mean() * 0.1 / std::sqrt(double(t.starts));
     const double z =
         (luminance(t.outgoing) - scattered.mean()) /
         std::sqrt(scattered.varianceOfMean() + double(t.outgoingRms) * t.outgoingRms / settings.outgoing +
                   ofStarts * ofStarts);
     EXPECT_LT(std::abs(z), 4) << luminance(t.outgoing) << " against " << scattered.mean();
-    // Where the lamp is not seen, all that arrives is scattered light: its irradiance by the map and by the pilots.
+    // Where the lamp is not seen, all that arrives is scattered light: its irradiance by the map and by the
+    // pilots.
     if (*std::max_element(t.emission.begin(), t.emission.end()) == 0) {
       ++dark;
       double irradiance = 0, variance = sqr(0.1 * arriving.mean()) / t.starts + arriving.varianceOfMean();

@@ -69,8 +69,8 @@ class Draw {
   std::mt19937 m_engine{5};
 };
 
-PilotVertex awkwardVertex(Draw& draw, const ViewFrame& frame) {
-  PilotVertex v;
+PathVertex awkwardVertex(Draw& draw, const ViewFrame& frame) {
+  PathVertex v;
   const auto place = [&](float origin) { return origin + (draw.unit() * 400 - 200) * frame.edge; };
   v.position = {place(frame.origin.x), place(frame.origin.y), place(frame.origin.z)};
   v.normal = draw.direction();
@@ -79,19 +79,18 @@ PilotVertex awkwardVertex(Draw& draw, const ViewFrame& frame) {
   v.radiance = draw.color();
   v.weight = draw.color();
   v.direct = draw.color();
-  for (float PilotVertex::*field :
-       {&PilotVertex::pdf, &PilotVertex::survival, &PilotVertex::guidablePdf,
-        &PilotVertex::guidableProbability, &PilotVertex::distance, &PilotVertex::roughness,
-        &PilotVertex::indirect, &PilotVertex::emission, &PilotVertex::emissionLightPdf, &PilotVertex::light,
-        &PilotVertex::lightPdf, &PilotVertex::lightBsdfPdf, &PilotVertex::lightGuidablePdf,
-        &PilotVertex::lightGroupProbability})
+  for (float PathVertex::*field :
+       {&PathVertex::pdf, &PathVertex::survival, &PathVertex::guidablePdf, &PathVertex::guidableProbability,
+        &PathVertex::distance, &PathVertex::roughness, &PathVertex::indirect, &PathVertex::emission,
+        &PathVertex::emissionLightPdf, &PathVertex::light, &PathVertex::lightPdf, &PathVertex::lightBsdfPdf,
+        &PathVertex::lightGuidablePdf, &PathVertex::lightGroupProbability})
     v.*field = draw.awkward();
   v.cosine = std::abs(dot(v.wi, v.normal));
   v.raysAfter = std::floor(draw.unit() * 70000);
-  const uint32_t groups[] = {0, 7, kMostLightGroups - 1, kMostLightGroups, kNoLightGroup};
+  const uint32_t groups[] = {0, 7, kMaxLightGroups - 1, kMaxLightGroups, kNoLightGroup};
   v.lightGroup = groups[size_t(draw.unit() * 4.99f)];
   v.discrete = draw.unit() < 0.5f;
-  v.both = draw.unit() < 0.5f;
+  v.scattersBothSides = draw.unit() < 0.5f;
   return v;
 }
 
@@ -104,7 +103,7 @@ Pilot awkwardPilot(Draw& draw, const ViewFrame& frame, size_t pixels, int longes
     const Float3 color = draw.color();
     pilot.image.emplace_back(color.x, color.y, color.z);
     for (int depth = 1; depth <= length; ++depth) {
-      PilotVertex v = awkwardVertex(draw, frame);
+      PathVertex v = awkwardVertex(draw, frame);
       v.wo = depth == 1 ? draw.direction() : pilot.vertices.back().wi * -1.0f;
       v.sampleWeight = pilot.sampleWeight.back();
       v.pixel = uint32_t(pixel);
@@ -140,7 +139,7 @@ void expectAlike(const Pilot& found, const Pilot& expected, const ViewFrame& fra
     for (int c = 0; c < 3; ++c) expectHalf(found.image[i][c], expected.image[i][c], radiance, "image");
   }
   for (size_t i = 0; i < expected.vertices.size(); ++i) {
-    const PilotVertex &a = found.vertices[i], &b = expected.vertices[i];
+    const PathVertex &a = found.vertices[i], &b = expected.vertices[i];
     expectPosition(a.position, b.position, frame);
     expectDirection(a.normal, b.normal, "normal");
     expectDirection(a.wo, b.wo, "wo");
@@ -167,9 +166,9 @@ void expectAlike(const Pilot& found, const Pilot& expected, const ViewFrame& fra
     expectHalf(a.lightBsdfPdf, lit ? b.lightBsdfPdf : 0, 1, "lightBsdfPdf");
     expectHalf(a.lightGuidablePdf, lit ? b.lightGuidablePdf : 0, 1, "lightGuidablePdf");
     EXPECT_EQ(a.raysAfter, std::min(b.raysAfter, 65535.0f));
-    EXPECT_EQ(a.lightGroup, b.lightGroup < kMostLightGroups ? b.lightGroup : kNoLightGroup);
+    EXPECT_EQ(a.lightGroup, b.lightGroup < kMaxLightGroups ? b.lightGroup : kNoLightGroup);
     EXPECT_EQ(a.discrete, b.discrete);
-    EXPECT_EQ(a.both, b.both);
+    EXPECT_EQ(a.scattersBothSides, b.scattersBothSides);
     EXPECT_EQ(a.pixel, b.pixel);
     EXPECT_EQ(a.depth, b.depth);
     expectHalf(a.sampleWeight, b.sampleWeight, 1, "a vertex's sampleWeight");

@@ -11,7 +11,8 @@
 #include "learn/inspect/picture.h"
 #include "learn/inspect/place.h"
 #include "learn/inspect/vertex_integral.h"
-#include "odis/decisions/direction_model.h"
+#include "odis/maps/texel_directions.h"
+#include "odis/models/model_parts.h"
 
 namespace odis::learn {
 namespace {
@@ -43,11 +44,11 @@ std::string complaint(const render::Scene& scene, const InspectSettings& setting
 
 Float3 directionOf(const SquareMap& map, size_t texel) {
   const auto x = float(texel % size_t(map.side)), y = float(texel / size_t(map.side));
-  return squareToDirection({(x + 0.5f) / float(map.side), (y + 0.5f) / float(map.side)});
+  return squareToDirection(Float2{(x + 0.5f) / float(map.side), (y + 0.5f) / float(map.side)});
 }
 
-// A floor below a small ball of light that next-event estimation reaches, and a bounce off nothing: only what MIS leaves
-// of the light arrives.
+// A floor below a small ball of light that next-event estimation reaches, and a bounce off nothing: only what
+// MIS leaves of the light arrives.
 std::string floorAndLamp(float radius) {
   return test::sensor("origin=\"0,2,3\" target=\"0,0,0\" up=\"0,1,0\"", 40, 24, 24) +
          "<shape type=\"rectangle\"><transform name=\"to_world\"><scale value=\"4\"/><rotate x=\"1\" "
@@ -92,15 +93,15 @@ TEST(Inspect, MapsPointAtTheLamp) {
   EXPECT_GT(dot(directionOf(formula, brightest), towards), std::cos(0.4f));
   // Next-event estimation does it all: there is nothing to gain, which the numbers know.
   EXPECT_NEAR(seen->bsdfAlone.moment, 1, 0.02);
-  EXPECT_EQ(seen->converged.judgement.bestAlpha, 1);
+  EXPECT_EQ(seen->converged.judgement.bestBsdfFraction, 1);
   // No other map is nearer to the converged one than itself.
   EXPECT_NEAR(seen->converged.judgement.divergence, 0, 1e-5);
   EXPECT_GT(seen->maps[0].judgement.divergence, 0.01);
   EXPECT_LT(seen->noise, 0.05);
 }
 
-// Inside of the furnace the same radiance arrives from everywhere: with the BSDF alone a vertex scatters one value, but
-// for what the light and MIS add.
+// Inside of the furnace the same radiance arrives from everywhere: with the BSDF alone a vertex scatters one
+// value, but for what the light and MIS add.
 TEST(Inspect, FurnaceIsEven) {
   const auto scene = test::loadScene(
       test::furnace("<bsdf type=\"diffuse\"><rgb name=\"reflectance\" value=\"0.5\"/></bsdf>"));
@@ -148,9 +149,9 @@ TEST(Inspect, LevelsAreTheGuides) {
   options.features = options.guideFeatures = true;
   options.refineSpp = 0;
   const render::RenderResult image = test::renderScene(*scene, options);
-  EXPECT_EQ(image.frame.guideCell[20 * 24 + 4], float(seen->levels[0].cell));
-  EXPECT_NEAR(image.frame.guideAlpha[20 * 24 + 4], seen->alpha, 1e-6);
-  EXPECT_NEAR(image.frame.guideSurvival[20 * 24 + 4], seen->survival, 1e-6);
+  EXPECT_EQ(image.image.guideCell[20 * 24 + 4], float(seen->levels[0].cell));
+  EXPECT_NEAR(image.image.guideBsdfFraction[20 * 24 + 4], seen->bsdfFraction, 1e-6);
+  EXPECT_NEAR(image.image.guideSurvival[20 * 24 + 4], seen->survival, 1e-6);
   double learned = 0, unlearned = 0;
   for (const GroupView& group : seen->groups) {
     learned += group.learned;
@@ -160,9 +161,10 @@ TEST(Inspect, LevelsAreTheGuides) {
   EXPECT_NEAR(learned, 1, 1e-3);
 }
 
-// A diffuse vertex, and light that is 1 from directions of x > 0 and nothing from others: of the BSDF's draws one half
-// brings twice the mean, so that the second moment is 2 over the squared mean. A map of that half draws there 1.85 times as
-// often at alpha = 0.15: 2 / 1.85, but for cosines that are those of texels. Paths whose root mean square is k times their mean have k^2 times as much of it.
+// A diffuse vertex, and light that is 1 from directions of x > 0 and nothing from others: of the BSDF's draws
+// one half brings twice the mean, so that the second moment is 2 over the squared mean. A map of that half
+// draws there 1.85 times as often at the BSDF sampling fraction 0.15: 2 / 1.85, but for cosines that are
+// those of texels. Paths whose root mean square is k times their mean have k^2 times as much of it.
 TEST(Inspect, MomentsOfHalfASky) {
   const auto scene = test::loadScene(floorAndLamp(0.2f));
   const render::LightSampler lights(scene->emitters());
@@ -177,21 +179,19 @@ TEST(Inspect, MomentsOfHalfASky) {
     Converged arriving;
     arriving.add(target);
     const VertexIntegral integral(place.start, arriving);
-    SamplingMap half;
-    for (int t = 0; t < kMapTexels; ++t)
-      half.texels[size_t(t)] = texelDirection(t).x > 0 ? uint16_t(0xffff) : uint16_t(1);
-    half.update();
-    const VertexMap map = integral.at(half);
+    Histogram halfOfTheSky, allOfTheSky;
+    for (int t = 0; t < kMapTexels; ++t) halfOfTheSky[size_t(t)] = texelDirections().x[t] > 0 ? 1.0f : 0.0f;
+    allOfTheSky.fill(1);
+    // Without a floor, what is dark has the least value that there is.
+    const PackedMap half = packedMap(halfOfTheSky, 0), even = packedMap(allOfTheSky, 0);
+    const VertexMap<float> map = integral.at(half);
     EXPECT_NEAR(integral.moment(map, 1), 2 * noise * noise, 0.005f * noise * noise);
     EXPECT_NEAR(integral.moment(map, 0.15f), 2 / 1.85f * noise * noise, 0.03f * noise * noise);
     const Judgement judged = integral.judge(half, half, 1);
-    EXPECT_EQ(judged.bestAlpha, 0.15f);
+    EXPECT_EQ(judged.bestBsdfFraction, 0.15f);
     EXPECT_NEAR(judged.entropy, 7, 0.01);
     EXPECT_EQ(judged.divergence, 0);
     // Half of the even map's draws come from there: one bit.
-    SamplingMap even;
-    even.texels.fill(0xffff);
-    even.update();
     EXPECT_NEAR(integral.judge(even, half, 1).divergence, 1, 0.01);
   }
 }
@@ -202,8 +202,8 @@ class OneTexel : public DirectionModel {
   DirectionDistribution predict(const CellChain&, const DirectionDistribution*) const override {
     DirectionDistribution result;
     result.probability.fill(0);
-    result.perCosine.fill(1);
-    result.probability[size_t(texelOf({0, 1, 0}))] = 1;
+    result.inverseCosine.fill(1);
+    result.probability[size_t(texelOf(Float3{0, 1, 0}))] = 1;
     return result;
   }
 };
@@ -211,7 +211,7 @@ class OneTexel : public DirectionModel {
 TEST(Inspect, ShowsAnotherModelBesideTheFormula) {
   const auto scene = test::loadScene(test::indirectRoom());
   render::RenderOptions options;
-  options.guideOptions.model = std::make_shared<OneTexel>();
+  options.model = makeModel(std::make_shared<OneTexel>(), Model::builtIn().parts().lights);
   const auto seen = look(*scene, atPixel(12, 22), options);
   ASSERT_TRUE(seen);
   ASSERT_EQ(seen->maps.size(), 2u);
@@ -274,8 +274,8 @@ TEST(Inspect, PictureHoldsEverything) {
     EXPECT_GT(different.size(), 500u);
   }
   const std::string text = inspectionText(*seen, "room");
-  for (const char* word : {"vertex 1 of pixel 4,20", "level", "effective", "alpha", "survival", "formula",
-                           "network", "converged", "divergence", "group"})
+  for (const char* word : {"vertex 1 of pixel 4,20", "level", "effective", "BSDF fraction", "survival",
+                           "formula", "network", "converged", "divergence", "group"})
     EXPECT_NE(text.find(word), std::string::npos) << word;
   const nlohmann::ordered_json json = toJson(*seen);
   EXPECT_EQ(json["maps"][0]["radiance"]["values"].size(), size_t(kMapTexels));

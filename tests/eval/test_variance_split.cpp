@@ -37,8 +37,8 @@ size_t indexOf(const std::string& column) {
   return 0;
 }
 
-// Every share is that of the causes named here, all others are zero. Standard errors of a single test at significance
-// 0.01, over some 40 comparisons in this file: 4.
+// Every share is that of the causes named here, all others are zero. Standard errors of a single test at
+// significance 0.01, over some 40 comparisons in this file: 4.
 constexpr double kErrors = 4;
 void expectShares(const VarianceSplit& split, const std::map<std::string, double>& expected) {
   ASSERT_EQ(split.shares.size(), causes().size());
@@ -63,9 +63,9 @@ std::string pointLight(const std::string& position, const std::string& intensity
 }
 
 TEST(VarianceSplit, TwoPointLightsAreAChoice) {
-  // A floor of reflectance 0.5 in the origin under point lights of intensity I at distance d, each seen at the angle
-  // theta, scatters c = 0.5 / pi I cos(theta) / d^2 of each. Chosen with probability p, the channel's variance is the
-  // sum of c^2 / p less the square of the sum of c.
+  // A floor of reflectance 0.5 in the origin under point lights of intensity I at distance d, each seen at
+  // the angle theta, scatters c = 0.5 / pi I cos(theta) / d^2 of each. Chosen with probability p, the
+  // channel's variance is the sum of c^2 / p less the square of the sum of c.
   const auto scene = test::loadScene(narrowSensor(16) + kFloor + pointLight("0,2,0", "9,1,1") +
                                      pointLight("2,2,0", "1,1,20"));
   const LightSampler lights(scene->emitters());
@@ -96,8 +96,8 @@ TEST(VarianceSplit, TwoPointLightsAreAChoice) {
 }
 
 TEST(VarianceSplit, AnAreaLightIsAPointAndADirection) {
-  // Next-event estimation and the direction's ray each bring a part of the light, MIS between them: two independent
-  // terms, so the shares of the two add up to one exactly and both are there.
+  // Next-event estimation and the direction's ray each bring a part of the light, MIS between them: two
+  // independent terms, so the shares of the two add up to one exactly and both are there.
   const auto scene = test::loadScene(
       narrowSensor(16) + kFloor +
       "<shape type=\"rectangle\"><transform name=\"to_world\"><scale value=\"0.8\"/><rotate x=\"1\" "
@@ -105,7 +105,7 @@ TEST(VarianceSplit, AnAreaLightIsAPointAndADirection) {
       "value=\"5\"/></emitter></shape>");
   RenderOptions o = options(IntegratorKind::path, 2);
   o.spp = 1024;
-  const Rgb expected = test::renderScene(*scene, o).frame.color[0];
+  const Rgb expected = test::renderScene(*scene, o).image.color[0];
   const VarianceSplit result = split(*scene, o, expected, 128);
   const double point = result.shares[indexOf("1st point")].value;
   EXPECT_GT(point, 0.03);
@@ -118,8 +118,9 @@ TEST(VarianceSplit, AnAreaLightIsAPointAndADirection) {
 }
 
 TEST(VarianceSplit, RouletteAlone) {
-  // Inside of a mirror of reflectance 0.5 that emits 1, roulette from the first vertex on: a path survives with 1/2 and
-  // brings 1 at each vertex, so it brings 2 on average and has the geometric distribution's variance, 2.
+  // Inside of a mirror of reflectance 0.5 that emits 1, roulette from the first vertex on: a path survives
+  // with 1/2 and brings 1 at each vertex, so it brings 2 on average and has the geometric distribution's
+  // variance, 2.
   const auto scene =
       test::loadScene(test::furnace("<bsdf type=\"conductor\"><string name=\"material\" value=\"none\"/><rgb "
                                     "name=\"specular_reflectance\" value=\"0.5\"/></bsdf>"));
@@ -156,8 +157,8 @@ TEST(VarianceSplit, AnEdgeIsThePixels) {
 
 class VarianceSplitRoom : public ::testing::TestWithParam<IntegratorKind> {};
 
-// The variance by the numbers that are all redrawn is the one that the renderer estimates from independent samples, and
-// a union has no less of it than each of its parts.
+// The variance by the numbers that are all redrawn is the one that the renderer estimates from independent
+// samples, and a union has no less of it than each of its parts.
 TEST_P(VarianceSplitRoom, AddsUp) {
   const auto scene = test::loadScene(test::indirectRoom());
   RenderOptions o = options(GetParam(), 6, 3);
@@ -169,7 +170,7 @@ TEST_P(VarianceSplitRoom, AddsUp) {
   many.pilotWeight = 0;  // the guided samples' variance
   many.variance = true;
   many.seed = 99;
-  const Frame2D frame = test::renderScene(*scene, many).frame;
+  const RenderedImage frame = test::renderScene(*scene, many).image;
   const ColorImage reference{frame.width, frame.height, frame.color};
   const std::vector<Rgbd> weights = relMseWeights(reference);
   const double samples = GetParam() == IntegratorKind::odis ? 511 : 512;

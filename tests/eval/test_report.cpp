@@ -25,8 +25,8 @@ namespace {
 
 constexpr int kWidth = 12, kHeight = 8;
 
-// Two scenes, two methods, two numbers of samples and one rendering at equal time, with names and a command that
-// try to break out of the page.
+// Two scenes, two methods, two numbers of samples and one rendering at equal time, with names and a command
+// that try to break out of the page.
 class Report : public testing::Test {
  protected:
   void SetUp() override {
@@ -59,8 +59,8 @@ class Report : public testing::Test {
     writeColor(m_folder.path(m.image), frameOf(1 + 0.1f * float(number)), kWidth, kHeight, {});
   }
   // A ramp from black far into what no screen can show.
-  static odis::render::Frame2D frameOf(float brightness) {
-    odis::render::Frame2D frame;
+  static odis::render::RenderedImage frameOf(float brightness) {
+    odis::render::RenderedImage frame;
     frame.width = kWidth;
     frame.height = kHeight;
     for (int i = 0; i < kWidth * kHeight; ++i)
@@ -69,7 +69,8 @@ class Report : public testing::Test {
   }
   std::string page(size_t pictureBytes = kReportBytes) const {
     const auto rows = summarize(m_comparison.measurements);
-    const std::vector<Method> methods{{"path", "--integrator path", {}}, {"odis", "--alpha 0.5", {}}};
+    const std::vector<Method> methods{{"path", "--integrator path", {}},
+                                      {"odis", "--set bsdf-fraction=0.5", {}}};
     const Json json = comparisonJson(m_comparison, rows, methods, {"odis compare {{style}} \xff", "machine"});
     return reportPage(m_comparison, rows, json, m_folder.path(""), pictureBytes);
   }
@@ -157,7 +158,7 @@ TEST_F(Report, CarriesTheFigures) {
   EXPECT_EQ(data.at("runs").size(), 10u);
   EXPECT_EQ(data.at("scenes").at(1).at("name"), "a</script><b>");
   EXPECT_EQ(data.at("command").get<std::string>().rfind("odis compare {{style}}", 0), 0u);
-  EXPECT_EQ(data.at("methods").at(1).at("options"), "--alpha 0.5");
+  EXPECT_EQ(data.at("methods").at(1).at("options"), "--set bsdf-fraction=0.5");
   EXPECT_GT(data.at("scenes").at(0).at("mean"), 0);
 }
 

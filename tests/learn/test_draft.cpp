@@ -69,7 +69,7 @@ TEST(Solids, NormalsAgreeWithTheWinding) {
   addBall(mesh, {0, 0, 0}, 2, 16);
   expectSound(mesh, "ball");
   addCylinder(mesh, {0, 0, 0}, 1, 2, 12);
-  addShade(mesh, {0, 0, 0}, 1, 0.5f, 1, 0.01f, 12);
+  addShade(mesh, {0, 0, 0}, {1, 0.5f, 1, 0.01f}, 12);
   addCushion(mesh, {0, 0, 0}, {1, 2, 0.5f}, 0.3f);
   addBar(mesh, {0, 0, 0}, {1, 1, 1}, 0.1f, 8);
   const Vec2 triangle[] = {{0, 0}, {1, 0}, {0, 1}};
@@ -215,8 +215,8 @@ TEST(Statistics, FloorsAreNotVivid) {
   EXPECT_EQ(reds, 0u);    // one of 4096 such floors has twelve attempts that fail
 }
 
-// Each kind's count within 4 standard deviations (13 kinds: significance 0.001); guiding has nothing to do in 10 to
-// 20 % of the scenes.
+// Each kind's count within 4 standard deviations (13 kinds: significance 0.001); guiding has nothing to do in
+// 10 to 20 % of the scenes.
 TEST(Statistics, KindsHaveTheirShares) {
   constexpr int kScenes = 20000;
   double all = 0;

@@ -105,7 +105,8 @@ TEST(SamplesNeeded, TakesTheLeastOfSeveral) {
   EXPECT_EQ(samplesNeeded(curve, INFINITY).where, SamplesNeeded::unknown);
 }
 
-// Of two seeds with ratios 1 and 3 (over 1) the resampled medians are 1, 2 or 3 with probability 1/4, 1/2, 1/4.
+// Of two seeds with ratios 1 and 3 (over 1) the resampled medians are 1, 2 or 3 with probability 1/4, 1/2,
+// 1/4.
 TEST(Bootstrap, DrawsSeedsWithReplacement) {
   const std::vector<double> ratios = resampledRatios({1, 3}, {1, 1}, 7);
   int counts[4] = {};

@@ -9,7 +9,7 @@
 #include <fstream>
 #include <limits>
 
-#include "render/image/replace_file.h"
+#include "render/files/replace_file.h"
 #include "support/temporary_folder.h"
 
 namespace odis::learn {
@@ -121,9 +121,10 @@ TEST(Shard, AnswersOnlyForWhatItHas) {
   EXPECT_THROW(writer.add("a", {1ull << 63, 2, 3}, std::span(six)), std::logic_error);
 }
 
-// The header has a CRC-32, the content of each array an XXH64: ShardReader finds each bit that changes what is read. What
-// it does not find are bits of a frame that leave its content as it is: one that Zstandard does not use, and whether a
-// single byte is stored or repeated once. The CRC-32 of the whole file, which the manifest has, finds any single bit.
+// The header has a CRC-32, the content of each array an XXH64: ShardReader finds each bit that changes what
+// is read. What it does not find are bits of a frame that leave its content as it is: one that Zstandard does
+// not use, and whether a single byte is stored or repeated once. The CRC-32 of the whole file, which the
+// manifest has, finds any single bit.
 TEST(Shard, EveryFlippedBitIsFound) {
   const std::string bytes = smallShard();
   const auto content = contentOf(ShardReader("x", bytes));

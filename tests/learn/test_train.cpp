@@ -13,16 +13,17 @@
 #include "learn/data/dataset.h"
 #include "learn/train/train.h"
 #include "learn/train/validation.h"
-#include "odis/network/continuation_network.h"
-#include "odis/network/direction_network.h"
-#include "odis/network/light_network.h"
+#include "odis/models/direction_formula.h"
+#include "odis/models/direction_network.h"
+#include "odis/models/light_network.h"
 
 namespace odis::learn {
 namespace {
 
 namespace fs = std::filesystem;
 
-// A data set of a few tiny scenes, made once; in a folder of this process, since others may run tests at the same time.
+// A data set of a few tiny scenes, made once; in a folder of this process, since others may run tests at the
+// same time.
 class Training : public ::testing::Test {
  protected:
   static void SetUpTestSuite() {
@@ -101,7 +102,8 @@ TEST_F(Training, ExamplesHoldWhatCellsHave) {
       ViewExamples::Storage all, one;
       const CellChain chain = view.chain(2, i, false, all), small = view.chain(0, i, false, one);
       ASSERT_TRUE(chain[0] != nullptr);
-      // All pilots have at least as many samples as one of them, and coarser cells at least as many as finer ones.
+      // All pilots have at least as many samples as one of them, and coarser cells at least as many as finer
+      // ones.
       for (size_t l = 0; l + 1 < kCellLevels && chain[l + 1]; ++l) {
         EXPECT_GE(chain[l + 1]->count, chain[l]->count);
         EXPECT_EQ(chain[l + 1]->level, chain[l]->level + 1);
@@ -186,42 +188,16 @@ TEST_F(Training, RunTimeAgreesWithLibtorch) {
   for (size_t i = 0; i < pairs.count; ++i) {
     uint32_t groups = 0;
     LightFeatures features;
-    for (size_t g = 0; g < kMostLightGroups; ++g) {
-      features.formula[g] = pairs.formula[i * kMostLightGroups + g];
+    for (size_t g = 0; g < kMaxLightGroups; ++g) {
+      features.formula[g] = pairs.formula[i * kMaxLightGroups + g];
       groups += features.formula[g] > 0;
       for (size_t f = 0; f < kPairFeatures; ++f)
-        features.pairs[f][g] = pairs.pairs[(i * kMostLightGroups + g) * kPairFeatures + f];
+        features.pairs[f][g] = pairs.pairs[(i * kMaxLightGroups + g) * kPairFeatures + f];
     }
     const auto result = lights.shares(features, groups);
-    for (size_t g = 0; g < kMostLightGroups; ++g)
-      EXPECT_NEAR(result[g], shares[i * kMostLightGroups + g], 1e-4) << i << " " << g;
+    for (size_t g = 0; g < kMaxLightGroups; ++g)
+      EXPECT_NEAR(result[g], shares[i * kMaxLightGroups + g], 1e-4) << i << " " << g;
   }
-
-  ContinuationBatch cells;
-  pool.draw(1, 0, 256, 0.1, cells);
-  learner->standardize(cells);
-  for (int step = 0; step < 5; ++step) learner->step(cells, 1e-2);
-  const std::vector<float> corrections = learner->predict(cells);
-  const ContinuationNetwork worth(Weights("{}", learner->tensors()));
-  for (size_t i = 0; i < cells.count; ++i) {
-    ContinuationFeatures features;
-    std::copy_n(&cells.scalars[i * kContinuationScalars], kContinuationScalars, features.scalars.begin());
-    EXPECT_NEAR(worth.correction(features), corrections[i], 1e-4) << i;
-  }
-}
-
-TEST_F(Training, ContinuationsAreCorrectedTowardsTheTargets) {
-  const std::string file = shardFile(s_folder + "/data", shardsIn(s_folder + "/data").front());
-  ExamplePool pool(config().examples);
-  pool.add({file});
-  ContinuationBatch batch;
-  pool.draw(1, 0, 512, 0, batch);
-  // The formula is right by a few octaves, not by a unit that was forgotten; and not always right.
-  std::vector<float> sorted = batch.target;
-  std::sort(sorted.begin(), sorted.end());
-  EXPECT_LT(std::abs(sorted[sorted.size() / 2]), 2.5f);
-  EXPECT_GT(sorted[sorted.size() * 9 / 10] - sorted[sorted.size() / 10], 0.2f);
-  for (const float value : batch.scalars) EXPECT_TRUE(std::abs(value) <= 32) << value;
 }
 
 TEST_F(Training, LowersEveryLoss) {
@@ -239,17 +215,6 @@ TEST_F(Training, LowersEveryLoss) {
     double after = before;
     for (int step = 0; step < 40; ++step) after = learner->step(batch, loss, 5e-3);
     EXPECT_LT(after, before) << int(loss);
-  }
-  {
-    ContinuationBatch cells;
-    pool.draw(1, 0, 256, 0.1, cells);
-    const auto learner = makeLearner(config(), {});
-    learner->standardize(cells);
-    const double before = learner->step(cells, 5e-3);
-    double after = before;
-    for (int step = 0; step < 40; ++step) after = learner->step(cells, 5e-3);
-    EXPECT_LT(after, before);
-    EXPECT_GE(after, 1);  // the best survival has one
   }
   LightBatch lights;
   pool.draw(1, 0, 256, lights);
@@ -305,7 +270,6 @@ TEST_F(Training, GoesOnAsIfNothingHadHappened) {
   const Weights weights = Weights::load(run("whole") + "/odis.weights");
   EXPECT_NE(weights.about().find("crc32"), std::string::npos);
   EXPECT_NO_THROW(DirectionNetwork{weights});
-  EXPECT_NO_THROW(ContinuationNetwork{weights});
 
   TrainConfig other = config();
   other.batch = 32;
@@ -320,33 +284,27 @@ TEST_F(Training, TwoProcessesLearnTheSame) {
   ExamplePool pool(config().examples);
   pool.add({shardFile(config().data, shardsIn(config().data).front())});
   std::vector<Tensor> learned[2];
-  double losses[2], lightLosses[2], continuationLosses[2];
+  double losses[2], lightLosses[2];
   std::vector<std::thread> processes;
   for (int rank = 0; rank < 2; ++rank)
     processes.emplace_back([&, rank] {
       const auto learner = makeLearner(config(), {rank, 2});
       DirectionBatch batch;
       LightBatch pairs;
-      ContinuationBatch cells;
       pool.draw(1, 99, 64, 0.1, batch);
       learner->standardize(batch);
-      pool.draw(1, 99, 64, 0.1, cells);
-      learner->standardize(cells);
       EXPECT_EQ(learner->agree(rank == 0 ? "first" : "second"), "first");
       for (int step = 0; step < 3; ++step) {
         pool.draw(1, uint64_t(2 * step + rank), 64, 0.1, batch);
         losses[rank] = learner->step(batch, Loss::crossEntropy, 1e-2);
         pool.draw(1, uint64_t(2 * step + rank), 64, pairs);
         lightLosses[rank] = learner->step(pairs, 1e-2);
-        pool.draw(1, uint64_t(2 * step + rank), 64, 0.1, cells);
-        continuationLosses[rank] = learner->step(cells, 1e-2);
       }
       learned[rank] = learner->tensors();
     });
   for (std::thread& process : processes) process.join();
   EXPECT_EQ(losses[0], losses[1]);
   EXPECT_EQ(lightLosses[0], lightLosses[1]);
-  EXPECT_EQ(continuationLosses[0], continuationLosses[1]);
   for (size_t i = 0; i < learned[0].size(); ++i) EXPECT_EQ(learned[0][i].values, learned[1][i].values);
 
   // And what one process with both halves learns: the mean of two batches of the same size is that of one.
@@ -354,9 +312,6 @@ TEST_F(Training, TwoProcessesLearnTheSame) {
   DirectionBatch batch, half;
   pool.draw(1, 99, 64, 0.1, batch);
   alone->standardize(batch);
-  ContinuationBatch cells, otherCells;
-  pool.draw(1, 99, 64, 0.1, cells);
-  alone->standardize(cells);
   for (int step = 0; step < 3; ++step) {
     pool.draw(1, uint64_t(2 * step), 64, 0.1, batch);
     pool.draw(1, uint64_t(2 * step + 1), 64, 0.1, half);
@@ -365,7 +320,7 @@ TEST_F(Training, TwoProcessesLearnTheSame) {
       (batch.*field).insert((batch.*field).end(), (half.*field).begin(), (half.*field).end());
     };
     for (const auto field : {&DirectionBatch::scalars, &DirectionBatch::basis, &DirectionBatch::there,
-                             &DirectionBatch::perCosine, &DirectionBatch::diffuse, &DirectionBatch::mass,
+                             &DirectionBatch::inverseCosine, &DirectionBatch::diffuse, &DirectionBatch::mass,
                              &DirectionBatch::square})
       append(field);
     const double loss = alone->step(batch, Loss::crossEntropy, 1e-2);
@@ -379,19 +334,13 @@ TEST_F(Training, TwoProcessesLearnTheSame) {
       (pairs.*field).insert((pairs.*field).end(), (others.*field).begin(), (others.*field).end());
     const double lightLoss = alone->step(pairs, 1e-2);
     if (step == 2) EXPECT_NEAR(lightLoss, lightLosses[0], 1e-3);
-    pool.draw(1, uint64_t(2 * step), 64, 0.1, cells);
-    pool.draw(1, uint64_t(2 * step + 1), 64, 0.1, otherCells);
-    cells.count += otherCells.count;
-    for (const auto field : {&ContinuationBatch::scalars, &ContinuationBatch::target})
-      (cells.*field).insert((cells.*field).end(), (otherCells.*field).begin(), (otherCells.*field).end());
-    const double continuationLoss = alone->step(cells, 1e-2);
-    if (step == 2) EXPECT_NEAR(continuationLoss, continuationLosses[0], 1e-3 * continuationLoss);
   }
   for (size_t i = 0; i < learned[0].size(); ++i) {
     const Tensor &two = learned[0][i], one = alone->tensors()[i];
     // What is added to all groups alike changes nothing, and its gradient is but rounding.
     if (two.name == "lights.2.bias") continue;
-    // Adam makes much of little gradients, and their rounding, as lights have them: a step may be as long as 0.01.
+    // Adam makes much of little gradients, and their rounding, as lights have them: a step may be as long as
+    // 0.01.
     const float least = two.name.starts_with("lights.") ? 1e-3f : 2e-4f;
     for (size_t k = 0; k < two.values.size(); ++k)
       EXPECT_NEAR(two.values[k], one.values[k], least + 1e-3f * std::abs(one.values[k])) << two.name;
@@ -404,14 +353,14 @@ TEST_F(Training, ValidationTellsGoodMapsFromBad) {
    public:
     DirectionDistribution predict(const CellChain& chain, const DirectionDistribution*) const override {
       DirectionDistribution result;
-      result.perCosine.fill(1);
+      result.inverseCosine.fill(1);
       for (size_t t = 0; t < kMapTexels; ++t) result.probability[t] = chain[0]->histogram[t] > 0 ? 1e-4f : 1;
       return result;
     }
   };
   std::vector<std::string> files;
   for (const std::string& name : shardsIn(config().data)) files.push_back(shardFile(config().data, name));
-  const double formula = predictedVariance(files, std::make_shared<HistogramModel>(GuideOptions()));
+  const double formula = predictedVariance(files, std::make_shared<DirectionFormula>(GuideOptions()));
   const double inverted = predictedVariance(files, std::make_shared<Inverted>());
   EXPECT_LT(formula, 1);
   EXPECT_LT(formula, inverted);
@@ -448,10 +397,11 @@ TEST(TrainConfig, MistakesAreNamed) {
 
 TEST(History, TensorBoardsRecordsHaveTheirChecksums) {
   History history;
-  history.losses = {{50, 4.5, 0.4, 2, 1e-3, 2}, {100, 4.25, 0.3, 1.9, 1e-3, 4}};
+  history.losses = {{50, 4.5, 0.4, 1e-3, 2}, {100, 4.25, 0.3, 1e-3, 4}};
   history.validations = {{100, 0.7, 0.75}};
   const std::string file = tensorboardEvents(history);
-  // Records of a length, its CRC, the event and its CRC: one for the version, four a row of losses, two a validation.
+  // Records of a length, its CRC, the event and its CRC: one for the version, three a row of losses, two a
+  // validation.
   size_t records = 0;
   for (size_t at = 0; at < file.size(); ++records) {
     uint64_t length;
@@ -459,8 +409,9 @@ TEST(History, TensorBoardsRecordsHaveTheirChecksums) {
     at += 8 + 4 + length + 4;
     ASSERT_LE(at, file.size());
   }
-  EXPECT_EQ(records, 1u + 8 + 2);
-  // The first record: 9 bytes of time, 15 of the version; these bytes are what TensorBoard's own writer makes.
+  EXPECT_EQ(records, 1u + 6 + 2);
+  // The first record: 9 bytes of time, 15 of the version; these bytes are what TensorBoard's own writer
+  // makes.
   EXPECT_EQ(file.substr(0, 8), std::string("\x18\0\0\0\0\0\0\0", 8));
   EXPECT_EQ(file.substr(8, 4), std::string("\xa3\x7f\x4b\x22", 4));
   EXPECT_NE(file.find("brain.Event:2"), std::string::npos);

@@ -1,5 +1,5 @@
-// Generated scenes as files: the same bytes for the same seed, nothing that the loader complains about, views that
-// show something.
+// Generated scenes as files: the same bytes for the same seed, nothing that the loader complains about, views
+// that show something.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -77,11 +77,11 @@ TEST(GenerateScene, EveryKindLoadsWithoutWarningsAndShowsSomething) {
         options.maxDepth = 12;
         const render::RenderResult result = render::render(*scene, options, silent);
         size_t lit = 0;
-        for (const Rgb& pixel : result.frame.color) {
+        for (const Rgb& pixel : result.image.color) {
           EXPECT_TRUE(render::isFinite(pixel));
           lit += render::luminance(pixel) > 1e-4f;
         }
-        EXPECT_GT(lit, result.frame.color.size() / 3) << made << " " << view;
+        EXPECT_GT(lit, result.image.color.size() / 3) << made << " " << view;
       }
       fs::remove_all(moved);
     }

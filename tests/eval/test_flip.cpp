@@ -40,8 +40,8 @@ double mean(const std::vector<float>& values) {
   return std::accumulate(values.begin(), values.end(), 0.0) / double(values.size());
 }
 
-// Made with the Python package flip-evaluator 1.7, with the arrays of makeReference and makeImage, 32 x 24 and
-// 150 x 90: evaluate(reference, image, "LDR", inputsRGB=False, applyMagma=False).
+// Made with the Python package flip-evaluator 1.7, with the arrays of makeReference and makeImage, 32 x 24
+// and 150 x 90: evaluate(reference, image, "LDR", inputsRGB=False, applyMagma=False).
 TEST(Flip, IsThatOfItsAuthors) {
   const std::vector<float> small = flipMap(makeImage(32, 24), makeReference(32, 24));
   ASSERT_EQ(small.size(), 32u * 24);
