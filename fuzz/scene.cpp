@@ -4,7 +4,7 @@
 #include <fstream>
 #include <string>
 
-#include "render/integrator/render.h"
+#include "render/integrators/render.h"
 #include "render/scene/scene.h"
 
 namespace {

@@ -1,4 +1,5 @@
-// Shards of data sets: as they are, and with a header whose CRC-32 is made right, so that damage gets behind it.
+// Shards of data sets: as they are, and with a header whose CRC-32 is made right, so that damage gets
+// behind it.
 #include <cstring>
 
 #include "learn/data/dataset_info.h"

@@ -2,9 +2,8 @@
 #include <cstring>
 
 #include "learn/data/shard_file.h"
-#include "odis/network/continuation_network.h"
-#include "odis/network/direction_network.h"
-#include "odis/network/light_network.h"
+#include "odis/models/direction_network.h"
+#include "odis/models/light_network.h"
 
 namespace {
 
@@ -16,10 +15,7 @@ void readAll(std::string_view bytes) {
     const DirectionNetwork network(weights);
     const CellStatistics cell;
     network.predict({&cell}, nullptr);
-    LightNetwork(weights).predict({&cell}, nullptr, kMostLightGroups);
-    CellStatistics bright;
-    bright.count = bright.outgoingSquares = 1;
-    ContinuationNetwork(weights).predict({&bright}, nullptr);
+    LightNetwork(weights).predict({&cell}, nullptr, kMaxLightGroups);
   } catch (const WeightsError&) {
   }
 }

@@ -1,7 +1,7 @@
 // Scene files, as far as the tree of their elements.
 #include <string_view>
 
-#include "render/scene/xml.h"
+#include "render/xml/xml.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const uint8_t* bytes, size_t size) {
   const std::string text(reinterpret_cast<const char*>(bytes), size);

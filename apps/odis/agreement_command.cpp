@@ -17,7 +17,7 @@ namespace odis::app {
 
 namespace {
 
-struct Arguments {
+struct AgreementArguments {
   std::string scene, reference, picture;
   int spp = 256, maxDepth = 13, rrDepth = 5, threads = 0;
   uint64_t seed = 0;
@@ -26,7 +26,7 @@ struct Arguments {
 
 // What `path` makes of the scene under the conditions of the reference: its size, a box filter, independent
 // samples, whose spread tells the standard error.
-eval::Estimate renderEstimate(const Arguments& a, int width, int height) {
+eval::Estimate renderEstimate(const AgreementArguments& a, int width, int height) {
   render::LoadOptions load;
   load.resolution = render::Vec2i(width, height);
   render::Warnings warnings;
@@ -46,7 +46,7 @@ eval::Estimate renderEstimate(const Arguments& a, int width, int height) {
   options.variance = true;
   ConsoleProgress progress(a.quiet);
   const render::RenderResult result = render::render(*scene, options, progress);
-  eval::Estimate estimate{width, height, result.frame.color, result.frame.variance};
+  eval::Estimate estimate{width, height, result.image.color, result.image.variance};
   for (render::Rgb& v : estimate.standardError) v = {std::sqrt(v.x), std::sqrt(v.y), std::sqrt(v.z)};
   return estimate;
 }
@@ -75,7 +75,7 @@ void writePicture(const std::string& path, const eval::Agreement& found, const e
 
 }  // namespace
 
-static int run(const Arguments& a) {
+static int runAgreement(const AgreementArguments& a) {
   const eval::Estimate reference = eval::readEstimate(a.reference);
   const InterruptScope interruptible;
   const eval::Estimate image = renderEstimate(a, reference.width, reference.height);
@@ -107,7 +107,7 @@ Command addAgreementCommand(CLI::App& parent) {
       "Blocks of {0} x {0} pixels agree if the means of every channel differ by at most {1:.0f} standard "
       "errors\nplus {2} % of the reference.",
       eval::kAgreementBlock, eval::kAgreementErrors, 100 * eval::kAgreementShare));
-  const auto a = std::make_shared<Arguments>();
+  const auto a = std::make_shared<AgreementArguments>();
   const CLI::Range positive(1, 1 << 24);
   app->add_option("SCENE", a->scene, "Mitsuba scene file")->required();
   app->add_option("REFERENCE", a->reference, "EXR file with R, G, B and their standard errors, stderr.R, ...")
@@ -127,7 +127,7 @@ Command addAgreementCommand(CLI::App& parent) {
       ->capture_default_str();
   app->add_flag("--json", a->json, "Print JSON");
   app->add_flag("-q,--quiet", a->quiet, "No progress");
-  return {app, [a] { return run(*a); }};
+  return {app, [a] { return runAgreement(*a); }};
 }
 
 }  // namespace odis::app

@@ -16,7 +16,7 @@ namespace odis::app {
 
 namespace {
 
-struct Arguments {
+struct AnalyzeArguments {
   std::vector<std::string> scenes, methods{"path=--integrator path", "odis=--integrator odis"};
   std::string output;
   eval::AnalyzeSettings settings;
@@ -27,7 +27,7 @@ struct Arguments {
 
 }  // namespace
 
-static int run(Arguments& a) {
+static int runAnalyze(AnalyzeArguments& a) {
   eval::AnalyzeSettings& settings = a.settings;
   settings.methods = parseMethods(a.methods, a.threads);
   settings.load = a.part.loadOptions();
@@ -65,7 +65,7 @@ Command addAnalyzeCommand(CLI::App& parent) {
       "up\n"
       "to more than 100 % where causes act together. In units of relMSE, without the worst 0.1 % of the\n"
       "pixels; after +-, standard errors. See docs/variance.md.");
-  const auto a = std::make_shared<Arguments>();
+  const auto a = std::make_shared<AnalyzeArguments>();
   eval::AnalyzeSettings& settings = a->settings;
   const CLI::Range positive(1, 1 << 20);
   app->add_option("SCENE", a->scenes, "Mitsuba 3 scene files")->required();
@@ -99,7 +99,7 @@ Command addAnalyzeCommand(CLI::App& parent) {
   app->add_flag("--json", a->json, "Print JSON");
   app->add_flag("-q,--quiet", a->quiet, "No progress");
   a->part.addTo(*app);
-  return {app, [a] { return run(*a); }};
+  return {app, [a] { return runAnalyze(*a); }};
 }
 
 }  // namespace odis::app

@@ -15,7 +15,7 @@ namespace odis::app {
 
 namespace {
 
-struct Arguments {
+struct BenchArguments {
   std::vector<std::string> scenes;
   eval::BenchmarkSettings settings;
   std::string sampler = "independent";
@@ -54,7 +54,7 @@ void printRow(const Row& row) {
 
 }  // namespace
 
-static int run(Arguments& a) {
+static int runBench(BenchArguments& a) {
   a.settings.sampler = a.sampler == "sobol" ? render::SamplerKind::sobol : render::SamplerKind::independent;
   const InterruptScope interruptible;
   ConsoleProgress progress(a.quiet);
@@ -91,7 +91,7 @@ Command addBenchCommand(CLI::App& parent) {
       "\"frame\" are times in those of `path`, \"guiding of a frame\" is the share of recording the pilot "
       "and of\n"
       "building cells, maps and selection probabilities.");
-  const auto a = std::make_shared<Arguments>();
+  const auto a = std::make_shared<BenchArguments>();
   const CLI::Range positive(1, 1 << 24);
   app->add_option("SCENE", a->scenes, "Mitsuba scene files")->required();
   app->add_option("--spp", a->settings.spp, "Samples per pixel, of which one is the pilot")
@@ -117,7 +117,7 @@ Command addBenchCommand(CLI::App& parent) {
       ->capture_default_str();
   app->add_flag("--json", a->json, "Print JSON");
   app->add_flag("-q,--quiet", a->quiet, "No progress");
-  return {app, [a] { return run(*a); }};
+  return {app, [a] { return runBench(*a); }};
 }
 
 }  // namespace odis::app

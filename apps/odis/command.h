@@ -5,7 +5,7 @@
 #include <stdexcept>
 #include <string>
 
-#include "render/image/replace_file.h"
+#include "render/files/replace_file.h"
 
 namespace CLI {
 class App;

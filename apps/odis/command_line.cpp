@@ -16,7 +16,7 @@
 #include "learn/scenes/generate.h"
 #include "learn/train/learner.h"
 #include "odis_version.h"
-#include "render/scene/error.h"
+#include "render/xml/error.h"
 #include "suggest.h"
 
 namespace odis::app {
@@ -53,6 +53,22 @@ static int flushed(int code) {
   return code == kOk ? fail(kWriteError, "what was printed can't be written") : code;
 }
 
+static std::vector<Command> addCommands(CLI::App& app, const std::string& commandLine) {
+  return {addRenderCommand(app, commandLine),
+          addCompareCommand(app, commandLine),
+          addAnalyzeCommand(app),
+          addTrainCommand(app),
+          addInspectCommand(app),
+          addAgreementCommand(app),
+          addBenchCommand(app),
+          addMetricsCommand(app),
+          addImageCommand(app),
+          addMontageCommand(app),
+          addSceneCommand(app),
+          addScenesCommand(app),
+          addDatasetCommand(app)};
+}
+
 int runCommandLine(int argc, char** argv) {
   // A file that may not grow any more is an error like a full disk, not the end of the program.
   std::signal(SIGXFSZ, SIG_IGN);
@@ -62,19 +78,7 @@ int runCommandLine(int argc, char** argv) {
   app.require_subcommand(1);
   std::string commandLine;
   for (int i = 0; i < argc; ++i) commandLine += (i > 0 ? " " : "") + std::string(argv[i]);
-  const std::vector<Command> commands{addRenderCommand(app, commandLine),
-                                      addCompareCommand(app, commandLine),
-                                      addAnalyzeCommand(app),
-                                      addTrainCommand(app),
-                                      addInspectCommand(app),
-                                      addAgreementCommand(app),
-                                      addBenchCommand(app),
-                                      addMetricsCommand(app),
-                                      addImageCommand(app),
-                                      addMontageCommand(app),
-                                      addSceneCommand(app),
-                                      addScenesCommand(app),
-                                      addDatasetCommand(app)};
+  const std::vector<Command> commands = addCommands(app, commandLine);
   try {
     app.parse(argc, argv);
     for (const Command& command : commands)

@@ -49,7 +49,7 @@ class ConsoleObserver : public eval::CompareObserver {
 
 }  // namespace
 
-static int run(CompareArguments& a) {
+static int runCompare(CompareArguments& a) {
   a.apply();
   const eval::CompareSettings& settings = a.settings;
   if (!settings.reference.empty()) eval::readColor(settings.reference);  // before time is spent
@@ -86,7 +86,7 @@ Command addCompareCommand(CLI::App& parent, const std::string& commandLine) {
   const auto a = std::make_shared<CompareArguments>();
   a->commandLine = commandLine;
   a->addTo(*app);
-  return {app, [a] { return run(*a); }};
+  return {app, [a] { return runCompare(*a); }};
 }
 
 }  // namespace odis::app

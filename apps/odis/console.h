@@ -6,7 +6,7 @@
 #include <mutex>
 #include <string>
 
-#include "render/integrator/render.h"
+#include "render/integrators/render.h"
 
 namespace odis::app {
 

@@ -18,13 +18,13 @@ namespace odis::app {
 
 namespace {
 
-struct Arguments {
+struct DatasetArguments {
   std::string folder, output, seeds;
   std::vector<std::string> folders;
   bool json = false, quiet = false;
 };
 
-int merge(const Arguments& a) {
+int merge(const DatasetArguments& a) {
   std::string folder = a.output;
   if (folder.empty()) {
     if (a.folders.size() > 1) throw UsageError("several folders are merged into another one: expected -o");
@@ -38,7 +38,7 @@ int merge(const Arguments& a) {
   return collectManifest(folder, learn::seedSources(seeds.first, seeds.last), a.quiet);
 }
 
-int check(const Arguments& a) {
+int check(const DatasetArguments& a) {
   const learn::FolderReport found = learn::checkShards(a.folder, countingOn(a.quiet));
   if (const int code = complain(found.complaints); code != kOk) {
     say(fmt::format("error: {} faults\n", found.complaints.size()));
@@ -48,7 +48,7 @@ int check(const Arguments& a) {
   return kOk;
 }
 
-int info(const Arguments& a) {
+int info(const DatasetArguments& a) {
   if (std::filesystem::is_directory(a.folder)) {
     const nlohmann::ordered_json manifest = learn::readManifest(a.folder);
     fmt::print("{}", a.json ? manifest.dump(1) + "\n" : learn::datasetText(manifest));
@@ -64,7 +64,7 @@ int info(const Arguments& a) {
 Command addDatasetCommand(CLI::App& parent) {
   CLI::App* app = parent.add_subcommand("dataset", "Make data to learn from: docs/dataset.md");
   app->require_subcommand(1);
-  const auto a = std::make_shared<Arguments>();
+  const auto a = std::make_shared<DatasetArguments>();
   const Command generator = addDatasetGenerate(*app);
 
   CLI::App* merging =

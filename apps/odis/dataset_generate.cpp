@@ -16,16 +16,16 @@ namespace odis::app {
 
 namespace {
 
-struct Arguments {
+struct GenerateArguments {
   std::string scenes, seeds, shards, output, hdri, textures, furniture;
   int of = 1, jobs = 0;
   bool quick = false, quality = false, quiet = false;
 };
 
 // Shows what is done, and remembers what failed.
-class Observer : public learn::ShardObserver {
+class GenerateObserver : public learn::ShardObserver {
  public:
-  Observer(size_t total, bool quiet) : m_counter(total, quiet) {}
+  GenerateObserver(size_t total, bool quiet) : m_counter(total, quiet) {}
   void done(const learn::ShardSource& source, bool made) override {
     if (made)
       m_counter.done(source.name);
@@ -45,7 +45,7 @@ class Observer : public learn::ShardObserver {
   int m_failures = 0;
 };
 
-std::vector<learn::ShardSource> sourcesOf(const Arguments& a) {
+std::vector<learn::ShardSource> sourcesOf(const GenerateArguments& a) {
   const Range parts = a.shards.empty() ? Range{1, uint64_t(a.of)} : parseRange("--shards", a.shards);
   if (parts.first < 1 || parts.last > uint64_t(a.of))
     throw UsageError(fmt::format("--shards: found {}, expected parts from 1 to {} (--of)", a.shards, a.of));
@@ -59,7 +59,7 @@ std::vector<learn::ShardSource> sourcesOf(const Arguments& a) {
   return learn::partOf(all, int(parts.first), int(parts.last), a.of);
 }
 
-int generate(const Arguments& a) {
+int generate(const GenerateArguments& a) {
   const learn::DataSettings settings = a.quick     ? learn::DataSettings::quick()
                                        : a.quality ? learn::DataSettings::quality()
                                                    : learn::DataSettings();
@@ -71,7 +71,7 @@ int generate(const Arguments& a) {
   const int jobs = a.jobs > 0 ? a.jobs : int(std::max(1u, std::thread::hardware_concurrency()));
 
   const InterruptScope interruptible;
-  Observer observer(sources.size(), a.quiet);
+  GenerateObserver observer(sources.size(), a.quiet);
   learn::makeShards(sources, settings, assets, a.output, jobs, observer);
   if (observer.failures() > 0) {
     say(fmt::format("error: {} of {} scenes failed\n", observer.failures(), sources.size()));
@@ -88,7 +88,7 @@ int generate(const Arguments& a) {
 
 Command addDatasetGenerate(CLI::App& parent) {
   CLI::App* app = parent.add_subcommand("generate", "Make shards: a scene each, with its pilots and targets");
-  const auto a = std::make_shared<Arguments>();
+  const auto a = std::make_shared<GenerateArguments>();
   CLI::Option* seeds =
       app->add_option("--seeds", a->seeds, "Of scenes to generate, as in `odis scenes generate`: FIRST-LAST");
   CLI::Option* scenes = app->add_option("--scenes", a->scenes, "Folder of scenes to use instead");

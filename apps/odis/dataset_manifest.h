@@ -13,8 +13,8 @@ learn::CountProgress countingOn(bool quiet);
 // Prints complaints; kOk if there are none.
 int complain(const std::vector<std::string>& complaints);
 
-// Unpacks all shards of the folder, writes its manifest and prints what it holds. Without a manifest it ends if a shard is
-// damaged or if one of `expected` is missing.
+// Unpacks all shards of the folder, writes its manifest and prints what it holds. Without a manifest it
+// ends if a shard is damaged or if one of `expected` is missing.
 int collectManifest(const std::string& folder, const std::vector<learn::ShardSource>& expected, bool quiet);
 
 }  // namespace odis::app

@@ -16,13 +16,13 @@ namespace odis::app {
 
 namespace {
 
-struct Arguments {
+struct PreviewArguments {
   std::string path, output;
   int count = 12;
   float exposure = 0;
 };
 
-int preview(const Arguments& a) {
+int preview(const PreviewArguments& a) {
   checkWritable(a.output, {".png"});
   std::vector<std::string> shards{a.path};
   if (std::filesystem::is_directory(a.path)) {
@@ -50,7 +50,7 @@ Command addDatasetPreview(CLI::App& parent) {
       "and\n"
       "grey without. Maps are equal-area octahedral squares with +z in the middle, blue where nothing is "
       "sampled.");
-  const auto a = std::make_shared<Arguments>();
+  const auto a = std::make_shared<PreviewArguments>();
   app->add_option("PATH", a->path, "Folder of shards, or a shard")->required();
   app->add_option("-o,--output", a->output, "PNG to write")->required();
   app->add_option("--count", a->count, "How many targets")->check(CLI::Range(1, 500))->capture_default_str();

@@ -17,14 +17,14 @@ namespace {
 
 using eval::LayeredImage;
 
-struct Arguments {
+struct ImageArguments {
   std::vector<std::string> images;
   std::string output, layer, kind = "absolute", toneMap = "filmic";
   float exposure = 0;
   double full = 0;
 };
 
-int info(const Arguments& a) {
+int info(const ImageArguments& a) {
   for (const std::string& path : a.images) {
     const LayeredImage image = eval::readChannels(path);
     const render::ImageWindow& w = image.window;
@@ -54,7 +54,7 @@ void writeColorAs(const std::string& path, const eval::ColorImage& image, float 
   eval::writeColor(path, scaled);
 }
 
-int convert(const Arguments& a) {
+int convert(const ImageArguments& a) {
   checkWritable(a.output, {".png", ".exr"});
   const eval::ColorImage image = eval::layerColor(eval::readChannels(a.images.front()), a.layer);
   writeColorAs(a.output, image, a.exposure,
@@ -62,7 +62,7 @@ int convert(const Arguments& a) {
   return kOk;
 }
 
-int diff(const Arguments& a) {
+int diff(const ImageArguments& a) {
   checkWritable(a.output, {".png", ".exr"});
   static const std::map<std::string, eval::DifferenceKind> kKinds{
       {"signed", eval::DifferenceKind::signedColor},
@@ -86,7 +86,7 @@ int diff(const Arguments& a) {
   return kOk;
 }
 
-int average(const Arguments& a) {
+int average(const ImageArguments& a) {
   checkWritable(a.output, {".exr"});
   std::vector<LayeredImage> images;
   for (const std::string& path : a.images) images.push_back(eval::readChannels(path));
@@ -94,7 +94,7 @@ int average(const Arguments& a) {
   return kOk;
 }
 
-int merge(const Arguments& a) {
+int merge(const ImageArguments& a) {
   checkWritable(a.output, {".exr"});
   std::vector<std::pair<std::string, LayeredImage>> images;
   for (const std::string& text : a.images) {
@@ -112,7 +112,7 @@ int merge(const Arguments& a) {
 Command addImageCommand(CLI::App& parent) {
   CLI::App* app = parent.add_subcommand("image", "Look into images, convert, subtract, average, merge them");
   app->require_subcommand(1);
-  const auto a = std::make_shared<Arguments>();
+  const auto a = std::make_shared<ImageArguments>();
   const auto add = [&](const char* name, const char* help, const char* images, int count, bool output) {
     CLI::App* sub = app->add_subcommand(name, help);
     CLI::Option* files = sub->add_option("IMAGES", a->images, images)->required();
@@ -140,7 +140,7 @@ Command addImageCommand(CLI::App& parent) {
   add("merge", "The layers of several images in one", "EXR files; name=FILE puts name. before its channels",
       0, true);
   return {app, [a, app] {
-            static const std::map<std::string, int (*)(const Arguments&)> kCommands{
+            static const std::map<std::string, int (*)(const ImageArguments&)> kCommands{
                 {"info", info}, {"convert", convert}, {"diff", diff}, {"average", average}, {"merge", merge}};
             return kCommands.at(app->get_subcommands().front()->get_name())(*a);
           }};

@@ -22,7 +22,7 @@ using namespace render;
 
 namespace {
 
-struct Arguments {
+struct InspectArguments {
   std::string scene, output, json, pixel, point, normal;
   std::optional<int> spp, maxDepth, rrDepth;
   uint64_t seed = 0;
@@ -53,7 +53,7 @@ Float3 vector(const std::string& option, const std::string& text) {
   return {v[0], v[1], v[2]};
 }
 
-void readPlace(Arguments& a) {
+void readPlace(InspectArguments& a) {
   if (a.pixel.empty() == a.point.empty()) throw UsageError("expected --pixel x,y or --point x,y,z");
   if (!a.pixel.empty()) {
     const std::vector<float> at = numbers("--pixel", a.pixel, 2);
@@ -75,7 +75,7 @@ void writePicture(const std::string& path, const learn::Inspection& inspection, 
   const learn::Canvas canvas =
       learn::drawInspection(inspection, title, png ? learn::MapColors::stops : learn::MapColors::values);
   if (png) return writePng(path, canvas.width, canvas.height, canvas.pixels.data(), 0, ToneMap::clamp);
-  Frame2D frame;
+  RenderedImage frame;
   FilmSettings film;
   film.width = frame.width = canvas.width;
   film.height = frame.height = canvas.height;
@@ -83,9 +83,11 @@ void writePicture(const std::string& path, const learn::Inspection& inspection, 
   writeLayers(path, frame, film, {}, {});
 }
 
-int run(Arguments& a) {
+int runInspect(InspectArguments& a) {
   readPlace(a);
-  if (a.method.integrator != "odis" || a.method.guide == "oracle")
+  RenderOptions options;
+  a.method.apply(options);
+  if (options.integrator != IntegratorKind::odis || options.guide == GuideKind::oracle)
     throw UsageError("odis inspect: looks into --integrator odis with the pilot's guide, expected no other");
   if (!a.output.empty()) checkWritable(a.output, {".png", ".exr"});
   if (!a.json.empty()) checkWritable(a.json, {".json"});
@@ -93,8 +95,6 @@ int run(Arguments& a) {
   const std::unique_ptr<Scene> scene = Scene::load(a.scene, a.part.loadOptions(), warnings);
   if (!a.quiet)
     for (const std::string& text : warnings.texts()) say(fmt::format("warning: {}\n", text));
-  RenderOptions options;
-  a.method.apply(options);
   const IntegratorSettings& asked = scene->integrator();
   options.spp = a.spp.value_or(asked.samplesPerPixel > 0 ? asked.samplesPerPixel : options.spp);
   options.maxDepth = a.maxDepth.value_or(asked.maxDepth);
@@ -122,7 +122,7 @@ Command addInspectCommand(CLI::App& parent) {
       "the cell at a point, is told: the pilot's samples, histograms of the cell and of those around it, "
       "maps, and\n"
       "what really arrives there. See docs/inspect.md.");
-  const auto a = std::make_shared<Arguments>();
+  const auto a = std::make_shared<InspectArguments>();
   app->add_option("SCENE", a->scene, "Mitsuba 3 scene file")->required();
   app->add_option("--pixel", a->pixel, "x,y in the full image, from the upper left");
   app->add_option("--point", a->point, "x,y,z in the world, on a surface");
@@ -143,7 +143,7 @@ Command addInspectCommand(CLI::App& parent) {
   app->add_flag("-q,--quiet", a->quiet, "No progress");
   a->method.addTo(*app);
   a->part.addTo(*app);
-  return {app, [a] { return run(*a); }};
+  return {app, [a] { return runInspect(*a); }};
 }
 
 }  // namespace odis::app

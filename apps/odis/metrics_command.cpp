@@ -13,14 +13,14 @@ namespace odis::app {
 
 namespace {
 
-struct Arguments {
+struct MetricsArguments {
   std::string image, reference;
   bool json = false;
 };
 
 }  // namespace
 
-static int run(const Arguments& arguments) {
+static int runMetrics(const MetricsArguments& arguments) {
   const eval::ColorImage image = eval::readColor(arguments.image),
                          reference = eval::readColor(arguments.reference);
   if (image.width != reference.width || image.height != reference.height)
@@ -57,11 +57,11 @@ Command addMetricsCommand(CLI::App& parent) {
       "  MSE     (I - R)^2\n"
       "FLIP is LDR-FLIP at 67 pixels per degree of both images as a screen shows them: exposed so that the\n"
       "log-average luminance of REFERENCE is 0.18, highlights rolled off as in the PNGs of `odis render`.");
-  const auto arguments = std::make_shared<Arguments>();
+  const auto arguments = std::make_shared<MetricsArguments>();
   app->add_option("IMAGE", arguments->image, "EXR, PNG, JPEG, TGA, BMP or HDR file")->required();
   app->add_option("REFERENCE", arguments->reference, "The same")->required();
   app->add_flag("--json", arguments->json, "Print JSON");
-  return {app, [arguments] { return run(*arguments); }};
+  return {app, [arguments] { return runMetrics(*arguments); }};
 }
 
 }  // namespace odis::app

@@ -26,7 +26,7 @@ Command addMontageCommand(CLI::App& parent) {
             std::vector<eval::ColorImage> images;
             for (const std::string& path : arguments->images) images.push_back(eval::readColor(path));
             eval::ColorImage all = eval::montage(images);
-            render::Frame2D frame;
+            render::RenderedImage frame;
             frame.width = all.width;
             frame.height = all.height;
             frame.color = std::move(all.pixels);

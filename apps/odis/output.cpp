@@ -11,7 +11,7 @@
 #include <sstream>
 
 #include "command.h"
-#include "render/image/checked_stream.h"
+#include "render/files/checked_stream.h"
 #include "render/image/write.h"
 
 namespace odis::app {
@@ -86,7 +86,7 @@ class Planes {
 
 }  // namespace
 
-void writeLayers(const std::string& path, const Frame2D& frame, const FilmSettings& film,
+void writeLayers(const std::string& path, const RenderedImage& frame, const FilmSettings& film,
                  const Layers& layers, const std::map<std::string, std::string>& metadata) {
   Planes planes;
   planes.add("", "RGB", frame.color, false);
@@ -97,7 +97,7 @@ void writeLayers(const std::string& path, const Frame2D& frame, const FilmSettin
   if (layers.depth) planes.add("depth.Z", frame.depth, false);
   if (layers.roughness) planes.add("roughness.Y", frame.roughness, true);
   if (layers.guide) {
-    planes.add("guide.alpha", frame.guideAlpha, true);
+    planes.add("guide.alpha", frame.guideBsdfFraction, true);
     planes.add("guide.entropy", frame.guideEntropy, true);
     planes.add("guide.survival", frame.guideSurvival, true);
     planes.add("guide.cell", frame.guideCell, false);
@@ -107,7 +107,7 @@ void writeLayers(const std::string& path, const Frame2D& frame, const FilmSettin
            metadata);
 }
 
-void writePreview(const std::string& path, const Frame2D& frame, float exposure) {
+void writePreview(const std::string& path, const RenderedImage& frame, float exposure) {
   writePng(path, frame.width, frame.height, frame.color.data(), exposure);
 }
 

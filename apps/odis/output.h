@@ -4,7 +4,7 @@
 #include <map>
 #include <string>
 
-#include "render/integrator/render.h"
+#include "render/integrators/render.h"
 
 namespace odis::app {
 
@@ -22,11 +22,13 @@ void checkWritable(const std::string& path, std::initializer_list<const char*> e
 bool endsWith(const std::string& path, const std::string& ending);
 
 // One EXR: R, G, B; variance.R G B if there is a variance; the layers asked for: albedo.R G B, N.X Y Z, P.X Y
-// Z, depth.Z, roughness.Y, guide.alpha, guide.entropy, guide.survival, guide.cell, guide.samples. Throws WriteError.
-void writeLayers(const std::string& path, const render::Frame2D& frame, const render::FilmSettings& film,
-                 const Layers& layers, const std::map<std::string, std::string>& metadata);
+// Z, depth.Z, roughness.Y, guide.alpha, guide.entropy, guide.survival, guide.cell, guide.samples. Throws
+// WriteError.
+void writeLayers(const std::string& path, const render::RenderedImage& frame,
+                 const render::FilmSettings& film, const Layers& layers,
+                 const std::map<std::string, std::string>& metadata);
 // Each throws WriteError.
-void writePreview(const std::string& path, const render::Frame2D& frame, float exposure);
+void writePreview(const std::string& path, const render::RenderedImage& frame, float exposure);
 void writeText(const std::string& path, const std::string& text);
 
 }  // namespace odis::app

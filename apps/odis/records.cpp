@@ -4,8 +4,8 @@
 
 #include <cstddef>
 
-#include "render/image/checked_stream.h"
-#include "render/image/replace_file.h"
+#include "render/files/checked_stream.h"
+#include "render/files/replace_file.h"
 
 namespace odis::app {
 
@@ -21,9 +21,9 @@ struct Field {
 };
 
 #define ODIS_FIELD(name, format) \
-  { #name, format, offsetof(PilotVertex, name), sizeof(PilotVertex::name) }
+  { #name, format, offsetof(PathVertex, name), sizeof(PathVertex::name) }
 #define ODIS_TRIPLE(name) \
-  { #name, "<f4", offsetof(PilotVertex, name), sizeof(PilotVertex::name), true }
+  { #name, "<f4", offsetof(PathVertex, name), sizeof(PathVertex::name), true }
 constexpr Field kFields[] = {
     ODIS_TRIPLE(position),
     ODIS_TRIPLE(normal),
@@ -50,23 +50,26 @@ constexpr Field kFields[] = {
     ODIS_FIELD(raysAfter, "<f4"),
     ODIS_FIELD(lightGroupProbability, "<f4"),
     ODIS_FIELD(lightGroup, "<u4"),
+    ODIS_FIELD(lightableGroups, "<u4"),
     ODIS_FIELD(sampleWeight, "<f4"),
+    ODIS_FIELD(time, "<f4"),
     ODIS_FIELD(pixel, "<u4"),
+    ODIS_FIELD(sample, "<u4"),
     ODIS_FIELD(depth, "<u2"),
     ODIS_FIELD(discrete, "|b1"),
-    ODIS_FIELD(both, "|b1"),
+    ODIS_FIELD(scattersBothSides, "|b1"),
 };
 #undef ODIS_FIELD
 #undef ODIS_TRIPLE
 
-// Whether the fields, in this order, are all that a PilotVertex holds.
+// Whether the fields, in this order, are all that a PathVertex holds.
 constexpr bool fieldsFillTheRecord() {
   size_t end = 0;
   for (const Field& field : kFields) {
     if (field.offset != end) return false;
     end += field.bytes;
   }
-  return end == sizeof(PilotVertex);
+  return end == sizeof(PathVertex);
 }
 static_assert(fieldsFillTheRecord());
 
@@ -83,7 +86,7 @@ std::string header(size_t count) {
 
 }  // namespace
 
-void writeRecords(const std::string& path, const std::vector<PilotVertex>& vertices) {
+void writeRecords(const std::string& path, const std::vector<PathVertex>& vertices) {
   replaceFile(path, [&](const std::string& temporary) {
     CheckedStream file(temporary);
     const std::string text = header(vertices.size());
@@ -92,7 +95,7 @@ void writeRecords(const std::string& path, const std::vector<PilotVertex>& verti
     file.write(start, sizeof start);
     file.write(text.data(), std::streamsize(text.size()));
     file.write(reinterpret_cast<const char*>(vertices.data()),
-               std::streamsize(vertices.size() * sizeof(PilotVertex)));
+               std::streamsize(vertices.size() * sizeof(PathVertex)));
     file.close();
   });
 }

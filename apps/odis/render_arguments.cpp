@@ -8,6 +8,7 @@
 
 #include "command.h"
 #include "render/image/limits.h"
+#include "settings.h"
 #include "suggest.h"
 #include "validators.h"
 
@@ -22,100 +23,24 @@ void MethodArguments::addTo(CLI::App& app) {
       ->check(CLI::IsMember({"path", "odis", "ppg", "openpgl", "restir"}))
       ->capture_default_str()
       ->group(group);
-  app.add_option("--samples", samples,
-                 "How samples are spread: as many for every pixel, or more where the first ones differ more, "
-                 "for about as many rays; auto: adaptive for odis, even for others")
-      ->check(CLI::IsMember({"auto", "even", "adaptive"}))
-      ->capture_default_str()
-      ->group(group);
-  app.add_option("--guide", guide,
-                 "How the pilot is turned into maps: by the network, by the histogram formula, or by the "
-                 "formula from "
-                 "the many more samples of an oracle")
-      ->check(CLI::IsMember({"network", "histogram", "oracle"}))
+  app.add_option("--sampler", sampler, "Where random numbers come from")
+      ->check(CLI::IsMember({"sobol", "independent"}))
       ->capture_default_str()
       ->group(group);
   app.add_option("--weights", weights, "File of weights for the networks, in place of those built in")
       ->check(CLI::ExistingFile)
       ->group(group);
-  app.add_option("--guide-bounces", guideBounces, "How many vertices of a path are guided; -1: all")
-      ->check(CLI::Range(-1, 1 << 20))
-      ->capture_default_str()
+  app.add_option("--set", settings,
+                 "Changes a part of the method: --set key=value; --help-settings lists the keys")
+      ->allow_extra_args(false)
       ->group(group);
-  app.add_option(
-         "--roulette", roulette,
-         "Whether guided paths go on: by their throughput, or by what the pilot saw come back, weighed by "
-         "formula or by the network")
-      ->check(CLI::IsMember({"throughput", "formula", "network"}))
-      ->capture_default_str()
-      ->group(group);
-  app.add_option("--ended-paths", endedPaths,
-                 "What paths add that learned roulette ends: nothing, or the mean of their cell")
-      ->check(CLI::IsMember({"nothing", "mean"}))
-      ->capture_default_str()
-      ->group(group);
-  app.add_option("--shadow-rays", shadowRays,
-                 "Of guided paths: all, or by roulette where the light would add little to the pixel")
-      ->check(CLI::IsMember({"all", "roulette"}))
-      ->capture_default_str()
-      ->group(group);
-  app.add_option("--pilot-spp", pilotSpp,
-                 "Samples per pixel of the pilot; 0.25: one in 2x2 pixels; 0: that in large images of less "
-                 "than 8 samples, else 1")
-      ->check(numberBetween(0, 1e6))
-      ->capture_default_str()
-      ->group(group);
-  app.add_option("--refine", refineSpp,
-                 "Guided samples per pixel that the guide learns from as well: it is rebuilt after 1, 3, 7, "
-                 "... if as many are left")
-      ->check(CLI::Range(0, 1 << 20))
-      ->capture_default_str()
-      ->group(group);
-  app.add_option("--lights", lights,
-                 "How guided vertices choose a light: by the hierarchy of lights, or from what the pilot "
-                 "saw, by formula "
-                 "or by the network")
-      ->check(CLI::IsMember({"hierarchy", "formula", "network"}))
-      ->capture_default_str()
-      ->group(group);
-  app.add_option("--oracle-spp", oracleSpp, "Samples per pixel that the oracle is made from")
-      ->check(CLI::Range(1, 1 << 20))
-      ->capture_default_str()
-      ->group(group);
-  app.add_option("--sampler", sampler, "Where random numbers come from")
-      ->check(CLI::IsMember({"sobol", "independent"}))
-      ->capture_default_str()
-      ->group(group);
-  addCellsTo(app);
-  ppg.addTo(app);
-  restir.addTo(app);
-}
-
-void MethodArguments::addCellsTo(CLI::App& app) {
-  const std::string group = "Cells";
-  app.add_option("--cells", cells.cellsPerDiagonal, "Finest cells along the diagonal of what the pilot saw")
-      ->check(CLI::Range(1, 1 << 16))
-      ->capture_default_str()
-      ->group(group);
-  app.add_option("--trust", trust, "Samples' worth of the coarser level in each finer one, finest first")
-      ->expected(kCellLevels)
-      ->check(numberBetween(0, 1e9))
-      ->capture_default_str()
-      ->group(group);
-  app.add_option("--map-floor", cells.floor, "Share of the uniform distribution in every map")
-      ->check(numberBetween(0, 1))
-      ->capture_default_str()
-      ->group(group);
-  app.add_option(
-         "--alpha", cells.fixedAlpha,
-         "Share of the samples that stays with the BSDF, everywhere; 0: by predicted variance and cost")
-      ->check(numberBetween(0, 1))
-      ->capture_default_str()
-      ->group(group);
-  app.add_option("--pilot-weight", pilotWeight,
-                 "Of a pilot sample relative to a guided one; -1: by predicted variance")
-      ->check(numberBetween(-1, 1e6))
-      ->capture_default_str()
+  app.add_flag_callback(
+         "--help-settings",
+         [] {
+           fmt::print("{}", settingsText());
+           throw CLI::Success();
+         },
+         "List the keys of --set")
       ->group(group);
 }
 
@@ -125,31 +50,9 @@ void MethodArguments::apply(RenderOptions& options) const {
                        : integrator == "openpgl" ? IntegratorKind::openpgl
                        : integrator == "restir"  ? IntegratorKind::restir
                                                  : IntegratorKind::odis;
-  options.samples = samples == "even"       ? SampleSpread::even
-                    : samples == "adaptive" ? SampleSpread::adaptive
-                                            : SampleSpread::automatic;
   options.sampler = sampler == "sobol" ? SamplerKind::sobol : SamplerKind::independent;
-  options.guide = guide == "oracle"      ? GuideKind::oracle
-                  : guide == "histogram" ? GuideKind::histogram
-                                         : GuideKind::network;
-  if (!weights.empty()) options.networks = std::make_shared<Networks>(loadNetworks(weights));
-  options.roulette = roulette == "throughput" ? RouletteKind::throughput
-                     : roulette == "formula"  ? RouletteKind::formula
-                                              : RouletteKind::network;
-  options.guideBounces = guideBounces;
-  options.pilotSpp = pilotSpp;
-  options.lights = lights == "hierarchy" ? LightChoiceKind::hierarchy
-                   : lights == "formula" ? LightChoiceKind::formula
-                                         : LightChoiceKind::network;
-  options.shadowRays = shadowRays == "all" ? ShadowRayKind::all : ShadowRayKind::roulette;
-  options.refineSpp = refineSpp;
-  options.oracleSpp = oracleSpp;
-  options.pilotWeight = pilotWeight;
-  options.guideOptions = cells;
-  options.guideOptions.controlVariate = endedPaths == "mean";
-  options.ppg = ppg.options();
-  options.restir = restir.options;
-  std::copy(trust.begin(), trust.end(), options.guideOptions.trust);
+  if (!weights.empty()) options.model = Model::load(weights);
+  applySettings(options, settings);
 }
 
 void SceneArguments::addTo(CLI::App& app) {

@@ -5,8 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "render/integrator/render.h"
-#include "rival_arguments.h"
+#include "render/integrators/render.h"
 
 namespace CLI {
 class App;
@@ -16,20 +15,12 @@ namespace odis::app {
 
 // How a method differs from another: everything but the scene, the number of samples and the outputs.
 struct MethodArguments {
-  std::string integrator = "odis", sampler = "sobol", guide = "network", weights, roulette = "formula",
-              endedPaths = "mean", lights = "network", shadowRays = "roulette", samples = "auto";
-  int guideBounces = -1, refineSpp = 3, oracleSpp = 64;
-  double pilotSpp = 0, pilotWeight = -1;
-  GuideOptions cells;
-  PpgArguments ppg;
-  RestirArguments restir;
-  std::vector<float> trust{std::begin(cells.trust), std::end(cells.trust)};
+  std::string integrator = "odis", sampler = "sobol", weights;
+  std::vector<std::string> settings;  // "key=value" each
 
   void addTo(CLI::App& app);
+  // Throws UsageError.
   void apply(render::RenderOptions& options) const;
-
- private:
-  void addCellsTo(CLI::App& app);
 };
 
 // Which scene, and which part and size of it.
@@ -63,7 +54,7 @@ render::Vec2i parseResolution(const std::string& text);
 render::Crop parseCrop(const std::string& text);
 // "key=value"; throws UsageError.
 std::pair<std::string, std::string> parseDefine(const std::string& text);
-// The options that a text like "--integrator odis --guide-bounces 1" stands for; throws UsageError.
+// The options that a text like "--integrator odis --set guide-bounces=1" stands for; throws UsageError.
 render::RenderOptions parseMethod(const std::string& text);
 
 }  // namespace odis::app

@@ -53,7 +53,7 @@ static double secondsSince(std::chrono::steady_clock::time_point start) {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 
-static void sendToTev(const RenderArguments& a, const Frame2D& frame) {
+static void sendToTev(const RenderArguments& a, const RenderedImage& frame) {
   try {
     TevClient(a.tev).send(a.output, frame.width, frame.height, frame.color.data());
   } catch (const std::exception& error) {  // the image is written all the same
@@ -61,7 +61,7 @@ static void sendToTev(const RenderArguments& a, const Frame2D& frame) {
   }
 }
 
-static int run(RenderArguments& a) {
+static int runRender(RenderArguments& a) {
   // Find out what is wrong with the command line before time is spent.
   if (a.output.empty()) a.output = std::filesystem::path(a.scene).stem().string() + ".exr";
   const Layers layers = parseLayers(a.aov);
@@ -106,13 +106,13 @@ static int run(RenderArguments& a) {
   stats.commandLine = a.commandLine;
   const auto writeStart = std::chrono::steady_clock::now();
   if (endsWith(a.output, ".png"))
-    writePreview(a.output, result.frame, a.exposure);
+    writePreview(a.output, result.image, a.exposure);
   else
-    writeLayers(a.output, result.frame, scene->film(), layers, statsMetadata(stats));
-  if (!a.png.empty()) writePreview(a.png, result.frame, a.exposure);
+    writeLayers(a.output, result.image, scene->film(), layers, statsMetadata(stats));
+  if (!a.png.empty()) writePreview(a.png, result.image, a.exposure);
   if (!a.recordsFile.empty()) writeRecords(a.recordsFile, result.records);
   stats.secondsWrite = secondsSince(writeStart);
-  if (!a.tev.empty()) sendToTev(a, result.frame);
+  if (!a.tev.empty()) sendToTev(a, result.image);
   if (!a.statsFile.empty()) writeText(a.statsFile, statsJson(stats));
   if (a.stats) fmt::print("{}", statsTable(stats));
   if (a.verbose) say(fmt::format("{}: written\n", a.output));
@@ -124,7 +124,7 @@ Command addRenderCommand(CLI::App& parent, const std::string& commandLine) {
   const auto arguments = std::make_shared<RenderArguments>();
   arguments->addTo(*app);
   arguments->commandLine = commandLine;
-  return {app, [arguments] { return run(*arguments); }};
+  return {app, [arguments] { return runRender(*arguments); }};
 }
 
 }  // namespace odis::app

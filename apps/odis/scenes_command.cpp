@@ -19,7 +19,7 @@ namespace odis::app {
 
 namespace {
 
-struct Arguments {
+struct ScenesArguments {
   uint64_t seed = 0;
   int count = 1;
   std::string kind, output, hdri, textures, furniture, folder;
@@ -42,7 +42,7 @@ const learn::Kind* kindNamed(const std::string& name) {
                                meant.empty() ? "" : "\nDid you mean " + meant + "?"));
 }
 
-int generate(const Arguments& a) {
+int generate(const ScenesArguments& a) {
   const learn::Kind* only = kindNamed(a.kind);
   const learn::Assets assets(a.hdri, a.textures, a.furniture);
   std::error_code error;
@@ -63,7 +63,7 @@ int generate(const Arguments& a) {
   return InterruptScope::exitCode();
 }
 
-int sheet(const Arguments& a) {
+int sheet(const ScenesArguments& a) {
   checkWritable(a.output, {".png"});
   const std::vector<std::string> names = learn::scenesIn(a.folder);
   if (names.empty())
@@ -87,7 +87,7 @@ int sheet(const Arguments& a) {
 Command addScenesCommand(CLI::App& parent) {
   CLI::App* app = parent.add_subcommand("scenes", "Make scenes to learn from, and look at them");
   app->require_subcommand(1);
-  const auto a = std::make_shared<Arguments>();
+  const auto a = std::make_shared<ScenesArguments>();
 
   CLI::App* sub =
       app->add_subcommand("generate", "Make scenes: Mitsuba files, a folder each, two views each");

@@ -4,7 +4,7 @@
 #include <map>
 #include <string>
 
-#include "render/integrator/render.h"
+#include "render/integrators/render.h"
 
 namespace odis::app {
 

@@ -3,7 +3,8 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 
-#include "render/scene/names.h"
+#include "render/xml/names.h"
+#include "settings.h"
 
 namespace odis::app {
 
@@ -27,12 +28,17 @@ std::string suggestFor(const CLI::App& app, const CLI::App& command) {
     if (word.size() > 1 && word[0] == '-') {
       for (const CLI::Option* option : command.get_options())
         for (const std::string& name : option->get_lnames()) candidates.push_back("--" + name);
+      if (command.get_option_no_throw("--set"))
+        for (const Setting& setting : allSettings()) candidates.push_back("--" + setting.key);
     } else {
       for (const CLI::App* sub : command.get_subcommands([](const CLI::App*) { return true; }))
         candidates.push_back(sub->get_name());
     }
     const std::string match = nearest(word, candidates);
-    if (!match.empty()) return "Did you mean " + match + "?";
+    if (match.empty()) continue;
+    for (const Setting& setting : allSettings())
+      if (match == "--" + setting.key) return "Did you mean --set " + setting.key + "=...?";
+    return "Did you mean " + match + "?";
   }
   return "";
 }

@@ -13,15 +13,15 @@ namespace odis::app {
 
 namespace {
 
-struct Arguments {
+struct TrainArguments {
   std::string config, output;
   bool quiet = false;
 };
 
 // A line now and then.
-class Observer : public learn::TrainObserver {
+class TrainConsole : public learn::TrainObserver {
  public:
-  explicit Observer(bool quiet) : m_quiet(quiet) {}
+  explicit TrainConsole(bool quiet) : m_quiet(quiet) {}
   void waiting(size_t shards, int expected) override {
     if (shards == m_shards) return;
     m_shards = shards;
@@ -43,8 +43,8 @@ class Observer : public learn::TrainObserver {
     const std::string left = step > m_first && step < of
                                  ? ", " + durationText(seconds * (of - step) / (step - m_first)) + " left"
                                  : "";
-    print(fmt::format("step {} of {}: loss of maps {:.4f}, of lights {:.4f}, of roulette {:.4f}{}\n", step,
-                      of, row.loss, row.lights, row.continuations, left));
+    print(fmt::format("step {} of {}: loss of maps {:.4f}, of lights {:.4f}{}\n", step, of, row.loss,
+                      row.lights, left));
   }
   void validated(const learn::ValidationRow& row) override {
     print(fmt::format("step {}: predicted variance {:.4f}, of the formula {:.4f}\n", row.step, row.variance,
@@ -63,11 +63,11 @@ class Observer : public learn::TrainObserver {
   Clock::time_point m_start, m_last;
 };
 
-int run(const Arguments& a) {
+int runTrain(const TrainArguments& a) {
   const learn::TrainConfig config = learn::readConfig(a.config);
   const learn::Processes processes = learn::processesOfEnvironment();
   InterruptScope interrupt;
-  Observer observer(a.quiet || processes.rank > 0);
+  TrainConsole observer(a.quiet || processes.rank > 0);
   if (!learn::train(config, a.output, processes, observer)) return InterruptScope::exitCode();
   if (!a.quiet && processes.rank == 0) say(fmt::format("{}/odis.weights\n", a.output));
   return kOk;
@@ -77,7 +77,7 @@ int run(const Arguments& a) {
 
 Command addTrainCommand(CLI::App& parent) {
   CLI::App* app = parent.add_subcommand("train", "Train the networks on a data set: docs/network.md");
-  const auto a = std::make_shared<Arguments>();
+  const auto a = std::make_shared<TrainArguments>();
   app->add_option("CONFIG", a->config, "What to do: a JSON file")->required()->check(CLI::ExistingFile);
   app->add_option(
          "-o,--output", a->output,
@@ -87,7 +87,7 @@ Command addTrainCommand(CLI::App& parent) {
   app->footer(
       "Several processes share the work where RANK, WORLD_SIZE, MASTER_ADDR and MASTER_PORT are set, as "
       "torchrun does.");
-  return {app, [=] { return run(*a); }};
+  return {app, [=] { return runTrain(*a); }};
 }
 
 }  // namespace odis::app

@@ -1,4 +1,5 @@
-// scripts/dataset with programs that stand in for odis, sbatch and scontrol, and with GNU parallel where there is one.
+// scripts/dataset with programs that stand in for odis, sbatch and scontrol, and with GNU parallel where
+// there is one.
 #include "command_runner.h"
 
 namespace {
@@ -26,7 +27,9 @@ if [[ $part == 2 && -e ill ]]; then
   for i in {1..99}; do sleep 0.05; done
   exit 1
 fi
-for ((seed = 5 + 7 * (part - 1) / 3; seed < 5 + 7 * part / 3; ++seed)); do echo "$seed" > "out/$seed.shard"; done
+for ((seed = 5 + 7 * (part - 1) / 3; seed < 5 + 7 * part / 3; ++seed)); do
+  echo "$seed" > "out/$seed.shard"
+done
 )sh";
 
 // Runs the tasks of a job one after another, and each again for as long as it asks scontrol for that.

@@ -46,7 +46,7 @@ TEST(Arguments, Layers) {
 
 TEST(Arguments, MethodOfAComparison) {
   const RenderOptions options =
-      parseMethod("--integrator odis --guide-bounces 3 --pilot-spp 0.25 --sampler independent");
+      parseMethod("--integrator odis --set guide-bounces=3 --set pilot-spp=0.25 --sampler independent");
   EXPECT_EQ(options.integrator, IntegratorKind::odis);
   EXPECT_EQ(options.guideBounces, 3);
   EXPECT_EQ(options.pilotSpp, 0.25);
@@ -54,13 +54,15 @@ TEST(Arguments, MethodOfAComparison) {
   EXPECT_EQ(parseMethod("--integrator path").integrator, IntegratorKind::path);
   EXPECT_THROW(parseMethod("--integrator bdpt"), UsageError);
   EXPECT_THROW(parseMethod("--guide-bounce 3"), UsageError);
+  EXPECT_THROW(parseMethod("--set guide-bounce=3"), UsageError);
 }
 
 TEST(Arguments, PracticalPathGuiding) {
-  const RenderOptions improved = parseMethod("--integrator ppg"),
-                      first = parseMethod("--integrator ppg --ppg 2017"),
-                      mixed =
-                          parseMethod("--integrator ppg --ppg 2017 --ppg-share learned --ppg-spatial box");
+  const RenderOptions
+      improved = parseMethod("--integrator ppg"),
+      first = parseMethod("--integrator ppg --set ppg=2017"),
+      mixed = parseMethod(
+          "--integrator ppg --set ppg=2017 --set ppg-bsdf-fraction=learned --set ppg-spatial=box");
   EXPECT_EQ(improved.integrator, IntegratorKind::ppg);
   EXPECT_EQ(improved.ppg.share, PpgOptions::Share::learned);
   EXPECT_EQ(improved.ppg.threshold, 4000);
@@ -69,8 +71,8 @@ TEST(Arguments, PracticalPathGuiding) {
   EXPECT_EQ(mixed.ppg.share, PpgOptions::Share::learned);
   EXPECT_EQ(mixed.ppg.spatial, PpgOptions::Spatial::box);
   EXPECT_EQ(mixed.ppg.directional, QuadtreeFilter::nearest);
-  EXPECT_THROW(parseMethod("--ppg 2018"), UsageError);
-  EXPECT_THROW(parseMethod("--ppg-share 0.5"), UsageError);
+  EXPECT_THROW(parseMethod("--set ppg=2018"), UsageError);
+  EXPECT_THROW(parseMethod("--set ppg-bsdf-fraction=0.5"), UsageError);
 }
 
 TEST(Arguments, SampleCountsRise) {
@@ -82,11 +84,12 @@ TEST(Arguments, SampleCountsRise) {
 }
 
 TEST(Arguments, Resampling) {
-  const RenderOptions options = parseMethod("--integrator restir --restir-neighbours 7 --restir-radius 9.5");
+  const RenderOptions options =
+      parseMethod("--integrator restir --set restir-neighbours=7 --set restir-radius=9.5");
   EXPECT_EQ(options.integrator, IntegratorKind::restir);
   EXPECT_EQ(options.restir.neighbours, 7);
   EXPECT_EQ(options.restir.radius, 9.5f);
-  EXPECT_THROW(parseMethod("--restir-neighbours -1"), UsageError);
+  EXPECT_THROW(parseMethod("--set restir-neighbours=-1"), UsageError);
 }
 
 TEST(Suggest, FindsTheNearestWord) {

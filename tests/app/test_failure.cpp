@@ -8,8 +8,8 @@ namespace {
 namespace fs = std::filesystem;
 using odis::test::Outcome;
 
-// Sanitizers need terabytes of addresses, the one for threads also a file when it starts. GCC tells by macros, Clang by
-// a question.
+// Sanitizers need terabytes of addresses, the one for threads also a file when it starts. GCC tells by
+// macros, Clang by a question.
 #if defined(__SANITIZE_THREAD__)
 constexpr bool kSanitized = true, kThreadSanitized = true;
 #elif defined(__SANITIZE_ADDRESS__)

@@ -14,7 +14,9 @@ using odis::test::Outcome;
 TEST_F(Odis, HelpAndVersion) {
   EXPECT_EQ(run("--help").code, 0);
   EXPECT_NE(run("--help").text.find("Exit codes"), std::string::npos);
-  EXPECT_NE(run("render --help").text.find("--guide-bounces"), std::string::npos);
+  EXPECT_NE(run("render --help").text.find("--set"), std::string::npos);
+  EXPECT_EQ(run("render --help-settings").code, 0);
+  EXPECT_NE(run("render --help-settings").text.find("guide-bounces = "), std::string::npos);
   EXPECT_EQ(run("--version").code, 0);
   EXPECT_EQ(run("--version").text.rfind("odis ", 0), 0u);
 }
@@ -37,11 +39,14 @@ TEST_F(Odis, WrongUsageIsTwo) {
   expectFailure("render room.xml --crop 10,0,4,4", 2, "expected one within the 12x8 pixels");
   expectFailure("render room.xml --resolution 65537x2", 2, "at most 65536");
   expectFailure("render room.xml --seed -1", 2, "--seed");
-  for (const char* option : {"--exposure", "--time-limit", "--alpha", "--map-floor", "--pilot-weight"})
+  for (const char* option : {"--exposure", "--time-limit"})
     expectFailure(std::string("render room.xml ") + option + " nan", 2, option);
+  for (const char* key : {"bsdf-fraction", "map-floor", "pilot-weight"})
+    expectFailure(std::string("render room.xml --set ") + key + "=nan", 2, std::string("--set ") + key);
   expectFailure("scene", 2, "subcommand");
   expectFailure("compare room.xml -o out --methods path", 2, "expected name=options");
-  expectFailure("compare room.xml -o out --methods 'a=--guide-bounce 1'", 2, "Did you mean --guide-bounces?");
+  expectFailure("compare room.xml -o out --methods 'a=--guide-bounce 1'", 2,
+                "Did you mean --set guide-bounces=...?");
   expectFailure("compare room.xml -o out --methods a=,a=", 2, "two methods");
   expectFailure("compare room.xml room.xml -o out", 2, "two scenes");
   for (const char* spp : {"0", "4,x", "4,,8", "4,8,", "8,4", "4,4", "4.5", "' '", "99999999"})
@@ -198,8 +203,6 @@ TEST_F(Odis, ComparesAndResumes) {
   }
 }
 
-// A comparison that was cut off after some results, the last of them half written, ends as one that was not: only
-// what is missing is rendered.
 TEST_F(Odis, AnalyzesVariance) {
   const Outcome table = run("analyze room.xml --spp 2 --reference-spp 4 --resolution 12x8 -q -o split.json");
   ASSERT_EQ(table.code, 0) << table.text;
@@ -221,6 +224,8 @@ TEST_F(Odis, AnalyzesVariance) {
   expectFailure("analyze room.xml -o split.txt", 2, "expected a name that ends in .json");
 }
 
+// A comparison that was cut off after some results, the last of them half written, ends as one that was not:
+// only what is missing is rendered.
 TEST_F(Odis, InterruptedComparisonGoesOn) {
   const std::string arguments = "compare room.xml -o out --spp 2,4 --seeds 3 --reference-spp 16";
   ASSERT_EQ(run(arguments).code, 0);
