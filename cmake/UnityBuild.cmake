@@ -1,7 +1,6 @@
-# A unity build (CMAKE_UNITY_BUILD, as in the presets `release` and `fuzz`) compiles the files of a folder as one: the
-# headers, which take longest, are read once. odis_unity_by_folder(TARGET SEPARATE...) groups the target's sources so;
-# the files named SEPARATE are compiled by themselves, as they share names in anonymous namespaces with others of their
-# folder.
+# A unity build (CMAKE_UNITY_BUILD, as in the presets `release` and `fuzz`) compiles the files of a folder as one:
+# the headers, which take longest, are read once. odis_unity_by_folder(TARGET SEPARATE...) groups the target's
+# sources so; files named SEPARATE are compiled by themselves: those that hold other people's code.
 function(odis_unity_by_folder TARGET)
   get_target_property(sources ${TARGET} SOURCES)
   foreach(source IN LISTS sources)
