@@ -16,6 +16,8 @@ class Integrator {
   // Does everything that comes before a sample of a pixel, and returns the pass that it is traced in.
   // Instead of render(), once. Throws OptionError where samples are not traced one by one.
   virtual Pass passBefore(uint32_t pixel, uint32_t sample) = 0;
+  // Whether samples are guided by what a pilot saw, so that there are features of the guide.
+  virtual bool hasPilot() const { return false; }
   // Fills in the image's colour, its variance if that is asked for, and what depends on the integrator of
   // features and statistics.
   virtual void finish(RenderResult& result) = 0;

@@ -47,6 +47,7 @@ class OdisIntegrator : public FrameIntegrator {
  public:
   explicit OdisIntegrator(RenderJob& job) : FrameIntegrator(job, guidedFrameOptions(job)), m_job(job) {}
 
+  bool hasPilot() const override { return true; }
   void finish(RenderResult& result) override {
     FrameIntegrator::finish(result);
     const RenderOptions& options = m_job.options();

@@ -21,8 +21,7 @@ RenderResult render(const Scene& scene, const RenderOptions& options, Progress& 
   image.y = job.crop().y;
   image.width = job.crop().width;
   image.height = job.crop().height;
-  if (options.features)
-    writeFeatures(job.features, options.guideFeatures && options.integrator == IntegratorKind::odis, image);
+  if (options.features) writeFeatures(job.features, options.guideFeatures && integrator->hasPilot(), image);
   integrator->finish(result);
   RenderStats& stats = result.stats;
   stats.spp = double(stats.samples) / double(std::max<size_t>(job.pixelCount(), 1));
@@ -33,11 +32,11 @@ RenderResult render(const Scene& scene, const RenderOptions& options, Progress& 
 
 void renderSamples(const Scene& scene, const RenderOptions& options, Progress& progress,
                    const std::function<void(const SampleRenderer&)>& use) {
-  if (options.integrator == IntegratorKind::odis && options.pilotSpp >= options.spp)
-    throw OptionError("--set pilot-spp: all samples are the pilot's, expected fewer");
   const ThreadLimit limit(options.threads);
   RenderJob job(scene, options, progress);
   const std::unique_ptr<Integrator> integrator = makeIntegrator(job);
+  if (integrator->hasPilot() && options.pilotSpp >= options.spp)
+    throw OptionError("--set pilot-spp: all samples are the pilot's, expected fewer");
   Pass pass = integrator->passBefore(0, uint32_t(options.spp) - 1);
   use([&](uint32_t sample, Purposes redrawn) {
     return renderSampleImage(pass, sample, redrawn, progress, job.stopFunction());
