@@ -129,7 +129,7 @@ std::vector<Setting> settingsOfRivals() {
   using Options = RenderOptions;
   using Spatial = PpgOptions::Spatial;
   using Combine = PpgOptions::Combine;
-  using Fraction = PpgOptions::Share;
+  using Fraction = PpgOptions::BsdfFraction;
   return {
       choice<PpgOptions>("ppg", {{"2019", PpgOptions()}, {"2017", PpgOptions::firstPublished()}}, "2019",
                          "Improved, or as first published. To be given before the settings of its parts.",
@@ -152,7 +152,7 @@ std::vector<Setting> settingsOfRivals() {
                       [](Options& o, Combine v) { o.ppg.combine = v; }),
       choice<Fraction>("ppg-bsdf-fraction", {{"half", Fraction::fixed}, {"learned", Fraction::learned}},
                        "learned; 2017: half", "Probability that a draw stays with the BSDF.",
-                       [](Options& o, Fraction v) { o.ppg.share = v; }),
+                       [](Options& o, Fraction v) { o.ppg.bsdfFraction = v; }),
       number<int>("restir-neighbours", 0, 64, "4", "Pixels whose sample is resampled as well.",
                   [](Options& o, int v) { o.restir.neighbours = v; }),
       number<float>("restir-radius", 0, 1e4f, "16", "How far away they are at most, in pixels.",

@@ -64,11 +64,11 @@ TEST(Arguments, PracticalPathGuiding) {
       mixed = parseMethod(
           "--integrator ppg --set ppg=2017 --set ppg-bsdf-fraction=learned --set ppg-spatial=box");
   EXPECT_EQ(improved.integrator, IntegratorKind::ppg);
-  EXPECT_EQ(improved.ppg.share, PpgOptions::Share::learned);
+  EXPECT_EQ(improved.ppg.bsdfFraction, PpgOptions::BsdfFraction::learned);
   EXPECT_EQ(improved.ppg.threshold, 4000);
   EXPECT_EQ(first.ppg.combine, PpgOptions::Combine::last);
   EXPECT_EQ(first.ppg.threshold, 12000);
-  EXPECT_EQ(mixed.ppg.share, PpgOptions::Share::learned);
+  EXPECT_EQ(mixed.ppg.bsdfFraction, PpgOptions::BsdfFraction::learned);
   EXPECT_EQ(mixed.ppg.spatial, PpgOptions::Spatial::box);
   EXPECT_EQ(mixed.ppg.directional, QuadtreeFilter::nearest);
   EXPECT_THROW(parseMethod("--set ppg=2018"), UsageError);

@@ -146,7 +146,7 @@ TEST(Settings, DefaultsAreThoseOfTheOptions) {
   EXPECT_EQ(o.ppg.spatial, expected.ppg.spatial);
   EXPECT_EQ(o.ppg.directional, expected.ppg.directional);
   EXPECT_EQ(o.ppg.combine, expected.ppg.combine);
-  EXPECT_EQ(o.ppg.share, expected.ppg.share);
+  EXPECT_EQ(o.ppg.bsdfFraction, expected.ppg.bsdfFraction);
   EXPECT_EQ(o.restir.neighbours, expected.restir.neighbours);
   EXPECT_EQ(o.restir.radius, expected.restir.radius);
 }

@@ -37,7 +37,7 @@ std::vector<Switch> switches() {
   result[4].name = "inverseVariance";
   result[4].options.combine = PpgOptions::Combine::inverseVariance;
   result[5].name = "learnedShare";
-  result[5].options.share = PpgOptions::Share::learned;
+  result[5].options.bsdfFraction = PpgOptions::BsdfFraction::learned;
   result[6] = {"improved", PpgOptions()};
   // Images are tiny: leaves are halved at some hundred samples.
   for (Switch& s : result) s.options.threshold = 300;
@@ -174,7 +174,7 @@ TEST(Ppg, LearnsWhereLightComesFrom) {
       lit += window(fromOdis(sampler->sample({uniform(engine), uniform(engine)}).wi)) > 0;
     EXPECT_GT(lit, 700) << s.name;  // 3 % of the BSDF's draws are
     // Most draws are best left to such a guide.
-    if (s.options.share == PpgOptions::Share::learned) {
+    if (s.options.bsdfFraction == PpgOptions::BsdfFraction::learned) {
       EXPECT_LT(sampler->bsdfFraction(), 0.4f);
     } else {
       EXPECT_EQ(sampler->bsdfFraction(), 0.5f);

@@ -9,8 +9,8 @@ namespace odis::render {
 
 namespace {
 
-// The BSDF's share is learnt with the constants of Müller's code; bounded so that no direction that the tree
-// deems dark costs more than a hundredfold weight.
+// The BSDF sampling fraction is learnt with the constants of Müller's code; bounded so that no direction
+// that the tree deems dark costs more than a hundredfold weight.
 constexpr float kLearningRate = 0.01f, kRegularization = 0.01f, kMaxLogit = 4.59512f;  // 1 % to 99 %
 
 }  // namespace
@@ -107,29 +107,29 @@ void PracticalPathGuiding::learn(std::span<const std::vector<PathVertex>> tiles,
       leaf.weight += weight;
       const float radiance = luminance(v.radiance) / survivingPdf(v);
       leaf.learning.record(directionToCylinder(fromOdis(v.wi)), radiance * weight, m_options.directional);
-      if (m_options.share == PpgOptions::Share::learned) learnShare(v, leaf);
+      if (m_options.bsdfFraction == PpgOptions::BsdfFraction::learned) learnBsdfFraction(v, leaf);
     }
   });
-  for (SdLeaf& leaf : leaves) leaf.share = 1 / (1 + std::exp(-leaf.shareLogit.value()));
+  for (SdLeaf& leaf : leaves) leaf.fraction = 1 / (1 + std::exp(-leaf.bsdfFractionLogit.value()));
 }
 
 // A step against the gradient of the Kullback-Leibler divergence between the mixture's density and what it
-// should be, radiance * f * cos (Müller 2019, section 10.5). The mixture with the share a is
+// should be, radiance * f * cos (Müller 2019, section 10.5). The mixture with the BSDF sampling fraction a is
 //   q(a) = q(a0) + (a - a0) (g - P m),   dq/da = g - P m,
-// with a0 the share, q(a0) the density that the direction was drawn with, g the BSDF's density of guidable
+// with a0 the fraction, q(a0) the density that the direction was drawn with, g the BSDF's density of guidable
 // lobes, P their probability and m the tree's density.
-void PracticalPathGuiding::learnShare(const PathVertex& v, SdLeaf& leaf) const {
+void PracticalPathGuiding::learnBsdfFraction(const PathVertex& v, SdLeaf& leaf) const {
   const Rgb scattered =
       Rgb(v.weight.x, v.weight.y, v.weight.z) * Rgb(v.radiance.x, v.radiance.y, v.radiance.z);
   const float product = luminance(scattered) * v.pdf;
   const DirectionSampler* used = at(fromOdis(v.position), fromOdis(v.normal), true);
   if (!used || !(product > 0)) return;
   const float slope = v.guidablePdf - v.guidableProbability * used->pdf(fromOdis(v.wi));
-  const float logit = leaf.shareLogit.value(), share = 1 / (1 + std::exp(-logit));
-  const float density = v.pdf + (share - used->bsdfFraction()) * slope;
-  const float gradient = -product / (density * v.pdf) * slope * share * (1 - share);
+  const float logit = leaf.bsdfFractionLogit.value(), fraction = 1 / (1 + std::exp(-logit));
+  const float density = v.pdf + (fraction - used->bsdfFraction()) * slope;
+  const float gradient = -product / (density * v.pdf) * slope * fraction * (1 - fraction);
   if (!(density > 0) || !std::isfinite(gradient)) return;
-  leaf.shareLogit.step(gradient + kRegularization * logit, kLearningRate, kMaxLogit);
+  leaf.bsdfFractionLogit.step(gradient + kRegularization * logit, kLearningRate, kMaxLogit);
 }
 
 void PracticalPathGuiding::endIteration() {

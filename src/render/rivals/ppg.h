@@ -33,7 +33,7 @@ class PracticalPathGuiding final : public Rival {
   };
   void place(std::span<const std::vector<PathVertex>> tiles);
   void assign(const PathVertex& vertex, uint64_t random, std::vector<Entry>& entries) const;
-  void learnShare(const PathVertex& vertex, SdLeaf& leaf) const;
+  void learnBsdfFraction(const PathVertex& vertex, SdLeaf& leaf) const;
 
   PpgOptions m_options;
   SdTree m_tree;

@@ -8,7 +8,7 @@ namespace odis::render {
 struct PpgOptions {
   enum class Spatial : uint8_t { nearest, jitter, box };
   enum class Combine : uint8_t { last, inverseVariance };
-  enum class Share : uint8_t { fixed, learned };
+  enum class BsdfFraction : uint8_t { fixed, learned };
 
   // The defaults are the improved method, as its author recommends it: Müller 2019, "Practical Path Guiding
   // in Production".
@@ -17,7 +17,7 @@ struct PpgOptions {
   Spatial spatial = Spatial::jitter;
   QuadtreeFilter directional = QuadtreeFilter::box;
   Combine combine = Combine::inverseVariance;
-  Share share = Share::learned;  // fixed: half of the draws stay with the BSDF
+  BsdfFraction bsdfFraction = BsdfFraction::learned;  // fixed: half of the draws stay with the BSDF
 
   // As first published: Müller, Gross and Novák 2017.
   static PpgOptions firstPublished() {
@@ -26,7 +26,7 @@ struct PpgOptions {
     options.spatial = Spatial::nearest;
     options.directional = QuadtreeFilter::nearest;
     options.combine = Combine::last;
-    options.share = Share::fixed;
+    options.bsdfFraction = BsdfFraction::fixed;
     return options;
   }
 };

@@ -17,7 +17,7 @@ constexpr float kLeastCosine = 0.9f;
 
 struct FramePixel {
   RestirPath path;
-  Worth own;  // of its sample, to itself
+  Contribution own;  // of its sample, to itself
   float filterWeight = 1;
 };
 
@@ -40,7 +40,7 @@ class ReusedFrame {
     const Vec2i place(crop.x + int(index) % crop.width, crop.y + int(index) / crop.width);
     const Ray ray = cameraRay(m_scene, place, sampler, pixel.filterWeight);
     pixel.path = traceRestirPath(m_pass.path, ray, sampler, samplerOf(index, kBeyondSeed));
-    if (pixel.path.sample.valid) pixel.own = worthOf(pixel.path.sample, pixel.path.point);
+    if (pixel.path.sample.valid) pixel.own = contributionOf(pixel.path.sample, pixel.path.point);
   }
 
   // Its radiance, with what resampling gives; traces shadow rays.
@@ -60,13 +60,14 @@ class ReusedFrame {
     return {m_pass.sampler, m_pass.seed ^ stream, uint32_t(y) * uint32_t(film.width) + uint32_t(x), m_sample};
   }
 
-  // What another pixel's sample is worth; nothing if the two don't see each other.
-  Worth seenWorth(const SecondaryPoint& sample, const VisiblePoint& point, RayCounts& counts) const {
-    Worth worth = worthOf(sample, point);
-    if (!(worth.target() > 0)) return {};
+  // What another pixel's sample would contribute; nothing if the two don't see each other.
+  Contribution visibleContribution(const SecondaryPoint& sample, const VisiblePoint& point,
+                                   RayCounts& counts) const {
+    Contribution contribution = contributionOf(sample, point);
+    if (!(contribution.target() > 0)) return {};
     ++counts.shadowRays;
-    if (m_scene.occluded(Scene::spawn(point.at, worth.direction, worth.distance))) return {};
-    return worth;
+    if (m_scene.occluded(Scene::spawn(point.at, contribution.direction, contribution.distance))) return {};
+    return contribution;
   }
 
   // Pixels in a disk around this one that see a surface alike. The choice depends on x1 of each alone,
@@ -89,8 +90,8 @@ class ReusedFrame {
     }
   }
 
-  // Chooses among the pixel's sample and its neighbours' in proportion to weight = MIS weight * worth /
-  // density, and gives the chosen one the sum of the weights.
+  // Chooses among the pixel's sample and its neighbours' in proportion to weight = MIS weight *
+  // contribution / density, and gives the chosen one the sum of the weights.
   Rgb resample(size_t index, RayCounts& counts) const {
     const FramePixel& pixel = m_pixels[index];
     const VisiblePoint& point = pixel.path.point;
@@ -102,17 +103,17 @@ class ReusedFrame {
 
     float sum = 0;
     Rgb chosen(0, 0, 0);  // its value, over its target
-    const auto offer = [&](const Worth& worth, float weight) {
+    const auto offer = [&](const Contribution& contribution, float weight) {
       if (!(weight > 0) || !std::isfinite(weight)) return;
       sum += weight;
-      if (random.get1D() * sum < weight) chosen = worth.value / worth.target();
+      if (random.get1D() * sum < weight) chosen = contribution.value / contribution.target();
     };
 
     // A sample of a neighbour, against the pixel's own way to find it. Targets stand for densities; all are
     // per area, so that no Jacobian is left.
     for (const FramePixel* other : neighbours) {
       if (!(other->own.target() > 0)) continue;
-      const Worth here = seenWorth(other->path.sample, point, counts);
+      const Contribution here = visibleContribution(other->path.sample, point, counts);
       const float there = other->own.target(), density = other->path.sample.pdf * other->own.geometry;
       const float mis = others * there / (others * there + here.target()) / all;
       offer(here, mis * here.target() / density);
@@ -121,7 +122,7 @@ class ReusedFrame {
     if (pixel.own.target() > 0) {
       float mis = 1;
       for (const FramePixel* other : neighbours) {
-        const float there = seenWorth(pixel.path.sample, other->path.point, counts).target();
+        const float there = visibleContribution(pixel.path.sample, other->path.point, counts).target();
         mis += pixel.own.target() / (others * there + pixel.own.target());
       }
       offer(pixel.own, mis / all * pixel.own.target() / (pixel.path.sample.pdf * pixel.own.geometry));

@@ -21,26 +21,26 @@ Rgb scattered(const SecondaryPoint& s, const Vec3& wo) {
 
 }  // namespace
 
-Worth worthOf(const SecondaryPoint& s, const VisiblePoint& point) {
-  Worth worth;
+Contribution contributionOf(const SecondaryPoint& s, const VisiblePoint& point) {
+  Contribution contribution;
   const Vec3 between = s.at.p - point.at.p;
-  worth.distance = length(between);
-  if (!(worth.distance > 0)) return worth;
-  worth.direction = between * (1 / worth.distance);
+  contribution.distance = length(between);
+  if (!(contribution.distance > 0)) return contribution;
+  contribution.direction = between * (1 / contribution.distance);
 
   // x1: what the lobes that may be guided scatter, which is their share of all lobes' density.
   const BsdfValue first =
-      point.at.shape->bsdf().evaluate(point.at, point.wo, point.at.shading.toLocal(worth.direction));
-  if (!(first.guidablePdf > 0) || isBlack(first.value)) return worth;
+      point.at.shape->bsdf().evaluate(point.at, point.wo, point.at.shading.toLocal(contribution.direction));
+  if (!(first.guidablePdf > 0) || isBlack(first.value)) return contribution;
 
   // x2 must be seen from the same side: lights were chosen for that one.
-  const Vec3 wo = s.at.shading.toLocal(-worth.direction);
-  if ((wo.z < 0) != s.back) return worth;
-  worth.geometry = absDot(s.at.ng, worth.direction) / sqr(worth.distance);
-  worth.value =
-      point.throughput * first.value * (first.guidablePdf / first.pdf) * scattered(s, wo) * worth.geometry;
-  if (!isFinite(worth.value)) worth.value = Rgb(0, 0, 0);
-  return worth;
+  const Vec3 wo = s.at.shading.toLocal(-contribution.direction);
+  if ((wo.z < 0) != s.back) return contribution;
+  contribution.geometry = absDot(s.at.ng, contribution.direction) / sqr(contribution.distance);
+  contribution.value = point.throughput * first.value * (first.guidablePdf / first.pdf) * scattered(s, wo) *
+                       contribution.geometry;
+  if (!isFinite(contribution.value)) contribution.value = Rgb(0, 0, 0);
+  return contribution;
 }
 
 }  // namespace odis::render

@@ -42,9 +42,10 @@ struct SecondaryPoint {
   float pdf = 0;
 };
 
-// What a sample is worth to a pixel, per area of x2 and per solid angle of `wi`: the value of the integrand,
-// and cos(theta) / distance^2 from x1 to x2, which turns densities per solid angle into ones per area.
-struct Worth {
+// What a sample contributes to a pixel, per area of x2 and per solid angle of `wi`: the value of the
+// integrand, and cos(theta) / distance^2 from x1 to x2, which turns densities per solid angle into ones per
+// area.
+struct Contribution {
   Rgb value{0, 0, 0};
   float geometry = 0;
   Vec3 direction{0, 0, 1};  // from x1 to x2
@@ -53,6 +54,6 @@ struct Worth {
 };
 
 // Without looking whether anything lies between. Zero where the sample cannot be taken over.
-Worth worthOf(const SecondaryPoint& sample, const VisiblePoint& point);
+Contribution contributionOf(const SecondaryPoint& sample, const VisiblePoint& point);
 
 }  // namespace odis::render

@@ -19,12 +19,12 @@ class SdLeaf final : public DirectionSampler {
  public:
   VertexMap<float>::Sample sample(const Vec2& u) const override;
   float pdf(const Vec3& wi) const override;
-  float bsdfFraction() const override { return share; }
+  float bsdfFraction() const override { return fraction; }
 
   Quadtree known, learning;
-  float weight = 0;    // of the samples that came in, radiance or not
-  Adam shareLogit;     // what the BSDF's share is the sigmoid of
-  float share = 0.5f;  // it, as it was when the current pass began
+  float weight = 0;        // of the samples that came in, radiance or not
+  Adam bsdfFractionLogit;  // what the BSDF sampling fraction is the sigmoid of
+  float fraction = 0.5f;   // it, as it was when the current pass began
 };
 
 class SdTree {
