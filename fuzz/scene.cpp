@@ -48,8 +48,8 @@ void renderScene(const std::string& path) {
   options.variance = options.features = options.guideFeatures = true;
   Progress quiet;
   const RenderResult result = render(*scene, options, quiet);
-  if (result.frame.color.size() != 16) std::abort();
-  for (const Rgb& color : result.frame.color)
+  if (result.image.color.size() != 16) std::abort();
+  for (const Rgb& color : result.image.color)
     if (std::isnan(color.x) || std::isnan(color.y) || std::isnan(color.z)) std::abort();
 }
 

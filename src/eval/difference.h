@@ -12,7 +12,7 @@ enum class DifferenceKind {
   absolute,     // |A - B|
   // (A - B)^2 / (B^2 + 0.01), both over B's mean luminance, mean of the channels: the summands of relMSE.
   relative,
-  flip       // as `flip` in metrics.h
+  flip  // as `flip` in metrics.h
 };
 
 // The difference of two images of one size; the last two kinds are grey. Throws std::invalid_argument if

@@ -8,8 +8,9 @@ namespace odis::learn {
 
 std::optional<Room> attachRoom(Random& random, Room& room, const WallSpan& span, float depth,
                                const Vec2& door) {
-  const auto [wall, from, to] = span;
-  const float doorWidth = door.x, doorHeight = std::min(door.y, room.height - 0.1f);
+  const size_t wall = span.wall;
+  const float from = span.from, to = span.to, doorWidth = door.x,
+              doorHeight = std::min(door.y, room.height - 0.1f);
   const float margin = 0.2f, space = to - from - doorWidth - 2 * margin;
   if (space < 0 || from < 0 || to > room.length(wall)) return {};
   const float left = from + margin + space * float(random.unit()), right = left + doorWidth;
