@@ -14,21 +14,31 @@ namespace odis::test {
 // What a test may do to vertices before they are handed over.
 using ChangeVertices = std::function<void(std::vector<PathVertex>& vertices)>;
 
-// Traces a pass pixel by pixel, on one thread.
-inline void runPass(Frame& frame, const FramePass& pass, const ToyHost& host, uint32_t pixels,
-                    const ChangeVertices& change = {}) {
+struct TracedPass {
   std::vector<FrameSample> samples;
-  std::vector<PathVertex> vertices;
+  std::vector<PathVertex> vertices;  // if the pass wants them
+};
+
+// Traces the samples of a pass that the first `pixels` pixels have, pixel by pixel, on one thread.
+inline TracedPass tracePass(const Frame& frame, const FramePass& pass, const ToyHost& host, uint32_t pixels) {
+  TracedPass traced;
   PathRecorder recorder;
   for (uint32_t pixel = 0; pixel < pixels; ++pixel) {
     const SampleRange range = frame.samples(pixel);
     for (uint32_t i = 0; i < range.count; ++i)
-      samples.push_back(host.trace(pass, frame.pixelValues(), pixel, range.first + i, recorder));
-    recorder.finish(vertices);
-    if (!pass.wantsVertices) vertices.clear();
+      traced.samples.push_back(host.trace(pass, frame.pixelValues(), pixel, range.first + i, recorder));
+    recorder.finish(traced.vertices);
+    if (!pass.wantsVertices) traced.vertices.clear();
   }
-  if (change) change(vertices);
-  frame.add(samples, std::move(vertices));
+  return traced;
+}
+
+// Traces a pass and hands it over.
+inline void runPass(Frame& frame, const FramePass& pass, const ToyHost& host, uint32_t pixels,
+                    const ChangeVertices& change = {}) {
+  TracedPass traced = tracePass(frame, pass, host, pixels);
+  if (change) change(traced.vertices);
+  frame.add(traced.samples, std::move(traced.vertices));
 }
 
 inline void runFrame(Frame& frame, const FrameOptions& options, const ToyRoom& room,

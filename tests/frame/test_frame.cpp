@@ -105,17 +105,10 @@ TEST(Frame, TheMeanIsThatOfTheWeightedSamples) {
   const ToyHost host({}, 24, 24);
   std::map<uint32_t, std::map<uint32_t, float>> values;  // [pixel][sample]
   while (const FramePass* pass = frame.beginPass()) {
-    PathRecorder recorder;
-    std::vector<FrameSample> samples;
-    for (uint32_t pixel = 0; pixel < 24 * 24; ++pixel)
-      for (uint32_t i = 0; i < frame.samples(pixel).count; ++i)
-        samples.push_back(
-            host.trace(*pass, frame.pixelValues(), pixel, frame.samples(pixel).first + i, recorder));
-    for (const FrameSample& s : samples)
+    TracedPass traced = tracePass(frame, *pass, host, 24 * 24);
+    for (const FrameSample& s : traced.samples)
       if (pass->partOfImage) values[s.pixel][s.sample] = s.value.y;
-    std::vector<PathVertex> vertices;
-    recorder.finish(vertices);
-    frame.add(samples, std::move(vertices));
+    frame.add(traced.samples, std::move(traced.vertices));
     frame.endPass();
   }
   for (const auto& [pixel, samples] : values) {

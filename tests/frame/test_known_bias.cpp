@@ -28,16 +28,9 @@ TEST(KnownBias, PilotWeightsInImagesOf16x16Pixels) {
     std::vector<double> sums(256), counts(256), weightedSums(256), weights(256);
     std::vector<FrameSample> all;
     while (const FramePass* pass = frame.beginPass()) {
-      std::vector<FrameSample> samples;
-      std::vector<PathVertex> vertices;
-      PathRecorder recorder;
-      for (uint32_t pixel = 0; pixel < 256; ++pixel)
-        for (uint32_t i = 0; i < frame.samples(pixel).count; ++i)
-          samples.push_back(
-              host.trace(*pass, frame.pixelValues(), pixel, frame.samples(pixel).first + i, recorder));
-      all.insert(all.end(), samples.begin(), samples.end());
-      recorder.finish(vertices);
-      frame.add(samples, std::move(vertices));
+      TracedPass traced = tracePass(frame, *pass, host, 256);
+      all.insert(all.end(), traced.samples.begin(), traced.samples.end());
+      frame.add(traced.samples, std::move(traced.vertices));
       frame.endPass();
     }
     for (const FrameSample& s : all) {
