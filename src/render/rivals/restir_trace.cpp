@@ -1,4 +1,5 @@
 #include "render/rivals/restir_trace.h"
+#include "render/path/emission.h"
 
 namespace odis::render {
 
@@ -56,39 +57,26 @@ void traceBeyond(const PathSettings& settings, int depth, Path& path, RayCounts&
   counts.shadowRays += path.counts.shadowRays;
 }
 
-// Emission that a ray met, weighted against next-event estimation at its start.
-struct Arrival {
+// What competes with a ray's direction: next-event estimation where it started.
+struct DirectionOrigin {
   bool bySampling = false;
   float pdf = 0;
   LightReference from;
 };
 
-struct MetEmission {
-  Rgb radiance;
-  const Emitter& emitter;
-  uint32_t part;
-  float emitterPdf;  // with which the emitter would have been sampled there, once it is chosen
-};
-
-Rgb emissionOf(const PathSettings& settings, const Arrival& arrival, const Vec3& wi, const MetEmission& met) {
-  if (isBlack(met.radiance) || !arrival.bySampling) return met.radiance;
-  const float chosen = settings.lights->probability(arrival.from, met.emitter, met.part, wi);
-  return met.radiance * powerHeuristic(arrival.pdf, met.emitterPdf * chosen);
-}
-
-Rgb emissionMet(const PathSettings& settings, const Arrival& arrival, const Ray& ray, bool hit,
-                const SurfacePoint& at) {
+// Emission that a ray met (`at`: a surface, null: none), weighted against next-event estimation at its start.
+Rgb emissionMet(const PathSettings& settings, const DirectionOrigin& origin, const Ray& ray,
+                const SurfacePoint* at) {
   Rgb sum(0, 0, 0);
-  if (!hit) {
-    for (const EnvironmentEmitter* e : settings.scene->environments())
-      sum += emissionOf(settings, arrival, ray.direction,
-                        {e->radiance(ray.direction), *e, 0,
-                         arrival.bySampling ? e->pdf(arrival.from.p, ray.direction) : 0});
-  } else if (const SurfaceEmitter* e = at.shape->emitter()) {
-    sum = emissionOf(settings, arrival, ray.direction,
-                     {e->radiance(at, -ray.direction), *e, e->part(at),
-                      arrival.bySampling ? e->pdf(arrival.from.p, at) : 0});
-  }
+  forEachEmission(
+      *settings.scene, ray, at, origin.bySampling ? &origin.from : nullptr, [&](const Emission& met) {
+        if (isBlack(met.radiance)) return;
+        const float weight =
+            origin.bySampling
+                ? powerHeuristic(origin.pdf, lightPdf(*settings.lights, origin.from, ray.direction, met))
+                : 1;
+        sum += met.radiance * weight;
+      });
   return sum;
 }
 
@@ -103,8 +91,8 @@ void findSample(const PathSettings& settings, const BsdfSample& drawn, Sampler& 
   SecondaryPoint s;
   ++path.counts.rays;
   const bool hit = settings.scene->intersect(ray, s.at);
-  const Arrival arrival{true, drawn.pdf, lightReference(point.at, point.wo)};
-  path.radiance += weight * emissionMet(settings, arrival, ray, hit, s.at);
+  const DirectionOrigin origin{true, drawn.pdf, lightReference(point.at, point.wo)};
+  path.radiance += weight * emissionMet(settings, origin, ray, hit ? &s.at : nullptr);
   if (!hit || (settings.maxDepth >= 0 && depth >= settings.maxDepth)) return;
 
   // Next-event estimation and a direction at x2; no roulette, whose chances would differ from pixel to pixel.
@@ -150,13 +138,13 @@ RestirPath traceRestirPath(const PathSettings& settings, const Ray& cameraRay, S
   Ray ray = cameraRay;
   Rgb throughput(1, 1, 1);
   float eta = 1;
-  Arrival arrival;
+  DirectionOrigin origin;
   for (int depth = 1;; ++depth) {
     sampler.startVertex(depth);
     ++path.counts.rays;
     SurfacePoint at;
     const bool hit = settings.scene->intersect(ray, at);
-    path.radiance += throughput * emissionMet(settings, arrival, ray, hit, at);
+    path.radiance += throughput * emissionMet(settings, origin, ray, hit ? &at : nullptr);
     if (!hit || (settings.maxDepth >= 0 && depth >= settings.maxDepth)) return path;
 
     const Bsdf& bsdf = at.shape->bsdf();
@@ -192,7 +180,7 @@ RestirPath traceRestirPath(const PathSettings& settings, const Ray& cameraRay, S
       if (!(uSurvival < survival)) return path;
       throughput /= survival;
     }
-    arrival = {!isDiscrete(next.lobe), next.pdf, from};
+    origin = {!isDiscrete(next.lobe), next.pdf, from};
     ray = Scene::spawn(at, at.shading.toWorld(next.wi));
   }
 }
