@@ -2,24 +2,15 @@
 // no file that is neither the old one nor the new one.
 #include "command_runner.h"
 #include "render/image/write.h"
+#include "support/sanitizers.h"
 
 namespace {
 
 namespace fs = std::filesystem;
 using odis::test::Outcome;
 
-// Sanitizers need terabytes of addresses, the one for threads also a file when it starts. GCC tells by
-// macros, Clang by a question.
-#if defined(__SANITIZE_THREAD__)
-constexpr bool kSanitized = true, kThreadSanitized = true;
-#elif defined(__SANITIZE_ADDRESS__)
-constexpr bool kSanitized = true, kThreadSanitized = false;
-#elif defined(__has_feature)
-constexpr bool kThreadSanitized = __has_feature(thread_sanitizer);
-constexpr bool kSanitized = __has_feature(address_sanitizer) || kThreadSanitized;
-#else
-constexpr bool kSanitized = false, kThreadSanitized = false;
-#endif
+// Sanitizers need terabytes of addresses, the one for threads also a file when it starts.
+using odis::test::kSanitized, odis::test::kThreadSanitized;
 
 class Failures : public odis::test::Odis {
  protected:
