@@ -4,7 +4,6 @@
 
 #include <cstddef>
 
-#include "render/files/checked_stream.h"
 #include "render/files/replace_file.h"
 
 namespace odis::app {
@@ -87,16 +86,13 @@ std::string header(size_t count) {
 }  // namespace
 
 void writeRecords(const std::string& path, const std::vector<PathVertex>& vertices) {
-  replaceFile(path, [&](const std::string& temporary) {
-    CheckedStream file(temporary);
+  replaceFile(path, [&](CheckedStream& file) {
     const std::string text = header(vertices.size());
     const char start[10] = {
         '\x93', 'N', 'U', 'M', 'P', 'Y', 1, 0, char(text.size() & 0xff), char(text.size() >> 8)};
     file.write(start, sizeof start);
-    file.write(text.data(), std::streamsize(text.size()));
-    file.write(reinterpret_cast<const char*>(vertices.data()),
-               std::streamsize(vertices.size() * sizeof(PathVertex)));
-    file.close();
+    file.write(text.data(), text.size());
+    file.write(reinterpret_cast<const char*>(vertices.data()), vertices.size() * sizeof(PathVertex));
   });
 }
 

@@ -3,7 +3,9 @@
 #include <filesystem>
 #include <fstream>
 #include <limits>
+#include <sstream>
 
+#include "render/files/read_json.h"
 #include "render/files/replace_file.h"
 
 namespace odis::eval {
@@ -57,13 +59,21 @@ nlohmann::ordered_json measurementJson(const Measurement& m) {
 
 ResultsLog::ResultsLog(std::string path, bool fresh) : m_path(std::move(path)) {
   if (fresh) std::filesystem::remove(m_path);
-  std::ifstream stream(m_path);
+  if (!std::filesystem::exists(m_path)) return;
+  std::istringstream stream;
+  try {
+    stream.str(render::readFile(m_path));
+  } catch (const render::ReadError& error) {
+    throw render::WriteError("cannot add results to \"" + m_path + "\": " + error.what());
+  }
   for (std::string line; std::getline(stream, line);) {
     try {
-      Measurement measurement = fromJson(nlohmann::json::parse(line));
+      Measurement measurement = fromJson(render::parseJson<nlohmann::json>(line));
       m_byKey[measurement.key] = measurement;
-    } catch (const nlohmann::json::exception&) {
+    } catch (const render::ReadError&) {
       continue;  // cut off by a crash: rendered again
+    } catch (const nlohmann::json::exception&) {
+      continue;  // of another version
     }
   }
 }

@@ -3,11 +3,11 @@
 #include <fmt/format.h>
 
 #include <filesystem>
-#include <fstream>
-#include <iterator>
 #include <pugixml.hpp>
 #include <set>
 #include <system_error>
+
+#include "render/files/input_file.h"
 
 namespace odis::eval {
 
@@ -32,8 +32,12 @@ static uint64_t hashFile(const fs::path& path, std::set<fs::path>& seen, uint64_
   std::error_code ignored;
   if (!fs::is_regular_file(path, ignored) || !seen.insert(fs::weakly_canonical(path, ignored)).second)
     return hash;
-  std::ifstream stream(path, std::ios::binary);
-  const std::string content{std::istreambuf_iterator<char>(stream), {}};
+  std::string content;
+  try {
+    content = render::readFile(path.string());
+  } catch (const render::ReadError&) {
+    return hash;
+  }
   hash = hashText(content, hash);
   if (path.extension() != ".xml") return hash;
 

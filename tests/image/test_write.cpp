@@ -98,8 +98,8 @@ TEST(ReplaceFile, KeepsTheOldFileIfKilled) {
   std::ofstream(path) << "old";
   const pid_t child = fork();
   if (child == 0) {
-    replaceFile(path, [](const std::string& temporary) {
-      std::ofstream(temporary) << "ne";
+    replaceFile(path, [](CheckedStream& stream) {
+      stream.write("ne", 2);
       raise(SIGKILL);
     });
     _exit(0);

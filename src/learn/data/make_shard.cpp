@@ -5,11 +5,11 @@
 #include <unistd.h>
 
 #include <filesystem>
-#include <fstream>
 
 #include "learn/scenes/generate.h"
 #include "learn/scenes/random.h"
 #include "odis_version.h"
+#include "render/files/read_json.h"
 #include "render/files/replace_file.h"
 
 namespace odis::learn {
@@ -102,13 +102,17 @@ nlohmann::ordered_json addView(ShardWriter& writer, const std::string& file, siz
           {"lightGroups", groupsJson(lights)}};
 }
 
-nlohmann::ordered_json sceneJson(const std::string& folder) {
-  std::ifstream stream(folder + "/scene.json");
-  nlohmann::ordered_json json = nlohmann::ordered_json::parse(stream, nullptr, false);
-  return json.is_object() ? json : nlohmann::ordered_json::object();
-}
-
 }  // namespace
+
+nlohmann::ordered_json sceneJson(const std::string& folder) {
+  try {
+    auto json = render::readJson<nlohmann::ordered_json>(folder + "/scene.json");
+    if (json.is_object()) return json;
+  } catch (const render::ReadError&) {
+    // A scene that was not generated has no such file.
+  }
+  return nlohmann::ordered_json::object();
+}
 
 DataSettings DataSettings::quick() {
   DataSettings settings;

@@ -5,13 +5,13 @@
 #include <algorithm>
 #include <atomic>
 #include <filesystem>
-#include <fstream>
 #include <mutex>
 #include <numeric>
 #include <random>
 #include <thread>
 
 #include "learn/data/dataset.h"
+#include "learn/data/make_shard.h"
 #include "learn/scenes/generate.h"
 #include "learn/scenes/sheet.h"
 #include "render/files/replace_file.h"
@@ -33,14 +33,13 @@ std::vector<ShardSource> folderSources(const std::string& folder) {
   std::vector<ShardSource> sources;
   for (const std::string& name : scenesIn(folder)) {
     const std::string path = (fs::path(folder) / name).string();
-    std::ifstream stream(path + "/scene.json");
-    const nlohmann::json json = nlohmann::json::parse(stream, nullptr, false);
-    const bool generated = json.is_object() && json.contains("seed") && json["seed"].is_number_unsigned();
+    const nlohmann::ordered_json json = sceneJson(path);
+    const bool generated = json.contains("seed") && json["seed"].is_number_unsigned();
     sources.push_back({name, generated ? json["seed"].get<uint64_t>() : seedOfName(name), nullptr, path});
   }
   if (sources.empty())
-    throw GenerateError(
-        fmt::format("the folder \"{}\" holds no scenes, expected folders with a scene.xml", folder));
+    throw render::SceneError(
+        {}, fmt::format("the folder \"{}\" holds no scenes, expected folders with a scene.xml", folder));
   return sources;
 }
 

@@ -5,12 +5,11 @@
 #include <algorithm>
 #include <atomic>
 #include <filesystem>
-#include <fstream>
 #include <mutex>
 #include <set>
 
 #include "learn/data/dataset.h"
-#include "render/files/checked_stream.h"
+#include "render/files/read_json.h"
 #include "render/files/replace_file.h"
 
 namespace odis::learn {
@@ -57,10 +56,15 @@ Json describe(const ShardReader& shard, const std::string& bytes) {
           {"bytes", bytes.size()},       {"crc32", crcText(bytes)}};
 }
 
+fs::directory_iterator entriesOf(const std::string& folder) {
+  if (!fs::is_directory(folder)) throw ShardError(fmt::format("{}: there is no such folder", folder));
+  return fs::directory_iterator(folder);
+}
+
 // Files of shards that were never finished.
 std::vector<std::string> halfMade(const std::string& folder) {
   std::vector<std::string> names;
-  for (const auto& entry : fs::directory_iterator(folder))
+  for (const auto& entry : entriesOf(folder))
     if (entry.path().filename().string().find(".shard.part-") != std::string::npos)
       names.push_back(entry.path().string());
   return names;
@@ -84,7 +88,7 @@ std::string whatIsWrong(const std::string& path, const std::string& bytes) {
 
 std::vector<std::string> shardsIn(const std::string& folder) {
   std::vector<std::string> names;
-  for (const auto& entry : fs::directory_iterator(folder))
+  for (const auto& entry : entriesOf(folder))
     if (entry.path().extension() == ".shard") names.push_back(entry.path().stem().string());
   std::sort(names.begin(), names.end());
   return names;
@@ -103,10 +107,8 @@ void gatherShards(const std::vector<std::string>& folders, const std::string& in
       if (!fs::equivalent(from, to, error) && shardBytes(from) != shardBytes(to))
         throw ShardError(fmt::format("{} and {} have the same name and are not the same", from, to));
     } else {
-      render::replaceFile(to, [&](const std::string& temporary) {
-        fs::create_hard_link(from, temporary, error);
-        if (error) fs::copy_file(from, temporary);
-      });
+      fs::create_hard_link(fs::canonical(from), to, error);
+      if (error) render::writeFile(to, shardBytes(from));
     }
     progress(++done, files.size());
   }
@@ -200,11 +202,15 @@ FolderReport checkShards(const std::string& folder, const CountProgress& progres
 
 nlohmann::ordered_json readManifest(const std::string& folder) {
   const std::string path = (fs::path(folder) / kManifestName).string();
-  std::ifstream stream(path);
-  if (!stream)
+  if (!fs::exists(path))
     throw ShardError(
         fmt::format("{}: there is no manifest; \"odis dataset merge {}\" makes it", path, folder));
-  Json manifest = Json::parse(stream, nullptr, false);
+  Json manifest;
+  try {
+    manifest = render::readJson<Json>(path);
+  } catch (const render::ReadError& error) {
+    throw ShardError(fmt::format("{}: cannot be read: {}", path, error.what()));
+  }
   const auto isShard = [](const Json& shard) {
     return shard.is_object() && shard.contains("name") && shard["name"].is_string() &&
            shard.contains("bytes") && shard["bytes"].is_number_unsigned() && shard.contains("crc32") &&

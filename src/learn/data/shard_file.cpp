@@ -5,10 +5,9 @@
 
 #include <bit>
 #include <cstring>
-#include <fstream>
 #include <memory>
 
-#include "render/files/checked_stream.h"
+#include "render/files/input_file.h"
 #include "render/files/replace_file.h"
 
 namespace odis::learn {
@@ -22,11 +21,11 @@ constexpr int kLevel = 3;  // of compression
 }  // namespace
 
 std::string shardBytes(const std::string& path) {
-  std::ifstream stream(path, std::ios::binary);
-  if (!stream) throw ShardError(fmt::format("{}: cannot be opened: {}", path, std::strerror(errno)));
-  std::string bytes{std::istreambuf_iterator<char>(stream), {}};
-  if (stream.bad()) throw ShardError(fmt::format("{}: cannot be read: {}", path, std::strerror(errno)));
-  return bytes;
+  try {
+    return render::readFile(path);
+  } catch (const render::ReadError& error) {
+    throw ShardError(fmt::format("{}: cannot be read: {}", path, error.what()));
+  }
 }
 
 // The lowest bytes of all elements come first, then the next ones: like stands beside like, which
@@ -55,13 +54,11 @@ void ShardWriter::write(const std::string& path, nlohmann::ordered_json header) 
   header["arrays"] = m_arrays;
   const std::string text = header.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
   const uint32_t words[3] = {kShardFormat, uint32_t(text.size()), crc32(text)};
-  render::replaceFile(path, [&](const std::string& temporary) {
-    render::CheckedStream stream(temporary);
-    stream.write(kShardMagic.data(), std::streamsize(kShardMagic.size()));
+  render::replaceFile(path, [&](render::CheckedStream& stream) {
+    stream.write(kShardMagic.data(), kShardMagic.size());
     stream.write(reinterpret_cast<const char*>(words), sizeof(words));
-    stream.write(text.data(), std::streamsize(text.size()));
-    stream.write(m_frames.data(), std::streamsize(m_frames.size()));
-    stream.close();
+    stream.write(text.data(), text.size());
+    stream.write(m_frames.data(), m_frames.size());
   });
 }
 

@@ -5,7 +5,8 @@
 
 #include <algorithm>
 #include <cstring>
-#include <fstream>
+
+#include "render/files/read_json.h"
 
 namespace odis::learn {
 
@@ -42,19 +43,19 @@ uint32_t crc32(std::string_view bytes) {
 }
 
 ShardHeader::ShardHeader(const std::string& path) : m_path(path) {
-  std::ifstream stream(path, std::ios::binary | std::ios::ate);
-  if (!stream) throw ShardError(fmt::format("{}: cannot be opened: {}", path, std::strerror(errno)));
-  const uint64_t fileSize = uint64_t(std::max<std::streamoff>(stream.tellg(), 0));
-  stream.seekg(0);
-  const auto read = [&](uint64_t size) {
-    std::string bytes(size, '\0');
-    if (!stream.read(bytes.data(), std::streamsize(size)))
-      throw ShardError(fmt::format("{}: cannot be read: {}", path, std::strerror(errno)));
-    return bytes;
-  };
-  const std::string prefix = read(std::min<uint64_t>(kPrefix, fileSize));
-  parsePrefix(prefix, fileSize);
-  parse(read(m_end - kPrefix), wordAt(prefix, 16), fileSize - m_end);
+  try {
+    render::InputFile file(path);
+    const auto read = [&](uint64_t size) {
+      std::string bytes(size, '\0');
+      file.read(bytes.data(), size);
+      return bytes;
+    };
+    const std::string prefix = read(std::min<uint64_t>(kPrefix, file.size()));
+    parsePrefix(prefix, file.size());
+    parse(read(m_end - kPrefix), wordAt(prefix, 16), file.size() - m_end);
+  } catch (const render::ReadError& error) {
+    throw ShardError(fmt::format("{}: cannot be read: {}", path, error.what()));
+  }
 }
 
 ShardHeader::ShardHeader(const std::string& path, std::string_view file) : m_path(path) {
@@ -79,11 +80,13 @@ void ShardHeader::parse(std::string_view text, uint32_t crc, uint64_t size) {
   if (crc32(text) != crc)
     throw ShardError(fmt::format("{}: the header is damaged: its CRC-32 is {:08x}, expected {:08x}", m_path,
                                  crc32(text), crc));
-  m_header = nlohmann::json::parse(text, nullptr, false);
   try {
+    m_header = render::parseJson<nlohmann::json>(text);
     parseArrays(size);
-  } catch (const nlohmann::json::exception& e) {
+  } catch (const render::ReadError& e) {
     throw ShardError(fmt::format("{}: the header is not as expected: {}", m_path, e.what()));
+  } catch (const nlohmann::json::exception& e) {
+    throw ShardError(fmt::format("{}: the header is not as expected: {}", m_path, render::jsonReason(e)));
   }
 }
 

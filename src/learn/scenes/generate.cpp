@@ -4,11 +4,11 @@
 #include <unistd.h>
 
 #include <filesystem>
-#include <fstream>
 #include <nlohmann/json.hpp>
 
 #include "learn/scenes/cameras.h"
 #include "learn/scenes/write_scene.h"
+#include "render/files/read_json.h"
 #include "render/files/replace_file.h"
 
 namespace odis::learn {
@@ -87,8 +87,12 @@ bool finish(Draft& draft, const std::string& folder) {
 
 void checkSame(const fs::path& folder, const Assets& assets) {
   const fs::path path = folder / "scene.json";
-  std::ifstream stream(path);
-  const nlohmann::json json = nlohmann::json::parse(stream, nullptr, false);
+  nlohmann::json json;
+  try {
+    json = render::readJson<nlohmann::json>(path.string());
+  } catch (const render::ReadError&) {
+    // Refused below: a scene that was not made by the generator has no such file.
+  }
   if (!json.is_object() || json.value("version", 0) != kVersion ||
       json.value("assets", "?") != assets.fingerprint())
     throw GenerateError(

@@ -14,7 +14,7 @@ namespace odis::learn {
 void writeFile(const std::string& path, const std::string& bytes) {
   try {
     render::CheckedStream stream(path);
-    stream.write(bytes.data(), std::streamsize(bytes.size()));
+    stream.write(bytes.data(), bytes.size());
     stream.close();
   } catch (const std::runtime_error& error) {
     throw render::WriteError(fmt::format("cannot write \"{}\": {}", path, error.what()));

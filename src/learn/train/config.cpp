@@ -3,7 +3,8 @@
 #include <fmt/format.h>
 
 #include <filesystem>
-#include <fstream>
+
+#include "render/files/read_json.h"
 
 namespace odis::learn {
 
@@ -77,13 +78,11 @@ class Keys {
 }  // namespace
 
 TrainConfig readConfig(const std::string& path) {
-  std::ifstream stream(path);
-  if (!stream) throw ConfigError(path + ": cannot be read");
   nlohmann::json json;
   try {
-    json = nlohmann::json::parse(stream);
-  } catch (const nlohmann::json::exception& e) {
-    throw ConfigError(path + ": is not JSON: " + e.what());
+    json = render::readJson<nlohmann::json>(path);
+  } catch (const render::ReadError& error) {
+    throw ConfigError(path + ": cannot be read: " + error.what());
   }
   if (!json.is_object()) throw ConfigError(path + ": expected an object");
   constexpr int kMany = 1 << 30;

@@ -7,7 +7,7 @@
 #include <cstring>
 #include <functional>
 
-#include "render/files/checked_stream.h"
+#include "render/files/replace_file.h"
 #include "render/image/write.h"
 
 namespace odis::learn {

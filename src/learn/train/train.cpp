@@ -5,7 +5,6 @@
 #include <chrono>
 #include <cmath>
 #include <filesystem>
-#include <fstream>
 #include <thread>
 
 #include "learn/data/dataset.h"
@@ -13,7 +12,8 @@
 #include "odis/models/direction_formula.h"
 #include "odis/models/direction_network.h"
 #include "odis_version.h"
-#include "render/files/checked_stream.h"
+#include "render/files/read_json.h"
+#include "render/files/replace_file.h"
 
 namespace odis::learn {
 
@@ -64,20 +64,32 @@ class Training {
   bool first() const { return m_processes.rank == 0; }
   std::string checkpointPath() const { return m_folder + "/checkpoint"; }
 
+  // What a training's config.json says; null if it is damaged.
+  static nlohmann::json configIn(const std::string& path) {
+    try {
+      const auto json = render::readJson<nlohmann::json>(path);
+      return json.is_object() ? json.value("config", nlohmann::json()) : nlohmann::json();
+    } catch (const render::ReadError&) {
+      return {};
+    }
+  }
+
   // The folder is this training's, or nobody's yet.
   void claimFolder() {
-    fs::create_directories(m_folder);
+    std::error_code error;
+    fs::create_directories(m_folder, error);
+    if (error)
+      throw render::WriteError(fmt::format("cannot make the folder \"{}\": {}", m_folder, error.message()));
+    for (const char* name : {"losses.csv", "validation.csv", "events.out.tfevents.odis", "curves.png",
+                             "odis.weights", "checkpoint"})
+      render::checkOutput(m_folder + "/" + name);
     const std::string path = m_folder + "/config.json";
     const nlohmann::ordered_json mine = toJson(m_config);
-    std::ifstream stream(path);
-    if (stream) {
-      const nlohmann::json theirs = nlohmann::json::parse(stream, nullptr, false);
-      if (!theirs.is_object() || theirs.value("config", nlohmann::json()) != nlohmann::json(mine))
-        throw TrainError(
-            fmt::format("\"{}\" is of a training with another configuration; expected an empty folder or the "
-                        "same configuration",
-                        path));
-    }
+    if (fs::exists(path) && configIn(path) != nlohmann::json(mine))
+      throw TrainError(
+          fmt::format("\"{}\" is of a training with another configuration; expected an empty folder or the "
+                      "same configuration",
+                      path));
     render::writeFile(path, nlohmann::ordered_json{{"software", "ODIS " ODIS_VERSION_STRING},
                                                    {"processes", m_processes.count},
                                                    {"device", m_learner->device()},

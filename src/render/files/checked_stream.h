@@ -1,56 +1,41 @@
 // A file to be written whose failures don't get lost.
 #pragma once
 
-#include <cerrno>
-#include <cstring>
-#include <fstream>
-#include <stdexcept>
+#include <cstdint>
+#include <cstdio>
+#include <memory>
 #include <string>
-#include <string_view>
 
-#include "render/files/replace_file.h"
+#include "render/files/output_path.h"
 
 namespace odis::render {
 
-// Throws std::runtime_error with the system's reason.
+// All throw std::runtime_error with the system's reason.
 class CheckedStream {
  public:
-  explicit CheckedStream(const std::string& path) : m_stream(path, std::ios::binary) { check(); }
+  // Makes the file, or empties it.
+  explicit CheckedStream(const std::string& path);
+  // For what can't be sought in, a pipe or a device: all is kept in memory until close() hands it over, so
+  // that who reads there never gets a part only.
+  explicit CheckedStream(OutputPath output) : m_output(std::move(output)) {}
 
-  void write(const char* bytes, std::streamsize count) {
-    m_stream.write(bytes, count);
-    check();
-  }
-  uint64_t tell() { return uint64_t(std::streamoff(m_stream.tellp())); }
-  void seek(uint64_t at) {
-    m_stream.seekp(std::streamoff(at));
-    check();
-  }
+  void write(const char* bytes, size_t count);
+  uint64_t tell();
+  void seek(uint64_t at);
   // To be called at the end: a full disk may show only now. Throws also if an earlier failure was ignored.
-  void close() {
-    m_stream.close();
-    check();
-  }
+  void close();
 
  private:
-  void check() {
-    if (m_stream) return;
-    // What comes after a failure does not know its reason any more.
-    if (m_reason.empty()) m_reason = errno != 0 ? std::strerror(errno) : "it can't be written";
-    throw std::runtime_error(m_reason);
-  }
+  struct Close {
+    void operator()(std::FILE* file) const { std::fclose(file); }
+  };
+  void check(bool success);
 
-  std::ofstream m_stream;
+  std::unique_ptr<std::FILE, Close> m_file;  // none: in memory
+  OutputPath m_output;
+  std::string m_bytes;
+  size_t m_at = 0;
   std::string m_reason;
 };
-
-// The whole file, under its name only once it is complete. Throws WriteError.
-inline void writeFile(const std::string& path, std::string_view bytes) {
-  replaceFile(path, [&](const std::string& temporary) {
-    CheckedStream stream(temporary);
-    stream.write(bytes.data(), std::streamsize(bytes.size()));
-    stream.close();
-  });
-}
 
 }  // namespace odis::render

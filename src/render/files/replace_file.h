@@ -1,46 +1,26 @@
 // Writing a file so that its name shows either the old content or the new one, never a half.
 #pragma once
 
-#include <unistd.h>
-
-#include <atomic>
-#include <filesystem>
-#include <new>
-#include <stdexcept>
+#include <functional>
 #include <string>
+#include <string_view>
+
+#include "render/files/checked_stream.h"
+#include "render/files/output_path.h"
 
 namespace odis::render {
 
-// An output that cannot be written.
-class WriteError : public std::runtime_error {
- public:
-  using std::runtime_error::runtime_error;
-};
-
 // Tells this machine from others that share a file system.
-inline std::string hostName() {
-  char name[256] = "";
-  return gethostname(name, sizeof(name) - 1) == 0 && *name ? name : "unnamed";
-}
+std::string hostName();
 
-// Calls write(temporaryName) and renames what it wrote to `path`; removes it if that fails. Throws WriteError
-// with path and reason.
-template <class Write>
-void replaceFile(const std::string& path, Write&& write) {
-  static std::atomic<unsigned> counter{0};
-  const std::string temporary =
-      path + ".part-" + hostName() + "-" + std::to_string(getpid()) + "-" + std::to_string(counter++);
-  std::error_code ignored;
-  try {
-    write(temporary);
-    std::filesystem::rename(temporary, path);
-  } catch (const std::bad_alloc&) {
-    std::filesystem::remove(temporary, ignored);
-    throw;
-  } catch (const std::exception& e) {
-    std::filesystem::remove(temporary, ignored);
-    throw WriteError("cannot write \"" + path + "\": " + e.what());
-  }
-}
+// Calls write(stream) for a temporary file beside `path` and renames that to `path`; removes it if anything
+// fails. Symbolic links are followed, and the file keeps its permissions. What is there and no regular file,
+// a pipe or a device, is written into. Throws WriteError with path and reason.
+void replaceFile(const std::string& path, const std::function<void(CheckedStream&)>& write);
+// The same of bytes.
+void writeFile(const std::string& path, std::string_view bytes);
+
+// Throws WriteError, as far as can be told before anything is written, if replaceFile would.
+OutputPath checkOutput(const std::string& path);
 
 }  // namespace odis::render

@@ -7,7 +7,7 @@
 
 namespace odis::render {
 
-// Throws std::runtime_error with the reason if it is no file, empty, larger than 2 GiB or can't be read.
+// Throws ReadError if it is no regular file, empty, larger than 2 GiB or can't be read.
 std::vector<uint8_t> readImageBytes(const std::string& path);
 
 }  // namespace odis::render

@@ -9,7 +9,6 @@
 
 #include <stdexcept>
 
-#include "render/files/checked_stream.h"
 #include "render/files/replace_file.h"
 #include "render/image/limits.h"
 #include "render/image/write.h"
@@ -31,22 +30,21 @@ std::vector<half> toHalf(const float* data, size_t count) {
 // good one.
 class ExrStream final : public Imf::OStream {
  public:
-  explicit ExrStream(const std::string& path) : OStream(path.c_str()), m_stream(path) {}
+  explicit ExrStream(CheckedStream& stream) : OStream("image"), m_stream(stream) {}
 
-  void write(const char bytes[], int count) override { m_stream.write(bytes, count); }
+  void write(const char bytes[], int count) override { m_stream.write(bytes, size_t(count)); }
   uint64_t tellp() override { return m_stream.tell(); }
   void seekp(uint64_t at) override { m_stream.seek(at); }
-  void close() { m_stream.close(); }
 
  private:
-  CheckedStream m_stream;
+  CheckedStream& m_stream;
 };
 
 }  // namespace
 
 void writeExr(const std::string& path, const ImageWindow& window, const std::vector<ImageChannel>& channels,
               const std::map<std::string, std::string>& metadata) {
-  replaceFile(path, [&](const std::string& temporary) {
+  replaceFile(path, [&](CheckedStream& target) {
     if (window.width < 1 || window.height < 1 || window.width > kMaxImageSide ||
         window.height > kMaxImageSide || window.fullWidth < 1 || window.fullHeight < 1)
       throw std::runtime_error(fmt::format("an image cannot have {} x {} of {} x {} pixels", window.width,
@@ -75,13 +73,10 @@ void writeExr(const std::string& path, const ImageWindow& window, const std::vec
       }
       frame.insert(channel.name, Imf::Slice::Make(type, data, origin, window.width, window.height));
     }
-    ExrStream stream(temporary);
-    {
-      Imf::OutputFile file(stream, header);
-      file.setFrameBuffer(frame);
-      file.writePixels(window.height);
-    }  // here the table of offsets is written
-    stream.close();
+    ExrStream stream(target);
+    Imf::OutputFile file(stream, header);
+    file.setFrameBuffer(frame);
+    file.writePixels(window.height);
   });
 }
 

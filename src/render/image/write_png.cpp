@@ -4,7 +4,6 @@
 #include <cstdint>
 #include <stdexcept>
 
-#include "render/files/checked_stream.h"
 #include "render/files/replace_file.h"
 #include "render/image/limits.h"
 #include "render/image/tonemap.h"
@@ -24,7 +23,7 @@ std::string encodePng(int width, int height, int channels, const uint8_t* sample
 
 void writePng(const std::string& path, int width, int height, const Rgb* pixels, float exposure,
               ToneMap toneMap) {
-  replaceFile(path, [&](const std::string& temporary) {
+  replaceFile(path, [&](CheckedStream& stream) {
     if (width < 1 || height < 1 || width > kMaxImageSide || height > kMaxImageSide)
       throw std::runtime_error(fmt::format("an image cannot have {} x {} pixels", width, height));
     const size_t count = size_t(width) * size_t(height);
@@ -37,9 +36,7 @@ void writePng(const std::string& path, int width, int height, const Rgb* pixels,
       }
 
     const std::string encoded = encodePng(width, height, 3, bytes.data());
-    CheckedStream stream(temporary);
-    stream.write(encoded.data(), std::streamsize(encoded.size()));
-    stream.close();
+    stream.write(encoded.data(), encoded.size());
   });
 }
 

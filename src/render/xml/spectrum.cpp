@@ -1,7 +1,8 @@
 #include "render/xml/spectrum.h"
 
-#include <fstream>
+#include <sstream>
 
+#include "render/files/input_file.h"
 #include "render/xml/element.h"
 
 namespace odis::render {
@@ -109,8 +110,12 @@ std::vector<SpectrumSample> parseSpectrum(const std::string& text, const SourceL
 }
 
 std::vector<SpectrumSample> readSpectrumFile(const std::string& path, const SourceLocation& at) {
-  std::ifstream stream(path);
-  if (!stream) throw SceneError(at, "the spectrum file '" + path + "' can't be read");
+  std::istringstream stream;
+  try {
+    stream.str(readFile(path));
+  } catch (const ReadError& error) {
+    throw SceneError(at, "cannot read the spectrum file '" + path + "': " + error.what());
+  }
   std::vector<SpectrumSample> samples;
   std::string line;
   for (int number = 1; std::getline(stream, line); ++number) {
