@@ -107,17 +107,20 @@ void Builder::warnUnqueried(const Properties& node) {
            "unknown parameter '" + name + "' of the " + node.tag + " '" + node.type + "' is ignored");
 }
 
-std::string Builder::resolvePath(const std::string& fileName, const SourceLocation& at) const {
+std::string Builder::resolvePath(const std::string& fileName, const SourceLocation& at) {
   namespace fs = std::filesystem;
   // Files written on Windows.
   std::string portable = fileName;
   std::replace(portable.begin(), portable.end(), '\\', '/');
   std::vector<fs::path> folders = {fs::path(at.file).parent_path()};
   folders.insert(folders.end(), m_folders.begin(), m_folders.end());
-  std::error_code error;
   for (const fs::path& folder : folders)
-    for (const std::string& name : {fileName, portable})
-      if (fs::is_regular_file(folder / name, error)) return (folder / name).string();
+    for (const std::string& name : {fileName, portable}) {
+      std::error_code error;
+      if (name.empty() || !fs::exists(fs::symlink_status(folder / name, error))) continue;
+      m_files.push_back((folder / name).string());
+      return m_files.back();
+    }
   throw SceneError(at, "there is no file '" + fileName + "', expected one relative to '" +
                            (folders[0].empty() ? "." : folders[0].string()) + "'");
 }

@@ -37,7 +37,9 @@ class Builder {
 
   // A file named in the scene, relative to the file that `at` names; throws SceneError if there is no such
   // file.
-  std::string resolvePath(const std::string& fileName, const SourceLocation& at) const;
+  std::string resolvePath(const std::string& fileName, const SourceLocation& at);
+  // Those that were resolved.
+  const std::vector<std::string>& files() const { return m_files; }
   void warn(const SourceLocation& at, const std::string& message) { m_warnings.add(at, message); }
   Warnings& warnings() { return m_warnings; }
   // Lists the parameters that no getter has asked for.
@@ -48,7 +50,7 @@ class Builder {
 
  private:
   Warnings& m_warnings;
-  std::vector<std::string> m_folders;
+  std::vector<std::string> m_folders, m_files;
   std::unordered_map<const Properties*, TexturePtr> m_textures;
   std::unordered_map<const Properties*, BsdfPtr> m_bsdfs;
   std::unordered_map<std::string, std::shared_ptr<const Image>> m_images;

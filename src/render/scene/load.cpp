@@ -117,6 +117,8 @@ std::unique_ptr<Scene> Scene::load(const std::string& path, const LoadOptions& o
     warnings.add({path}, "the scene has no sensor, all of it is shown from its +z side");
     scene->setSensor(defaultSensor(scene->bounds(), resolution));
   }
+  scene->m_files = parsed.files;
+  scene->m_files.insert(scene->m_files.end(), builder.files().begin(), builder.files().end());
   if (scene->shapes().empty() && scene->instances().empty()) warnings.add({path}, "the scene has no shapes");
   if (scene->emitters().empty()) warnings.add({path}, "the scene has no emitter, its image is black");
   return scene;

@@ -85,6 +85,8 @@ class Scene {
   // All light sources by their index: surface emitters of shapes, delta lights, environments.
   const std::vector<const Emitter*>& emitters() const { return m_emitters; }
   const std::vector<const EnvironmentEmitter*>& environments() const { return m_environments; }
+  // What it was read from: scene files, meshes, textures, spectra.
+  const std::vector<std::string>& files() const { return m_files; }
   uint64_t bytes() const;  // memory of geometry, acceleration structure and textures
 
   // For building scenes in code (tests, the loader): add, then finish() once.
@@ -106,6 +108,7 @@ class Scene {
   FilmSettings m_film;
   IntegratorSettings m_integrator;
   SceneBounds m_bounds;
+  std::vector<std::string> m_files;
   std::unique_ptr<Intersector> m_intersector;
 };
 

@@ -26,11 +26,15 @@ struct SourceLocation {
   }
 };
 
+// Texts hold what files hold: control characters would break the line or command the terminal, and a name may
+// be megabytes long.
+std::string onOneLine(std::string text);
+
 // Input that cannot be drawn. what() is "file:line:column: message".
 class SceneError : public std::runtime_error {
  public:
   SceneError(const SourceLocation& at, const std::string& message)
-      : std::runtime_error(at.file.empty() ? message : at.text() + ": " + message) {}
+      : std::runtime_error(onOneLine(at.file.empty() ? message : at.text() + ": " + message)) {}
 };
 
 // A size or crop that the caller asks for and no image of the scene can have.
@@ -43,7 +47,7 @@ class OptionError : public std::runtime_error {
 class Warnings {
  public:
   void add(const SourceLocation& at, const std::string& message) {
-    std::string text = at.file.empty() ? message : at.text() + ": " + message;
+    std::string text = onOneLine(at.file.empty() ? message : at.text() + ": " + message);
     if (m_known.insert(text).second) m_texts.push_back(std::move(text));
   }
   const std::vector<std::string>& texts() const { return m_texts; }

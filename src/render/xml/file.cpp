@@ -2,35 +2,46 @@
 
 #include <algorithm>
 #include <cctype>
-#include <filesystem>
-#include <fstream>
+
+#include "render/files/input_file.h"
 
 namespace odis::render {
 
 std::string XmlFile::readText(const std::string& path, const SourceLocation& at) {
-  std::error_code error;
-  if (!std::filesystem::is_regular_file(path, error))
-    throw SceneError(at, "there is no file '" + path + "', expected a scene file");
-  std::ifstream stream(path, std::ios::binary);
-  std::string text((std::istreambuf_iterator<char>(stream)), std::istreambuf_iterator<char>());
-  if (!stream.good() && !stream.eof()) throw SceneError(at, "the file '" + path + "' can't be read");
-  return text;
+  try {
+    return readFile(path);
+  } catch (const ReadError& error) {
+    throw SceneError(at, "cannot read the scene file '" + path + "': " + error.what());
+  }
+}
+
+// The first characters of XML are ASCII: in UTF-16 and UTF-32 one of two bytes is zero.
+static void rejectOtherEncodings(const std::string& path, const std::string& text) {
+  const std::string start = text.substr(0, 2);
+  if (start == "\xff\xfe" || start == "\xfe\xff" || start.find('\0') != std::string::npos)
+    throw SceneError({path, 1, 1}, "this is UTF-16 or another encoding of several bytes, expected UTF-8");
 }
 
 XmlFile::XmlFile(std::string path, std::string text) : m_path(std::move(path)), m_text(std::move(text)) {
+  rejectOtherEncodings(m_path, m_text);
   m_lineStarts.push_back(0);
   for (size_t i = 0; i < m_text.size(); ++i)
     if (m_text[i] == '\n') m_lineStarts.push_back(i + 1);
-  // Text is kept so that stray words between elements can be reported.
-  const pugi::xml_parse_result result =
-      m_document.load_buffer(m_text.data(), m_text.size(), pugi::parse_default, pugi::encoding_utf8);
+  // Text is kept so that stray words between elements, and around the first one, can be reported.
+  const pugi::xml_parse_result result = m_document.load_buffer(
+      m_text.data(), m_text.size(), pugi::parse_default | pugi::parse_fragment, pugi::encoding_utf8);
   if (!result) {
     std::string reason = result.description();
     if (!reason.empty()) reason[0] = char(std::tolower(static_cast<unsigned char>(reason[0])));
     throw SceneError(locate(size_t(std::max<ptrdiff_t>(result.offset, 0))),
                      "this is not well-formed XML: " + reason);
   }
+  rejectText(m_document);
   if (!root()) throw SceneError({m_path, 1, 1}, "found no element, expected <scene version=\"...\">");
+  for (pugi::xml_node other = root().next_sibling(); other; other = other.next_sibling())
+    if (other.type() == pugi::node_element)
+      throw SceneError(locate(other), "found <" + std::string(other.name()) + "> after the end of <" +
+                                          root().name() + ">, expected one element around the whole file");
 }
 
 SourceLocation XmlFile::locate(size_t offset) const {

@@ -9,6 +9,8 @@ namespace {
 
 constexpr int kMaxDepth = 64;        // of elements, those of including files counted
 constexpr int kMaxIncludes = 10000;  // files including files could multiply without end
+constexpr size_t kMaxRepeatedBytes = 16u << 20;
+constexpr size_t kMaxFolders = 1000;  // each file is looked for in all of them
 
 const std::vector<std::string>& objectTags() {
   static const std::vector<std::string> tags = {"bsdf",       "emitter", "film",    "integrator", "medium",
@@ -51,6 +53,7 @@ XmlElement XmlParser::element(const Place& place, const pugi::xml_node& node) {
 ParsedScene XmlParser::parse(const XmlFile& file) {
   namespace fs = std::filesystem;
   m_folders.push_back(fs::path(file.path()).parent_path().string());
+  m_files.push_back(file.path());
   std::error_code ignored;
   m_openFiles.push_back(fs::weakly_canonical(file.path(), ignored).string());
   const Place place{file};
@@ -70,7 +73,7 @@ ParsedScene XmlParser::parse(const XmlFile& file) {
   m_references.resolve(*root);
   for (const std::string& name : m_variables.unused())
     m_warnings.add({file.path()}, "the scene has no parameter '" + name + "', -D " + name + " is ignored");
-  return {root, m_folders};
+  return {root, m_folders, m_files};
 }
 
 void XmlParser::parseChildren(const Place& place, const pugi::xml_node& node, Properties& owner) {
@@ -120,6 +123,8 @@ bool XmlParser::parseStructure(const Place& place, const XmlElement& e, Properti
     std::error_code error;
     if (!fs::is_directory(folder, error))
       throw SceneError(e.at, "found the path '" + e.require("value") + "', expected a folder that exists");
+    if (m_folders.size() >= kMaxFolders)
+      throw SceneError(e.at, "found more than " + std::to_string(kMaxFolders) + " paths");
     m_folders.push_back(folder.string());
   } else if (e.tag == "include") {
     parseInclude(place, e, owner);
@@ -139,7 +144,11 @@ void XmlParser::parseInclude(const Place& place, const XmlElement& e, Properties
   if (++m_includeCount > kMaxIncludes)
     throw SceneError(e.at, "found more than " + std::to_string(kMaxIncludes) + " included files");
   m_openFiles.push_back(canonical);
-  const XmlFile file(path, XmlFile::readText(path, e.at));
+  std::string text = XmlFile::readText(path, e.at);
+  if (!m_included.insert(canonical).second) m_repeatedBytes += text.size();
+  if (m_repeatedBytes > kMaxRepeatedBytes)
+    throw SceneError(e.at, "found files that are included again, of more than 16 MiB in all");
+  const XmlFile file(path, std::move(text));
   const Place inner{file, place.depth + 1, place.emitter};
   if (inner.depth >= kMaxDepth)
     throw SceneError(e.at, "files include each other more than " + std::to_string(kMaxDepth) + " deep");
@@ -175,13 +184,16 @@ void XmlParser::addParameter(Properties& owner, const XmlElement& e, PropertyVal
                                entry->second.location.text() + ")");
 }
 
-std::string XmlParser::findFile(const Place& place, const std::string& name, const SourceLocation& at) const {
+std::string XmlParser::findFile(const Place& place, const std::string& name, const SourceLocation& at) {
   namespace fs = std::filesystem;
   std::vector<fs::path> folders = {fs::path(place.file.path()).parent_path()};
   folders.insert(folders.end(), m_folders.begin(), m_folders.end());
-  std::error_code error;
-  for (const fs::path& folder : folders)
-    if (fs::is_regular_file(folder / name, error)) return (folder / name).string();
+  for (const fs::path& folder : folders) {
+    std::error_code error;
+    if (name.empty() || !fs::exists(fs::symlink_status(folder / name, error))) continue;
+    m_files.push_back((folder / name).string());
+    return m_files.back();
+  }
   throw SceneError(at, "there is no file '" + name + "', expected one relative to the folder of this file");
 }
 

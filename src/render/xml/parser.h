@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <set>
 #include <string>
 #include <unordered_map>
 #include <vector>
@@ -46,14 +47,17 @@ class XmlParser {
   PropertyValue parseSpectrumObject(const Place& place, const Properties& node);
   Matrix4 parseTransformSteps(const Place& place, const pugi::xml_node& node);
   void addParameter(Properties& owner, const XmlElement& e, PropertyValue value);
-  std::string findFile(const Place& place, const std::string& name, const SourceLocation& at) const;
+  std::string findFile(const Place& place, const std::string& name, const SourceLocation& at);
 
   Variables m_variables;
   Warnings& m_warnings;
   XmlReferences m_references;
   std::vector<std::string> m_folders;
+  std::vector<std::string> m_files;      // that were read
   std::vector<std::string> m_openFiles;  // for cyclic includes
+  std::set<std::string> m_included;
   int m_includeCount = 0;
+  size_t m_repeatedBytes = 0;  // of files that were included before
 };
 
 }  // namespace odis::render

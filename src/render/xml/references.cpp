@@ -1,6 +1,7 @@
 #include "render/xml/references.h"
 
 #include <algorithm>
+#include <utility>
 
 #include "render/xml/names.h"
 
@@ -42,11 +43,18 @@ void XmlReferences::refer(Properties& owner, const std::string& id, const Source
   m_references.push_back({&owner, owner.children.size() - 1, id, at});
 }
 
-std::shared_ptr<Properties> XmlReferences::find(const std::string& name, const SourceLocation& at) const {
+std::shared_ptr<Properties> XmlReferences::find(const std::string& name, const SourceLocation& at) {
   std::string id = name;
   for (size_t step = 0; step <= m_aliases.size(); ++step) {
     const auto node = m_nodes.find(id);
-    if (node != m_nodes.end()) return node->second;
+    if (node != m_nodes.end()) {
+      // However long a chain of aliases is, it is followed once.
+      for (std::string passed = name; passed != id;) {
+        std::string& next = m_aliases.at(passed).id;
+        passed = std::exchange(next, id);
+      }
+      return node->second;
+    }
     const auto other = m_aliases.find(id);
     if (other == m_aliases.end()) {
       std::vector<std::string> known;

@@ -36,7 +36,7 @@ class XmlReferences {
   };
 
   void rejectTaken(const std::string& id, const SourceLocation& at) const;
-  std::shared_ptr<Properties> find(const std::string& name, const SourceLocation& at) const;
+  std::shared_ptr<Properties> find(const std::string& name, const SourceLocation& at);
   // What hangs from an element once references are followed.
   struct Extent {
     int height = 0;  // levels below it

@@ -39,13 +39,14 @@ std::string Variables::substitute(const std::string& text, const SourceLocation&
       const size_t close = text.find('}', i);
       if (close == std::string::npos)
         throw SceneError(at, "found '${' in '" + text + "', expected a '}' after it");
+      if (close == i + 2) throw SceneError(at, "found '${}', expected a name between the braces");
       result += value(text.substr(i + 2, close - i - 2), at);
       i = close + 1;
     } else if (isNameCharacter(text[i + 1])) {
       size_t end = i + 1;
       while (end < text.size() && isNameCharacter(text[end])) ++end;
       std::string name = text.substr(i + 1, end - i - 1);
-      size_t length = name.size();
+      size_t length = std::min(name.size(), m_longestName);
       while (length > 0 && !m_values.count(name.substr(0, length))) --length;
       if (length > 0) name.resize(length);
       result += value(name, at);

@@ -17,6 +17,7 @@ namespace odis::render {
 struct ParsedScene {
   std::shared_ptr<const Properties> root;  // its tag is "scene"
   std::vector<std::string> folders;  // where files are looked for: the scene's folder, then those of <path>
+  std::vector<std::string> files;    // that were read: the scene's own, included ones, spectra
 };
 
 // `defines` come before the <default>s of the file. Throws SceneError.
