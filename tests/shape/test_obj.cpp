@@ -68,7 +68,8 @@ TEST(Obj, NamesTheLineOfAnError) {
   EXPECT_NE(objFailure(vertices + "f 0 1 2\n").find("mesh.obj:4"), std::string::npos);
   EXPECT_NE(objFailure(vertices + "f 1/1 2/1 3/1\n").find("texture coordinate 1"), std::string::npos);
   EXPECT_NE(objFailure(vertices + "f 1//2 2//1 3//1\n").find("normal 2"), std::string::npos);
-  EXPECT_NE(objFailure("v 0 zero 0\n").find("mesh.obj:1: expected a number"), std::string::npos);
+  EXPECT_NE(objFailure("v 0 zero 0\n").find("mesh.obj:1: found \"zero\", expected a number"),
+            std::string::npos);
   EXPECT_NE(objFailure(vertices + "f 1 2 99999999999999999999\n").find("mesh.obj:4"), std::string::npos);
   EXPECT_NE(objFailure(vertices + "f a b c\n").find("mesh.obj:4"), std::string::npos);
 }

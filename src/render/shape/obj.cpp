@@ -11,6 +11,9 @@
 // ones are computed.
 #include <fmt/format.h>
 
+#include <array>
+#include <map>
+
 #include "render/shape/factories.h"
 #include "render/shape/file_bytes.h"
 #include "render/shape/mesh_files.h"
@@ -21,6 +24,8 @@ namespace odis::render {
 namespace {
 
 constexpr uint32_t kNone = UINT32_MAX;
+// Vertices of one position that are looked through one by one: most meshes have no more.
+constexpr int kMostLinked = 16;
 
 class ObjReader {
  public:
@@ -74,7 +79,7 @@ class ObjReader {
     for (unsigned i = 0; i < V::dimensions(); ++i) {
       m_cursor.skipBlanks();
       if (!m_cursor.number(v[i])) {
-        if (i < required) fail("expected a number");
+        if (i < required) fail("found " + m_cursor.found() + ", expected a number");
         break;
       }
     }
@@ -111,19 +116,29 @@ class ObjReader {
   // Indices count from one; negative ones count backwards from the last element so far.
   uint32_t readIndex(size_t count, const char* what) {
     int64_t index;
-    if (!m_cursor.number(index)) fail(fmt::format("expected the index of a {}", what));
+    if (!m_cursor.number(index))
+      fail(fmt::format("found {}, expected the index of a {}", m_cursor.found(), what));
     const int64_t resolved = index > 0 ? index - 1 : int64_t(count) + index;
     if (index == 0 || resolved < 0 || resolved >= int64_t(count))
-      fail(fmt::format("the face refers to {} {}, but only {} are defined so far", what, index, count));
+      fail(index == 0
+               ? fmt::format("the face refers to {} 0, expected numbers from 1 on, or negative ones", what)
+               : fmt::format("the face refers to {} {}, but only {} are defined so far", what, index, count));
     return uint32_t(resolved);
   }
 
   uint32_t findVertex(uint32_t position, uint32_t uv, uint32_t normal) {
-    for (uint32_t i = m_firstVertex[position]; i != kNone; i = m_vertices[i].next)
-      if (m_vertices[i].uv == uv && m_vertices[i].normal == normal) return i;
     const auto index = uint32_t(m_vertices.size());
-    m_vertices.push_back({uv, normal, m_firstVertex[position]});
-    m_firstVertex[position] = index;
+    uint32_t* link = &m_firstVertex[position];
+    int linked = 0;
+    for (; *link != kNone && linked < kMostLinked; link = &m_vertices[*link].next, ++linked)
+      if (m_vertices[*link].uv == uv && m_vertices[*link].normal == normal) return *link;
+    if (linked < kMostLinked) {
+      *link = index;
+    } else {
+      const auto [known, added] = m_crowded.try_emplace({position, uv, normal}, index);
+      if (!added) return known->second;
+    }
+    m_vertices.push_back({uv, normal, kNone});
     m_data.positions.push_back(m_positions[position]);
     if (uv != kNone) {
       m_hasUvs = true;
@@ -148,6 +163,8 @@ class ObjReader {
   std::vector<Vec2> m_uvs;
   std::vector<Vertex> m_vertices;       // one for each of m_data.positions
   std::vector<uint32_t> m_firstVertex;  // one for each of m_positions
+  // By position, texture coordinate and normal, those that don't fit in the chain of their position.
+  std::map<std::array<uint32_t, 3>, uint32_t> m_crowded;
   MeshData m_data;
   bool m_hasUvs = false, m_hasNormals = false;
   uint64_t m_degenerate = 0;

@@ -40,6 +40,11 @@ std::optional<Scalar> scalarNamed(std::string_view name) {
   return {};
 }
 
+uint64_t bytesOf(Scalar scalar) {
+  constexpr uint64_t bytes[] = {1, 1, 2, 2, 4, 4, 4, 8};
+  return bytes[size_t(scalar)];
+}
+
 // What a property of a vertex is stored as.
 enum class Role { none, x, y, z, nx, ny, nz, u, v };
 
@@ -80,8 +85,8 @@ class PlyReader {
     m_offset = size_t(m_cursor.position() - m_bytes.data());
     for (const Element& element : m_elements) {
       if (element.properties.empty()) continue;
-      // Each row takes at least a byte, so this bounds what an absurd count can make us allocate.
-      if (element.count > remaining())
+      // This bounds what an absurd count can make us allocate.
+      if (element.count > (remaining() + 1) / leastRowBytes(element))
         fail(fmt::format("{} elements \"{}\" are announced, but only {} bytes follow", element.count,
                          element.name, remaining()));
       if (element.name == "vertex")
@@ -99,8 +104,17 @@ class PlyReader {
   }
 
  private:
+  // What a row takes at least: of a list its count, in text a digit and a blank for each number.
+  uint64_t leastRowBytes(const Element& element) const {
+    uint64_t bytes = 0;
+    for (const Property& property : element.properties)
+      bytes += m_encoding == Encoding::ascii ? 2 : bytesOf(property.countType.value_or(property.type));
+    return bytes;
+  }
+
   void readHeader() {
-    if (m_cursor.takeLine() != "ply") fail("not a PLY file: expected \"ply\" on the first line");
+    if (m_cursor.word() != "ply") fail("not a PLY file: expected \"ply\" on the first line");
+    m_cursor.takeLine();
     bool hasFormat = false;
     for (;;) {
       if (m_cursor.atEnd()) fail("the header has no end_header");
@@ -112,7 +126,8 @@ class PlyReader {
         Element& element = m_elements.emplace_back();
         element.name = m_cursor.word();
         m_cursor.skipBlanks();
-        if (!m_cursor.number(element.count)) fail("expected the count of an element");
+        if (!m_cursor.number(element.count))
+          fail(fmt::format("found {}, expected the count of an element", m_cursor.found()));
       } else if (keyword == "property") {
         readProperty();
       } else if (keyword == "end_header") {
@@ -142,16 +157,22 @@ class PlyReader {
     Property property;
     std::string_view type = m_cursor.word();
     if (type == "list") {
-      property.countType = scalarNamed(m_cursor.word());
-      if (!property.countType) fail("unknown type of a list's count");
+      type = m_cursor.word();
+      property.countType = scalarNamed(type);
+      if (!property.countType) fail(unknownType(type));
       type = m_cursor.word();
     }
     const std::optional<Scalar> scalar = scalarNamed(type);
-    if (!scalar) fail(fmt::format("unknown type \"{}\"", type));
+    if (!scalar) fail(unknownType(type));
     property.type = *scalar;
     property.name = m_cursor.word();
     if (!property.countType) property.role = roleNamed(property.name);
     m_elements.back().properties.push_back(std::move(property));
+  }
+
+  static std::string unknownType(std::string_view type) {
+    return fmt::format("unknown type \"{}\", expected char, uchar, short, ushort, int, uint, float or double",
+                       type);
   }
 
   void readVertices(const Element& element) {
@@ -227,7 +248,7 @@ class PlyReader {
     if (m_encoding == Encoding::ascii) {
       double value;
       m_cursor.skipSpace();
-      if (!m_cursor.number(value)) fail(m_cursor.atEnd() ? "the file ends too early" : "expected a number");
+      if (!m_cursor.number(value)) fail("found " + m_cursor.found() + ", expected a number");
       return value;
     }
     switch (type) {

@@ -70,8 +70,9 @@ class Inflater {
     read(&value, sizeof(T));
     return value;
   }
-  // An upper bound of the decompressed size: deflate shrinks by no more than 1032 to one.
-  uint64_t maxBytes() const { return uint64_t(m_size) * 1032 + 1032; }
+  // An upper bound of the decompressed size. Deflate shrinks zeros by 1032 to one, but no mesh is made of
+  // zeros: those of exporters shrink by less than ten.
+  uint64_t maxBytes() const { return uint64_t(m_size) * 200 + (1u << 20); }
 
  private:
   const SourceLocation& m_at;
@@ -79,17 +80,27 @@ class Inflater {
   z_stream m_stream = {};
 };
 
+// In pieces, so that memory is touched for what the stream holds only, not for all that its header announces.
+template <class T>
+void readElements(Inflater& in, std::vector<T>& target, uint64_t count) {
+  constexpr uint64_t kPiece = 1u << 16;
+  target.reserve(count);
+  while (target.size() < count) {
+    const uint64_t done = target.size(), piece = std::min(kPiece, count - done);
+    target.resize(done + piece);
+    in.read(target.data() + done, piece * sizeof(T));
+  }
+}
+
 template <class V>
 void readVectors(Inflater& in, std::vector<V>& target, uint64_t count, bool isDouble) {
-  target.resize(count);
+  if (!isDouble) return readElements(in, target, count);
   constexpr unsigned n = V::dimensions();
-  if (!isDouble) {
-    in.read(target.data(), count * sizeof(V));
-    return;
-  }
-  for (V& v : target) {
+  target.reserve(count);
+  for (uint64_t vertex = 0; vertex < count; ++vertex) {
     double values[n];
     in.read(values, sizeof(values));
+    V& v = target.emplace_back();
     for (unsigned i = 0; i < n; ++i) v[i] = float(values[i]);
   }
 }
@@ -131,9 +142,11 @@ SerializedMesh readSerialized(const std::string& path, int64_t shapeIndex, const
     }
   const auto vertices = in.read<uint64_t>(), triangles = in.read<uint64_t>();
   const bool isDouble = flags & kDouble;
-  const uint64_t scalar = isDouble ? 8 : 4;
-  if (vertices > UINT32_MAX || vertices > in.maxBytes() / (3 * scalar) ||
-      triangles > in.maxBytes() / sizeof(Triangle))
+  const uint64_t scalars =
+      3u + (flags & kHasNormals ? 3u : 0u) + (flags & kHasUvs ? 2u : 0u) + (flags & kHasColors ? 3u : 0u);
+  const uint64_t vertexBytes = scalars * (isDouble ? 8 : 4);
+  if (vertices > UINT32_MAX || vertices > in.maxBytes() / vertexBytes ||
+      triangles > (in.maxBytes() - vertices * vertexBytes) / sizeof(Triangle))
     throw SceneError(
         inFile, fmt::format("mesh {} announces {} vertices and {} triangles, more than the file can hold",
                             shapeIndex, vertices, triangles));
@@ -147,8 +160,7 @@ SerializedMesh readSerialized(const std::string& path, int64_t shapeIndex, const
     std::vector<Vec3> colors;
     readVectors(in, colors, vertices, isDouble);
   }
-  mesh.data.triangles.resize(triangles);
-  in.read(mesh.data.triangles.data(), triangles * sizeof(Triangle));
+  readElements(in, mesh.data.triangles, triangles);
   return mesh;
 }
 

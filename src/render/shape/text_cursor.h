@@ -3,6 +3,7 @@
 
 #include <charconv>
 #include <limits>
+#include <string>
 #include <string_view>
 #include <type_traits>
 
@@ -55,6 +56,14 @@ class TextCursor {
     const char* begin = m_at;
     while (m_at < m_end && *m_at != ' ' && *m_at != '\t' && *m_at != '\n' && *m_at != '\r') ++m_at;
     return {begin, size_t(m_at - begin)};
+  }
+  // What stands here, for messages; does not move.
+  std::string found() const {
+    constexpr size_t kLongest = 40;
+    TextCursor ahead = *this;
+    const std::string_view text = ahead.word();
+    if (text.empty()) return ahead.atEnd() ? "the end of the file" : "the end of the line";
+    return "\"" + std::string(text.substr(0, kLongest)) + (text.size() > kLongest ? "..." : "") + "\"";
   }
   // Reads a number here; false if there is none. What is too small for T is zero, what is too large infinite.
   template <class T>
