@@ -56,8 +56,13 @@ class HeaderCheck {
   explicit HeaderCheck(const std::vector<uint8_t>& file) : m_file(file) {}
 
   void run() {
-    take(4);  // the magic number
+    constexpr uint32_t kMagic = 20000630, kVersionMask = 0xff, kVersion = 2;
+    if (m_file.size() < 4 || number<uint32_t>(take(4)) != kMagic)
+      throw std::runtime_error("it is no OpenEXR file");
     const auto version = number<uint32_t>(take(4));
+    if ((version & kVersionMask) != kVersion)
+      throw std::runtime_error("it is of version " + std::to_string(version & kVersionMask) +
+                               " of OpenEXR, expected 2");
     do checkHeader((version & kTiled) != 0);
     while ((version & kMultiPart) != 0 && m_at < m_file.size() && m_file[m_at] != 0);
   }
@@ -65,6 +70,7 @@ class HeaderCheck {
  private:
   // Attributes, each a name, a type, a length and so many bytes, up to an empty name.
   void checkHeader(bool tiled) {
+    bool hasWindow = false;
     uint64_t width = 0, height = 0, tileWidth = 0, tileHeight = 0, rows = 1, channels = 0;
     for (std::string name = text(); !name.empty(); name = text()) {
       const std::string type = text();
@@ -72,6 +78,7 @@ class HeaderCheck {
       const uint8_t* value = take(length);
       checkLength(type, value, length);
       if (name == "dataWindow" && length == 16) {
+        hasWindow = true;
         width = side(number<int32_t>(value), number<int32_t>(value + 8));
         height = side(number<int32_t>(value + 4), number<int32_t>(value + 12));
       } else if (name == "tiles" && length == 9) {
@@ -85,6 +92,7 @@ class HeaderCheck {
         channelListLength(value, length, &channels);
       }
     }
+    if (!hasWindow) throw std::runtime_error("its header has no dataWindow");
     checkImageSize(int(width), int(height));
     if (width * height * channels > kMaxSamples)
       throw std::runtime_error("it has " + std::to_string(channels) + " channels of " +

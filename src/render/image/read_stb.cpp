@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 #include <stb_image.h>
 
+#include <cstdlib>
 #include <cstring>
 #include <stdexcept>
 
@@ -63,6 +64,40 @@ void checkPngChunks(const std::vector<uint8_t>& file) {
   }
 }
 
+// Of an image without pixels stb only says that it knows no such type.
+void checkPngSize(const std::vector<uint8_t>& file) {
+  constexpr size_t kWidth = 16, kHeight = 20, kEnd = 24;
+  if (file.size() < kEnd) throw std::runtime_error("the PNG file ends early");
+  const auto side = [&](size_t at) {
+    const uint64_t number = uint64_t(file[at]) << 24 | file[at + 1] << 16 | file[at + 2] << 8 | file[at + 3];
+    return int(std::min(number, uint64_t(INT32_MAX)));
+  };
+  checkImageSize(side(kWidth), side(kHeight));
+}
+
+// Where BMP and TGA hold pixels as they are, stb would take those that are missing for black.
+void checkPlainSize(const std::vector<uint8_t>& file) {
+  const auto number = [&](size_t at, size_t bytes) {
+    uint64_t value = 0;
+    for (size_t i = 0; i < bytes; ++i) value |= uint64_t(file[at + i]) << (8 * i);
+    return value;
+  };
+  constexpr size_t kBmpHeader = 30, kTgaHeader = 18;
+  uint64_t expected = 0;
+  if (file.size() >= kBmpHeader && file[0] == 'B' && file[1] == 'M') {
+    const bool old = number(14, 4) == 12;  // the header of OS/2, with shorter numbers
+    const uint64_t width = old ? number(18, 2) : number(18, 4), bits = number(old ? 24 : 28, 2);
+    const auto height = old ? int64_t(number(20, 2)) : int64_t(int32_t(number(22, 4)));
+    expected = number(10, 4) + (width * bits + 31) / 32 * 4 * uint64_t(std::abs(height));
+  } else if (file.size() >= kTgaHeader && file[2] >= 1 && file[2] <= 3) {
+    const uint64_t palette = file[1] == 1 ? number(5, 2) * ((file[7] + 7u) / 8) : 0;
+    expected = kTgaHeader + file[0] + palette + number(12, 2) * number(14, 2) * ((file[16] + 7u) / 8);
+  }
+  if (file.size() < expected)
+    throw std::runtime_error(
+        fmt::format("it has {} bytes, expected {} for all its pixels", file.size(), expected));
+}
+
 // How many pixels the file can stand for: in PNG deflate shrinks by no more than 1032 to one and a byte has 8
 // pixels; TGA takes a byte for each run of 128. stb would fill a larger image with whatever comes after the
 // end of the file.
@@ -73,13 +108,21 @@ uint64_t maxPixels(const std::vector<uint8_t>& file) {
 }  // namespace
 
 std::shared_ptr<Image> Image::readStbPixels(const std::vector<uint8_t>& file, bool srgb) {
-  if (isPng(file)) checkPngChunks(file);
+  if (isPng(file)) {
+    checkPngChunks(file);
+    checkPngSize(file);
+  } else {
+    checkPlainSize(file);
+  }
   const int size = int(file.size());
   int width = 0, height = 0, channels = 0;
-  const auto fail = [] {
+  const auto fail = [&] {
+    // Of a header that it does not like stb says that it knows no such type.
     const char* reason = stbi_failure_reason();
-    throw std::runtime_error(fmt::format("not a readable PNG, JPEG, TGA, BMP, HDR or EXR file ({})",
-                                         reason ? reason : "unknown reason"));
+    const bool said = reason && std::strcmp(reason, "unknown image type") != 0;
+    throw std::runtime_error(fmt::format(
+        "{}{}", isPng(file) ? "a damaged PNG file" : "not a readable PNG, JPEG, TGA, BMP, HDR or EXR file",
+        said ? fmt::format(" ({})", reason) : ""));
   };
   // The header first, so that a damaged one does not make stb allocate what it promises.
   if (!stbi_info_from_memory(file.data(), size, &width, &height, &channels)) fail();
