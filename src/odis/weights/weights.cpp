@@ -1,8 +1,8 @@
 #include "odis/weights/weights.h"
 
 #include <cstring>
+#include <filesystem>
 #include <fstream>
-#include <sstream>
 
 namespace odis {
 
@@ -15,6 +15,7 @@ constexpr std::string_view kMagic = "ODISNETW";
 constexpr uint32_t kFormat = 1;
 constexpr size_t kMostDimensions = 4;
 constexpr uint64_t kMostElements = 1u << 24;
+constexpr uintmax_t kMostBytes = 1u << 28;  // of a file; those of today have 10 kB
 
 // As zlib, PNG and gzip have it (polynomial 0xedb88320, reflected).
 uint32_t crc32(std::string_view bytes) {
@@ -107,10 +108,18 @@ Weights Weights::parse(const std::string& path, std::string_view bytes) {
 }
 
 Weights Weights::load(const std::string& path) {
+  // What is no regular file may have no end.
+  std::error_code error;
+  if (!std::filesystem::is_regular_file(path, error))
+    throw WeightsError(path + ": cannot be read, expected a regular file");
   std::ifstream stream(path, std::ios::binary);
-  std::ostringstream bytes;
-  if (!stream || !(bytes << stream.rdbuf())) throw WeightsError(path + ": cannot be read");
-  return parse(path, bytes.view());
+  const uintmax_t size = stream ? std::filesystem::file_size(path, error) : 0;
+  if (size > kMostBytes)
+    throw WeightsError(path + ": has " + std::to_string(size) + " bytes, expected at most " +
+                       std::to_string(kMostBytes));
+  std::string bytes(size, '\0');
+  if (!stream.read(bytes.data(), std::streamsize(size))) throw WeightsError(path + ": cannot be read");
+  return parse(path, bytes);
 }
 
 const Weights& Weights::builtIn() {
