@@ -213,6 +213,7 @@ Canvas previewOf(const std::vector<std::string>& shards, int count) {
       }
     }
   }
+  if (row == 0) throw ShardError(shards.front() + ": there are no targets to draw");
   return canvas;
 }
 

@@ -5,10 +5,10 @@
 #include <algorithm>
 #include <cctype>
 #include <filesystem>
-#include <fstream>
 #include <sstream>
 
 #include "learn/scenes/shrink.h"
+#include "render/files/input_file.h"
 
 namespace odis::learn {
 
@@ -17,6 +17,7 @@ namespace fs = std::filesystem;
 namespace {
 
 // Larger models would make a scene's files large.
+constexpr int kDeepest = 8;  // of folders within each other
 constexpr uintmax_t kMostModelBytes = 400'000;
 
 std::string lower(std::string text) {
@@ -32,9 +33,12 @@ std::vector<std::string> filesIn(const std::string& folder, const char* option,
   std::vector<std::string> result;
   std::string expected;
   for (const char* ending : endings) expected += (expected.empty() ? "" : ", ") + std::string(ending);
-  for (const fs::directory_entry& entry :
-       fs::recursive_directory_iterator(folder, fs::directory_options::follow_directory_symlink)) {
-    if (!entry.is_regular_file() || entry.file_size() > most) continue;
+  fs::recursive_directory_iterator all(folder, fs::directory_options::follow_directory_symlink);
+  for (const fs::directory_entry& entry : all) {
+    std::error_code ignored;
+    // A folder that links lead back to has no end.
+    if (all.depth() > kDeepest) all.disable_recursion_pending();
+    if (!entry.is_regular_file(ignored) || entry.file_size(ignored) > most) continue;
     const std::string ending = lower(entry.path().extension().string());
     if (std::find(endings.begin(), endings.end(), ending) != endings.end())
       result.push_back(fs::relative(entry.path(), folder).generic_string());
@@ -63,7 +67,13 @@ bool isNoColor(const std::string& file) {
 // The lines of catalog.tsv by their file; see scripts/furniture.
 std::map<std::string, FurnitureModel> readCatalog(const fs::path& path) {
   std::map<std::string, FurnitureModel> result;
-  std::ifstream stream(path);
+  if (!fs::exists(path)) return result;
+  std::istringstream stream;
+  try {
+    stream.str(render::readFile(path.string()));
+  } catch (const render::ReadError& error) {
+    throw AssetError(fmt::format("--furniture: cannot read \"{}\": {}", path.string(), error.what()));
+  }
   for (std::string line; std::getline(stream, line);) {
     std::istringstream fields(line);
     FurnitureModel model;

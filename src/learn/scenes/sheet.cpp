@@ -17,6 +17,8 @@ const Rgb kBackground(0.02f), kInk(0.7f);
 }  // namespace
 
 std::vector<std::string> scenesIn(const std::string& folder) {
+  if (!std::filesystem::is_directory(folder))
+    throw render::SceneError({}, "there is no folder \"" + folder + "\", expected one with scenes in it");
   std::vector<std::string> names;
   for (const auto& entry : std::filesystem::directory_iterator(folder))
     if (std::filesystem::exists(entry.path() / "scene.xml") &&
@@ -37,7 +39,7 @@ bool SheetPainter::add(const std::string& folder, const std::string& name, rende
   const std::string path = folder + "/" + name + "/scene.xml";
   render::Warnings warnings;
   const render::FilmSettings film = render::Scene::load(path, {}, warnings)->film();
-  const int height = std::min(m_options.width * film.height / film.width, m_options.width * 3 / 4);
+  const int height = std::clamp(m_options.width * film.height / film.width, 1, m_options.width * 3 / 4);
   render::LoadOptions load;
   load.resolution = render::Vec2i(std::max(1, height * film.width / film.height), height);
   const auto scene = render::Scene::load(path, load, warnings);
