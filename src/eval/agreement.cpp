@@ -14,8 +14,8 @@ using render::Rgb;
 using render::Rgbd;
 
 Estimate readEstimate(const std::string& path) {
-  const ColorImage color = readColor(path);
-  const render::ExrFile file = render::readExr(path);
+  const render::ExrFile file = readChannels(path);
+  const ColorImage color = colorOf(file, path);
   Estimate result{color.width, color.height, color.pixels, std::vector<Rgb>(color.pixels.size())};
   const std::array<const char*, 3> names{"stderr.R", "stderr.G", "stderr.B"};
   for (int c = 0; c < 3; ++c) {
