@@ -10,6 +10,7 @@
 #include "command.h"
 #include "console.h"
 #include "eval/image_file.h"
+#include "output.h"
 #include "render/film/filter.h"
 #include "render/image/write.h"
 
@@ -26,11 +27,12 @@ struct AgreementArguments {
 
 // What `path` makes of the scene under the conditions of the reference: its size, a box filter, independent
 // samples, whose spread tells the standard error.
-eval::Estimate renderEstimate(const AgreementArguments& a, int width, int height) {
+eval::Estimate renderEstimate(const AgreementArguments& a, const Outputs& outputs, int width, int height) {
   render::LoadOptions load;
   load.resolution = render::Vec2i(width, height);
   render::Warnings warnings;
   const std::unique_ptr<render::Scene> scene = render::Scene::load(a.scene, load, warnings);
+  outputs.rejectInputs(scene->files());
   render::FilmSettings film = scene->film();
   film.filter = render::makeBoxFilter();
   scene->setFilm(film);
@@ -76,9 +78,12 @@ void writePicture(const std::string& path, const eval::Agreement& found, const e
 }  // namespace
 
 static int runAgreement(const AgreementArguments& a) {
+  Outputs outputs;
+  if (!a.picture.empty()) outputs.add(a.picture, {".png"});
+  outputs.rejectInputs({a.scene, a.reference});
   const eval::Estimate reference = eval::readEstimate(a.reference);
   const InterruptScope interruptible;
-  const eval::Estimate image = renderEstimate(a, reference.width, reference.height);
+  const eval::Estimate image = renderEstimate(a, outputs, reference.width, reference.height);
   if (InterruptScope::interrupted()) return kInterrupted;
   const eval::Agreement found = eval::agreement(image, reference);
   const double share = double(found.agreeing) / found.blocks;

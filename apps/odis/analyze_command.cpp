@@ -32,7 +32,9 @@ static int runAnalyze(AnalyzeArguments& a) {
   settings.methods = parseMethods(a.methods, a.threads);
   settings.load = a.part.loadOptions();
   if (!settings.load.crop) settings.load.pixels = a.pixels;
-  if (!a.output.empty()) checkWritable(a.output, {".json"});
+  Outputs outputs;
+  if (!a.output.empty()) outputs.add(a.output, {".json"});
+  outputs.rejectInputs(a.scenes);
 
   const InterruptScope interruptible;
   ConsoleProgress progress(a.quiet);

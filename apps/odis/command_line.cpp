@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>
 
+#include <cerrno>
 #include <csignal>
 #include <cstdio>
 #include <iostream>
@@ -50,6 +51,7 @@ static int reportUsage(const CLI::App& app, const CLI::ParseError& error) {
 static int flushed(int code) {
   std::cout.flush();
   if (std::fflush(stdout) == 0 && std::cout) return code;
+  if (errno == EPIPE) return kWriteError;  // as in `odis ... | head`: nobody is left to be told
   return code == kOk ? fail(kWriteError, "what was printed can't be written") : code;
 }
 
@@ -72,6 +74,8 @@ static std::vector<Command> addCommands(CLI::App& app, const std::string& comman
 int runCommandLine(int argc, char** argv) {
   // A file that may not grow any more is an error like a full disk, not the end of the program.
   std::signal(SIGXFSZ, SIG_IGN);
+  // Whoever read what we print, or what we write into a pipe, may be gone: other outputs are worth finishing.
+  std::signal(SIGPIPE, SIG_IGN);
   CLI::App app{"ODIS: offline deep importance sampling for path tracing", "odis"};
   app.footer(kExitCodes);
   app.set_version_flag("--version", std::string("odis ") + ODIS_VERSION_STRING);
@@ -111,6 +115,7 @@ int runCommandLine(int argc, char** argv) {
   } catch (const WriteError& error) {
     return fail(kWriteError, error.what());
   } catch (const std::system_error& error) {  // of files and folders, and of printing
+    if (error.code() == std::errc::broken_pipe) return kWriteError;
     return fail(kWriteError, error.what());
   } catch (const std::bad_alloc&) {
     return fail(kInternalError, "out of memory");

@@ -49,13 +49,23 @@ class ConsoleObserver : public eval::CompareObserver {
 
 }  // namespace
 
+static void checkFolder(const eval::CompareSettings& settings) {
+  Outputs outputs;
+  for (const char* name : {"results.jsonl", "comparison.md", "comparison.json", "report.html"})
+    outputs.add(settings.folder + "/" + name, {});
+  outputs.rejectInputs(settings.scenes);
+  outputs.rejectInputs({settings.reference});
+}
+
 static int runCompare(CompareArguments& a) {
   a.apply();
   const eval::CompareSettings& settings = a.settings;
   if (!settings.reference.empty()) eval::readColor(settings.reference);  // before time is spent
   std::error_code failed;
   std::filesystem::create_directories(settings.folder, failed);
-  if (failed) throw WriteError(fmt::format("{}: {}", settings.folder, failed.message()));
+  if (failed)
+    throw WriteError(fmt::format("cannot make the folder \"{}\": {}", settings.folder, failed.message()));
+  checkFolder(settings);
 
   const InterruptScope interruptible;
   ConsoleObserver observer(a.quiet);

@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <atomic>
-#include <csignal>
 #include <cstdio>
 
 #include "command.h"
@@ -32,10 +31,16 @@ static void onSignal(int signal) {
 
 InterruptScope::InterruptScope() {
   g_signal = 0;
-  for (const int signal : {SIGINT, SIGTERM}) std::signal(signal, onSignal);
+  struct sigaction ours = {};
+  ours.sa_handler = onSignal;
+  ours.sa_flags = SA_RESTART;
+  for (size_t i = 0; i < kSignals.size(); ++i) {
+    sigaction(kSignals[i], nullptr, &m_before[i]);
+    if (m_before[i].sa_handler != SIG_IGN) sigaction(kSignals[i], &ours, nullptr);
+  }
 }
 InterruptScope::~InterruptScope() {
-  for (const int signal : {SIGINT, SIGTERM}) std::signal(signal, SIG_DFL);
+  for (size_t i = 0; i < kSignals.size(); ++i) sigaction(kSignals[i], &m_before[i], nullptr);
 }
 bool InterruptScope::interrupted() {
   return g_signal != 0;

@@ -1,6 +1,9 @@
 // Messages and progress on the terminal, and Ctrl-C.
 #pragma once
 
+#include <signal.h>
+
+#include <array>
 #include <atomic>
 #include <chrono>
 #include <mutex>
@@ -15,7 +18,8 @@ namespace odis::app {
 void say(const std::string& text);
 
 // While one lives, the first Ctrl-C (SIGINT) or SIGTERM only sets a flag; the second ends the program at
-// once.
+// once. A signal that is ignored when the program begins, as `trap '' INT` in a shell asks for, stays
+// ignored.
 class InterruptScope {
  public:
   InterruptScope();
@@ -25,6 +29,10 @@ class InterruptScope {
   static bool interrupted();
   // kOk, or how a program ends that was interrupted.
   static int exitCode();
+
+ private:
+  static constexpr std::array<int, 2> kSignals{SIGINT, SIGTERM};
+  std::array<struct sigaction, kSignals.size()> m_before;
 };
 
 // A bar with rate and time left if stderr is a terminal, otherwise a line for every tenth that is done.

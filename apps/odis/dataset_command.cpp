@@ -30,7 +30,9 @@ int merge(const DatasetArguments& a) {
     if (a.folders.size() > 1) throw UsageError("several folders are merged into another one: expected -o");
     folder = a.folders.front();
   } else {
-    std::filesystem::create_directories(folder);
+    std::error_code error;
+    std::filesystem::create_directories(folder, error);
+    if (error) throw WriteError(fmt::format("cannot make the folder \"{}\": {}", folder, error.message()));
     learn::gatherShards(a.folders, folder, countingOn(a.quiet));
   }
   if (a.seeds.empty()) return collectManifest(folder, {}, a.quiet);

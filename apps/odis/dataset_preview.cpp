@@ -23,13 +23,15 @@ struct PreviewArguments {
 };
 
 int preview(const PreviewArguments& a) {
-  checkWritable(a.output, {".png"});
+  Outputs outputs;
+  outputs.add(a.output, {".png"});
   std::vector<std::string> shards{a.path};
   if (std::filesystem::is_directory(a.path)) {
     shards.clear();
     for (const std::string& name : learn::shardsIn(a.path)) shards.push_back(learn::shardFile(a.path, name));
     if (shards.empty()) throw UsageError(fmt::format("the folder \"{}\" holds no shards", a.path));
   }
+  outputs.rejectInputs(shards);
   const learn::Canvas canvas = learn::previewOf(shards, a.count);
   render::writePng(a.output, canvas.width, canvas.height, canvas.pixels.data(), a.exposure);
   return kOk;

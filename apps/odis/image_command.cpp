@@ -54,8 +54,16 @@ void writeColorAs(const std::string& path, const eval::ColorImage& image, float 
   eval::writeColor(path, scaled);
 }
 
+// The output can be written, and is none of the images that are read.
+void checkBeside(const ImageArguments& a, const std::vector<std::string>& inputs,
+                 std::initializer_list<const char*> endings) {
+  Outputs outputs;
+  outputs.add(a.output, endings);
+  outputs.rejectInputs(inputs);
+}
+
 int convert(const ImageArguments& a) {
-  checkWritable(a.output, {".png", ".exr"});
+  checkBeside(a, a.images, {".png", ".exr"});
   const eval::ColorImage image = eval::layerColor(eval::readChannels(a.images.front()), a.layer);
   writeColorAs(a.output, image, a.exposure,
                a.toneMap == "clamp" ? render::ToneMap::clamp : render::ToneMap::filmic);
@@ -63,7 +71,7 @@ int convert(const ImageArguments& a) {
 }
 
 int diff(const ImageArguments& a) {
-  checkWritable(a.output, {".png", ".exr"});
+  checkBeside(a, a.images, {".png", ".exr"});
   static const std::map<std::string, eval::DifferenceKind> kKinds{
       {"signed", eval::DifferenceKind::signedColor},
       {"absolute", eval::DifferenceKind::absolute},
@@ -87,7 +95,7 @@ int diff(const ImageArguments& a) {
 }
 
 int average(const ImageArguments& a) {
-  checkWritable(a.output, {".exr"});
+  checkBeside(a, a.images, {".exr"});
   std::vector<LayeredImage> images;
   for (const std::string& path : a.images) images.push_back(eval::readChannels(path));
   eval::writeLayered(a.output, eval::average(images));
@@ -95,14 +103,16 @@ int average(const ImageArguments& a) {
 }
 
 int merge(const ImageArguments& a) {
-  checkWritable(a.output, {".exr"});
-  std::vector<std::pair<std::string, LayeredImage>> images;
+  std::vector<std::string> names, files;
   for (const std::string& text : a.images) {
     const size_t equals = text.find('=');
     const bool named = equals != std::string::npos;
-    images.emplace_back(named ? text.substr(0, equals) : "",
-                        eval::readChannels(named ? text.substr(equals + 1) : text));
+    names.push_back(named ? text.substr(0, equals) : "");
+    files.push_back(named ? text.substr(equals + 1) : text);
   }
+  checkBeside(a, files, {".exr"});
+  std::vector<std::pair<std::string, LayeredImage>> images;
+  for (size_t i = 0; i < files.size(); ++i) images.emplace_back(names[i], eval::readChannels(files[i]));
   eval::writeLayered(a.output, eval::merge(images));
   return kOk;
 }

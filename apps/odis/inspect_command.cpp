@@ -89,10 +89,13 @@ int runInspect(InspectArguments& a) {
   a.method.apply(options);
   if (options.integrator != IntegratorKind::odis || options.guide == GuideKind::oracle)
     throw UsageError("odis inspect: looks into --integrator odis with the pilot's guide, expected no other");
-  if (!a.output.empty()) checkWritable(a.output, {".png", ".exr"});
-  if (!a.json.empty()) checkWritable(a.json, {".json"});
+  Outputs outputs;
+  if (!a.output.empty()) outputs.add(a.output, {".png", ".exr"});
+  if (!a.json.empty()) outputs.add(a.json, {".json"});
+  outputs.rejectInputs({a.scene, a.method.weights});
   Warnings warnings;
   const std::unique_ptr<Scene> scene = Scene::load(a.scene, a.part.loadOptions(), warnings);
+  outputs.rejectInputs(scene->files());
   if (!a.quiet)
     for (const std::string& text : warnings.texts()) say(fmt::format("warning: {}\n", text));
   const IntegratorSettings& asked = scene->integrator();

@@ -22,7 +22,9 @@ Command addMontageCommand(CLI::App& parent) {
   app->add_option("-o,--output", arguments->output, "PNG to write")->required();
   app->add_option("--exposure", arguments->exposure, "In stops")->check(stops())->capture_default_str();
   return {app, [arguments] {
-            checkWritable(arguments->output, {".png"});
+            Outputs outputs;
+            outputs.add(arguments->output, {".png"});
+            outputs.rejectInputs(arguments->images);
             std::vector<eval::ColorImage> images;
             for (const std::string& path : arguments->images) images.push_back(eval::readColor(path));
             eval::ColorImage all = eval::montage(images);

@@ -1,23 +1,17 @@
 #include "output.h"
 
 #include <fmt/format.h>
-#include <unistd.h>
 
-#include <cerrno>
-#include <cstring>
-#include <filesystem>
-#include <fstream>
 #include <list>
 #include <sstream>
 
 #include "command.h"
-#include "render/files/checked_stream.h"
+#include "render/files/replace_file.h"
 #include "render/image/write.h"
 
 namespace odis::app {
 
 using namespace render;
-namespace fs = std::filesystem;
 
 Layers parseLayers(const std::string& text) {
   Layers layers;
@@ -41,23 +35,35 @@ bool endsWith(const std::string& path, const std::string& ending) {
          path.compare(path.size() - ending.size(), ending.size(), ending) == 0;
 }
 
-void checkWritable(const std::string& path, std::initializer_list<const char*> endings) {
+void Outputs::add(const std::string& path, std::initializer_list<const char*> endings) {
   std::string expected;
   bool known = endings.size() == 0;
   for (const char* ending : endings) {
     known = known || endsWith(path, ending);
     expected += expected.empty() ? ending : std::string(" or ") + ending;
   }
-  if (!known) throw UsageError(fmt::format("{}: expected a name that ends in {}", path, expected));
-  const fs::path folder = fs::absolute(path).parent_path();
-  std::error_code ignored;
-  if (!fs::is_directory(folder, ignored))
-    throw WriteError(fmt::format("{}: there is no such folder", folder.string()));
-  if (fs::is_directory(path, ignored)) throw WriteError(fmt::format("{}: is a folder", path));
-  // Permissions don't tell everything: try.
-  const std::string probe = fmt::format("{}.part-{}", path, getpid());
-  if (!std::ofstream(probe)) throw WriteError(fmt::format("{}: {}", path, std::strerror(errno)));
-  fs::remove(probe, ignored);
+  const OutputPath output = checkOutput(path);
+  // What is no file, such as /dev/stdout, has no ending that says a format.
+  if (!known && output.isRegular)
+    throw UsageError(fmt::format("{}: expected a name that ends in {}", path, expected));
+  if (output.isCharacter) return;
+  const FileIdentity identity = identityOf(output);
+  for (const Output& other : m_outputs)
+    if (other.identity == identity)
+      throw UsageError(fmt::format("two outputs are one file: \"{}\" and \"{}\", expected another for each",
+                                   other.name, path));
+  m_outputs.push_back({path, identity});
+}
+
+void Outputs::rejectInputs(const std::vector<std::string>& inputs) const {
+  for (const std::string& input : inputs) {
+    const std::optional<FileIdentity> identity = identityOfFile(input);
+    for (const Output& output : m_outputs)
+      if (identity && output.identity == *identity)
+        throw UsageError(
+            fmt::format("the output \"{}\" would replace \"{}\", which is read; expected another name",
+                        output.name, input));
+  }
 }
 
 namespace {

@@ -3,7 +3,9 @@
 
 #include <map>
 #include <string>
+#include <vector>
 
+#include "render/files/output_path.h"
 #include "render/integrators/render.h"
 
 namespace odis::app {
@@ -16,9 +18,23 @@ struct Layers {
 // "albedo,depth" or "all"; throws UsageError.
 Layers parseLayers(const std::string& text);
 
-// Throws WriteError, before any time is spent, if a file can't be made there or if its ending is not one of
-// `endings`.
-void checkWritable(const std::string& path, std::initializer_list<const char*> endings);
+// The files that a command is going to write, checked before any time is spent.
+class Outputs {
+ public:
+  // Throws UsageError if the ending is not one of `endings`, which may be none, or if the file is another
+  // output, too; WriteError if it can't be written.
+  void add(const std::string& path, std::initializer_list<const char*> endings);
+  // Throws UsageError if an output would be written over one of the files that are read.
+  void rejectInputs(const std::vector<std::string>& inputs) const;
+
+ private:
+  struct Output {
+    std::string name;
+    render::FileIdentity identity;
+  };
+  std::vector<Output> m_outputs;
+};
+
 bool endsWith(const std::string& path, const std::string& ending);
 
 // One EXR: R, G, B; variance.R G B if there is a variance; the layers asked for: albedo.R G B, N.X Y Z, P.X Y

@@ -61,6 +61,16 @@ static void sendToTev(const RenderArguments& a, const RenderedImage& frame) {
   }
 }
 
+static Outputs outputsOf(const RenderArguments& a) {
+  Outputs outputs;
+  outputs.add(a.output, {".exr", ".png"});
+  if (!a.png.empty()) outputs.add(a.png, {".png"});
+  if (!a.statsFile.empty()) outputs.add(a.statsFile, {});
+  if (!a.recordsFile.empty()) outputs.add(a.recordsFile, {".npy"});
+  outputs.rejectInputs({a.scene, a.method.weights});
+  return outputs;
+}
+
 static int runRender(RenderArguments& a) {
   // Find out what is wrong with the command line before time is spent.
   if (a.output.empty()) a.output = std::filesystem::path(a.scene).stem().string() + ".exr";
@@ -68,16 +78,12 @@ static int runRender(RenderArguments& a) {
   const LoadOptions load = a.part.loadOptions();
   if (!a.recordsFile.empty() && a.method.integrator != "odis")
     throw UsageError("--records: only --integrator odis has a pilot to record");
-  if (a.replay.empty()) {
-    checkWritable(a.output, {".exr", ".png"});
-    if (!a.png.empty()) checkWritable(a.png, {".png"});
-    if (!a.statsFile.empty()) checkWritable(a.statsFile, {});
-    if (!a.recordsFile.empty()) checkWritable(a.recordsFile, {".npy"});
-  }
+  const Outputs outputs = a.replay.empty() ? outputsOf(a) : Outputs();
 
   const auto start = std::chrono::steady_clock::now();
   Warnings warnings;
   const std::unique_ptr<Scene> scene = Scene::load(a.scene, load, warnings);
+  outputs.rejectInputs(scene->files());
   RunStats stats;
   stats.secondsLoad = secondsSince(start);
   if (!a.quiet)
@@ -94,6 +100,13 @@ static int runRender(RenderArguments& a) {
   const RenderResult result = render::render(*scene, options, progress);
   if (result.stats.spp <= 0) {
     say("interrupted before there was an image; nothing is written\n");
+    return InterruptScope::exitCode();
+  }
+
+  // Some pixels have no sample yet: better an old image than black ones.
+  if (InterruptScope::interrupted() && result.stats.spp < 1 && std::filesystem::is_regular_file(a.output)) {
+    say(fmt::format("interrupted at {:.2f} samples per pixel: {} stays as it was, nothing is written\n",
+                    result.stats.spp, a.output));
     return InterruptScope::exitCode();
   }
 

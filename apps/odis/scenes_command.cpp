@@ -63,12 +63,21 @@ int generate(const ScenesArguments& a) {
   return InterruptScope::exitCode();
 }
 
+std::vector<std::string> filesBelow(const std::string& folder) {
+  std::vector<std::string> files;
+  for (const auto& entry : std::filesystem::recursive_directory_iterator(folder))
+    files.push_back(entry.path().string());
+  return files;
+}
+
 int sheet(const ScenesArguments& a) {
-  checkWritable(a.output, {".png"});
+  Outputs outputs;
+  outputs.add(a.output, {".png"});
   const std::vector<std::string> names = learn::scenesIn(a.folder);
   if (names.empty())
     throw UsageError(
         fmt::format("the folder \"{}\" holds no scenes, expected folders with a scene.xml", a.folder));
+  for (const std::string& name : names) outputs.rejectInputs(filesBelow(a.folder + "/" + name));
   const InterruptScope interruptible;
   ConsoleProgress progress(true);
   Counter counter(names.size(), a.quiet);

@@ -12,6 +12,9 @@ using odis::test::Outcome;
 // Sanitizers need terabytes of addresses, the one for threads also a file when it starts.
 using odis::test::kSanitized, odis::test::kThreadSanitized;
 
+// A shell starts what runs in the background with Ctrl-C ignored, and so it stays.
+const std::string kInBackground = "env --default-signal=INT '" ODIS_COMMAND "' ";
+
 class Failures : public odis::test::Odis {
  protected:
   // Runs `odis` after a shell command that limits it.
@@ -78,8 +81,8 @@ TEST_F(Failures, NoMemory) {
 TEST_F(Failures, SignalsEndWithAnImage) {
   for (const auto& [signal, code] : {std::pair("INT", 130), std::pair("TERM", 143)}) {
     // The log of the run before must not be taken for this one's.
-    const Outcome outcome = runShell("rm -f log; '" ODIS_COMMAND
-                                     "' render room.xml --spp 16000000 2> log & until grep -qs "
+    const Outcome outcome = runShell("rm -f log; " + kInBackground +
+                                     "render room.xml --spp 16000000 2> log & until grep -qs "
                                      "pilot log; do sleep 0.02; done; kill -" +
                                      std::string(signal) + " $!; wait $!");
     EXPECT_EQ(outcome.code, code) << outcome.text;
@@ -88,10 +91,35 @@ TEST_F(Failures, SignalsEndWithAnImage) {
   }
 }
 
+// With less than a sample per pixel some pixels are black: an image that is there is worth more.
+TEST_F(Failures, InterruptedTooEarlyKeepsTheOldImage) {
+  const std::string interrupted = "rm -f log; " + kInBackground +
+                                  "render room.xml --integrator path --resolution 4000x4000 --spp 1 -o i.exr "
+                                  "2> log & until grep -qs path log; do sleep 0.02; done; kill -INT $!; wait "
+                                  "$!; code=$?; cat log; exit $code";
+  write("i.exr", "old");
+  const Outcome outcome = runShell(interrupted);
+  EXPECT_EQ(outcome.code, 130) << outcome.text;
+  EXPECT_EQ(contentOf("i.exr"), "old");
+  EXPECT_NE(outcome.text.find("samples per pixel: i.exr stays as it was"), std::string::npos) << outcome.text;
+  fs::remove(file("i.exr"));
+  EXPECT_EQ(runShell(interrupted).code, 130);
+  EXPECT_EQ(odis::render::readExr(file("i.exr").string()).window.width, 4000);
+}
+
+TEST_F(Failures, IgnoredInterruptsStayIgnored) {
+  const Outcome outcome =
+      runShell("trap '' INT; rm -f log; '" ODIS_COMMAND
+               "' render room.xml --spp 200000 2> log & until grep -qs pilot log; do sleep "
+               "0.02; done; kill -INT $!; wait $!");
+  EXPECT_EQ(outcome.code, 0) << outcome.text;
+  EXPECT_EQ(odis::render::readExr(file("room.exr").string()).metadata.count("odis:interrupted"), 0u);
+}
+
 // What was rendered counts: tables and page are written, and the same comparison goes on later.
 TEST_F(Failures, InterruptedComparisonKeepsWhatItHas) {
   const std::string arguments = "compare room.xml -o out --seeds 1 --reference-spp 16 --spp 2";
-  const Outcome outcome = runShell("'" ODIS_COMMAND "' " + arguments +
+  const Outcome outcome = runShell(kInBackground + arguments +
                                    ",16000000 2> log & until grep -qs 'path, 16000000' log; do sleep 0.02; "
                                    "done; kill -INT $!; wait $!");
   EXPECT_EQ(outcome.code, 130) << outcome.text;
