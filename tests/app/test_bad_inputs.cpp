@@ -98,8 +98,8 @@ std::string complaintsOf(const json& given, const ProcessEnd& end) {
   for (const json& part : message.is_array() ? message : json::array({message}))
     if (end.text.find(part.get<std::string>()) == std::string::npos)
       result += "  the message has no \"" + part.get<std::string>() + "\"\n";
-  if (errorCount(end.text) != (given.at("code") == 0 ? 0 : 1))
-    result += "  there are " + std::to_string(errorCount(end.text)) + " lines that begin with \"error: \"\n";
+  if ((errorCount(end.text) > 0) != (given.at("code") != 0))
+    result += "  " + std::to_string(errorCount(end.text)) + " lines begin with \"error: \"\n";
   return result;
 }
 
