@@ -13,6 +13,7 @@
 #include "dataset_range.h"
 #include "learn/data/dataset.h"
 #include "learn/data/dataset_info.h"
+#include "render/files/read_json.h"
 
 namespace odis::app {
 
@@ -53,7 +54,12 @@ int check(const DatasetArguments& a) {
 int info(const DatasetArguments& a) {
   if (std::filesystem::is_directory(a.folder)) {
     const nlohmann::ordered_json manifest = learn::readManifest(a.folder);
-    fmt::print("{}", a.json ? manifest.dump(1) + "\n" : learn::datasetText(manifest));
+    try {
+      fmt::print("{}", a.json ? manifest.dump(1) + "\n" : learn::datasetText(manifest));
+    } catch (const nlohmann::json::exception& error) {
+      throw learn::ShardError(
+          fmt::format("{}: the manifest is not as expected: {}", a.folder, render::jsonReason(error)));
+    }
   } else {
     const learn::ShardHeader shard(a.folder);
     fmt::print("{}", a.json ? shard.header().dump(1) + "\n" : learn::shardText(shard));

@@ -4,6 +4,8 @@
 
 #include <map>
 
+#include "render/files/read_json.h"
+
 namespace odis::learn {
 
 namespace {
@@ -58,7 +60,8 @@ std::string shardText(const ShardHeader& shard) {
                           view.at("height").get<int>(), view.at("pilots").get<int>(),
                           view.at("targets").get<int>(), view.at("lightGroups").size());
   } catch (const nlohmann::json::exception& e) {
-    throw ShardError(std::string("the header is not as expected: ") + e.what());
+    throw ShardError(
+        fmt::format("{}: the header is not as expected: {}", shard.path(), render::jsonReason(e)));
   }
   // Arrays of the same name, whichever view and pilot they are of.
   std::map<std::string, uint64_t> bytes;

@@ -135,7 +135,7 @@ FolderReport describeShards(const std::string& folder, const CountProgress& prog
       settings[i] = shard.header().at("settings");
       shard.header().at("software").get_to(software[i]);
     } catch (const nlohmann::json::exception& e) {
-      faults[i] = fmt::format("{}: the header is not as expected: {}", path, e.what());
+      faults[i] = fmt::format("{}: the header is not as expected: {}", path, render::jsonReason(e));
     } catch (const std::exception& e) {
       faults[i] = e.what();
     }

@@ -10,6 +10,7 @@
 #include <set>
 
 #include "odis/cells/samples.h"
+#include "render/files/read_json.h"
 
 namespace odis::learn {
 
@@ -45,7 +46,8 @@ struct ViewData {
       for (size_t i = 0; i < json.at("pilots").get<size_t>(); ++i)
         pilots.push_back(readColumns(shard, pilotPrefix(view, i), frame));
     } catch (const nlohmann::json::exception& e) {
-      throw ShardError(std::string("the header is not as expected: ") + e.what());
+      throw ShardError(
+          fmt::format("{}: the header is not as expected: {}", shard.path(), render::jsonReason(e)));
     }
     if (width < 1 || height < 1 || pilots.empty() || pilots[0].image.size() != size_t(width) * size_t(height))
       throw ShardError(name + ": the image is not of the size that the header says");

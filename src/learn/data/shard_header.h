@@ -37,6 +37,7 @@ class ShardHeader {
   // The same of a file in memory; `path` is what errors name.
   ShardHeader(const std::string& path, std::string_view file);
 
+  const std::string& path() const { return m_path; }
   const nlohmann::json& header() const { return m_header; }
   // Throws ShardError if there is no such array.
   const Shape& shape(const std::string& name) const { return find(name).shape; }

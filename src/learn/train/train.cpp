@@ -102,7 +102,8 @@ class Training {
   std::vector<std::string> shardsOf(Split split) const {
     std::vector<std::string> names;
     for (const std::string& name : shardsIn(m_config.data))
-      if (ShardHeader(shardFile(m_config.data, name)).header().value("split", "") == splitName(split))
+      if (ShardHeader(shardFile(m_config.data, name)).header().value("split", nlohmann::json()) ==
+          splitName(split))
         names.push_back(name);
     return names;
   }
