@@ -56,7 +56,7 @@ static int runAnalyze(AnalyzeArguments& a) {
                                .dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) +
                            "\n";
   if (a.json) fmt::print("{}", json);
-  if (!a.output.empty()) writeText(a.output, json);
+  if (!a.output.empty() && !scenes.empty()) writeText(a.output, json);
   return InterruptScope::exitCode();
 }
 

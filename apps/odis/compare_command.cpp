@@ -70,6 +70,10 @@ static int runCompare(CompareArguments& a) {
   const InterruptScope interruptible;
   ConsoleObserver observer(a.quiet);
   const eval::Comparison comparison = eval::compare(settings, observer);
+  if (comparison.measurements.empty()) {
+    say("interrupted before there was a result; nothing is written\n");
+    return InterruptScope::exitCode();
+  }
   const std::vector<eval::ComparisonRow> rows = eval::summarize(comparison.measurements);
   const std::string tables = eval::markdownTables(rows, comparison.scenes);
   const auto json =

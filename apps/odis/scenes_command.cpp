@@ -86,6 +86,10 @@ int sheet(const ScenesArguments& a) {
     if (!painter.add(a.folder, name, progress)) break;
     counter.done(name);
   }
+  if (InterruptScope::interrupted() && std::filesystem::is_regular_file(a.output)) {
+    say(fmt::format("interrupted: {} stays as it was, nothing is written\n", a.output));
+    return InterruptScope::exitCode();
+  }
   const learn::Canvas& sheet = painter.sheet();
   render::writePng(a.output, sheet.width, sheet.height, sheet.pixels.data(), a.exposure);
   return InterruptScope::exitCode();
