@@ -230,7 +230,7 @@ TEST(ReadImage, ComplaintsNameTheFileThePlaceAndTheReason) {
     EXPECT_NE(text.find(reason), std::string::npos) << text;
   };
   expect("missing.png", "no such file");
-  expect("", "not a file");
+  expect("", "it is a folder");
   writeBytes(folder.path("empty.png"), "");
   expect("empty.png", "empty");
   writeBytes(folder.path("text.png"), "this is no image at all, whatever its name says");

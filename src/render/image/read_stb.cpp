@@ -111,8 +111,6 @@ std::shared_ptr<Image> Image::readStbPixels(const std::vector<uint8_t>& file, bo
   if (isPng(file)) {
     checkPngChunks(file);
     checkPngSize(file);
-  } else {
-    checkPlainSize(file);
   }
   const int size = int(file.size());
   int width = 0, height = 0, channels = 0;
@@ -130,6 +128,7 @@ std::shared_ptr<Image> Image::readStbPixels(const std::vector<uint8_t>& file, bo
   if (uint64_t(width) * uint64_t(height) > maxPixels(file))
     throw std::runtime_error(
         fmt::format("it announces {} x {} pixels, more than the file can hold", width, height));
+  if (!isPng(file)) checkPlainSize(file);
 
   std::shared_ptr<Image> image(new Image);
   const auto finish = [&] {
