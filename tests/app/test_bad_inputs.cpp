@@ -57,7 +57,7 @@ std::map<std::string, std::string> snapshot(const std::string& folder) {
     if (fs::is_symlink(status)) text << " to " << fs::read_symlink(entry.path());
     if (fs::is_regular_file(status))
       text << ", " << entry.file_size() << " bytes, " << entry.last_write_time().time_since_epoch().count();
-    result[fs::relative(entry.path(), folder)] = text.str();
+    result[entry.path().lexically_relative(folder)] = text.str();
   }
   return result;
 }

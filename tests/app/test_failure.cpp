@@ -93,10 +93,11 @@ TEST_F(Failures, SignalsEndWithAnImage) {
 
 // With less than a sample per pixel some pixels are black: an image that is there is worth more.
 TEST_F(Failures, InterruptedTooEarlyKeepsTheOldImage) {
-  const std::string interrupted = "rm -f log; " + kInBackground +
-                                  "render room.xml --integrator path --resolution 4000x4000 --spp 1 -o i.exr "
-                                  "2> log & until grep -qs path log; do sleep 0.02; done; kill -INT $!; wait "
-                                  "$!; code=$?; cat log; exit $code";
+  const std::string interrupted =
+      "rm -f log; " + kInBackground +
+      "render room.xml --integrator path --resolution 2000x2000 --spp 1 "
+      "--threads 1 -o i.exr 2> log & until grep -qs path log; do sleep 0.02; done; kill -INT $!; wait "
+      "$!; code=$?; cat log; exit $code";
   write("i.exr", "old");
   const Outcome outcome = runShell(interrupted);
   EXPECT_EQ(outcome.code, 130) << outcome.text;
@@ -104,16 +105,16 @@ TEST_F(Failures, InterruptedTooEarlyKeepsTheOldImage) {
   EXPECT_NE(outcome.text.find("samples per pixel: i.exr stays as it was"), std::string::npos) << outcome.text;
   fs::remove(file("i.exr"));
   EXPECT_EQ(runShell(interrupted).code, 130);
-  EXPECT_EQ(odis::render::readExr(file("i.exr").string()).window.width, 4000);
+  EXPECT_EQ(odis::render::readExr(file("i.exr").string()).window.width, 2000);
 }
 
 TEST_F(Failures, IgnoredInterruptsStayIgnored) {
   const Outcome outcome =
       runShell("trap '' INT; rm -f log; '" ODIS_COMMAND
-               "' render room.xml --spp 200000 2> log & until grep -qs pilot log; do sleep "
+               "' render room.xml --spp 20000 2> log & until grep -qs pilot log; do sleep "
                "0.02; done; kill -INT $!; wait $!");
   EXPECT_EQ(outcome.code, 0) << outcome.text;
-  EXPECT_EQ(odis::render::readExr(file("room.exr").string()).metadata.count("odis:interrupted"), 0u);
+  EXPECT_EQ(odis::render::readExr(file("room.exr").string()).metadata.at("odis:interrupted"), "no");
 }
 
 // What was rendered counts: tables and page are written, and the same comparison goes on later.

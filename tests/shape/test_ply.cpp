@@ -109,9 +109,9 @@ TEST(Ply, RefusesWhatCannotBe) {
             std::string::npos);
   EXPECT_NE(plyFailure(head + faces("1") + "0 0\n1 0\n0 1\n3 0 1 2\n").find("no x, y and z"),
             std::string::npos);
-  EXPECT_NE(
-      plyFailure(head + z + faces("1") + "0 0 zero\n").find("mesh.ply:10: found \"zero\", expected a number"),
-      std::string::npos);
+  EXPECT_NE(plyFailure(head + z + faces("1") + "0 0 zero\n1 0 0\n0 1 0\n")
+                .find("mesh.ply:10: found \"zero\", expected a number"),
+            std::string::npos);
   EXPECT_NE(plyFailure("ply\nformat ascii 1.0\nelement vertex 3\n").find("end_header"), std::string::npos);
   EXPECT_NE(plyFailure("ply\nformat morse 1.0\nend_header\n").find("unknown format"), std::string::npos);
   EXPECT_NE(plyFailure("ply\nformat ascii 1.0\nproperty float x\nend_header\n"), "");
