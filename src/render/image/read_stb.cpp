@@ -68,6 +68,8 @@ void checkPngChunks(const std::vector<uint8_t>& file) {
 void checkPngSize(const std::vector<uint8_t>& file) {
   constexpr size_t kWidth = 16, kHeight = 20, kEnd = 24;
   if (file.size() < kEnd) throw std::runtime_error("the PNG file ends early");
+  // Only those of Apple's tools begin with another chunk.
+  if (std::memcmp(&file[12], "IHDR", 4) != 0) return;
   const auto side = [&](size_t at) {
     const uint64_t number = uint64_t(file[at]) << 24 | file[at + 1] << 16 | file[at + 2] << 8 | file[at + 3];
     return int(std::min(number, uint64_t(INT32_MAX)));
