@@ -5,6 +5,7 @@
 #include <unistd.h>
 #include <CLI/CLI.hpp>
 
+#include <climits>
 #include <filesystem>
 #include <memory>
 
@@ -49,7 +50,22 @@ class ConsoleObserver : public eval::CompareObserver {
 
 }  // namespace
 
+// Images are named after scene and method; these are other letters of their names.
+constexpr size_t kLongestNames = NAME_MAX - 55;
+
 static void checkFolder(const eval::CompareSettings& settings) {
+  namespace fs = std::filesystem;
+  for (const std::string& scene : settings.scenes)
+    for (const eval::Method& method : settings.methods)
+      if (eval::sceneName(scene).size() + method.name.size() > kLongestNames)
+        throw UsageError(
+            fmt::format("the scene \"{}\" and the method \"{}\" give their names to images: expected at "
+                        "most {} letters in both",
+                        eval::sceneName(scene), method.name, kLongestNames));
+  const fs::path images = fs::weakly_canonical(fs::path(settings.folder) / "images");
+  if (!settings.reference.empty() && fs::weakly_canonical(settings.reference).parent_path() == images)
+    throw UsageError(fmt::format(
+        "--reference: {} is in the folder that images are written to, expected another", settings.reference));
   Outputs outputs;
   for (const char* name : {"results.jsonl", "comparison.md", "comparison.json", "report.html"})
     outputs.add(settings.folder + "/" + name, {});

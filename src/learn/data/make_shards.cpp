@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <climits>
 #include <filesystem>
 #include <mutex>
 #include <numeric>
@@ -31,7 +32,12 @@ std::vector<ShardSource> seedSources(uint64_t first, uint64_t last) {
 
 std::vector<ShardSource> folderSources(const std::string& folder) {
   std::vector<ShardSource> sources;
+  constexpr size_t kLongestName = NAME_MAX - 6;  // with .shard
   for (const std::string& name : scenesIn(folder)) {
+    if (name.size() > kLongestName)
+      throw render::SceneError(
+          {}, fmt::format("the scene \"{}\" gives its name to a shard, expected at most {} letters", name,
+                          kLongestName));
     const std::string path = (fs::path(folder) / name).string();
     const nlohmann::ordered_json json = sceneJson(path);
     const bool generated = json.contains("seed") && json["seed"].is_number_unsigned();
