@@ -53,7 +53,7 @@ class ConsoleObserver : public eval::CompareObserver {
 // Images are named after scene and method; these are other letters of their names.
 constexpr size_t kLongestNames = NAME_MAX - 55;
 
-static void checkFolder(const eval::CompareSettings& settings) {
+static void checkNames(const eval::CompareSettings& settings) {
   namespace fs = std::filesystem;
   for (const std::string& scene : settings.scenes)
     for (const eval::Method& method : settings.methods)
@@ -66,6 +66,13 @@ static void checkFolder(const eval::CompareSettings& settings) {
   if (!settings.reference.empty() && fs::weakly_canonical(settings.reference).parent_path() == images)
     throw UsageError(fmt::format(
         "--reference: {} is in the folder that images are written to, expected another", settings.reference));
+}
+
+static void makeFolder(const eval::CompareSettings& settings) {
+  std::error_code failed;
+  std::filesystem::create_directories(settings.folder, failed);
+  if (failed)
+    throw WriteError(fmt::format("cannot make the folder \"{}\": {}", settings.folder, failed.message()));
   Outputs outputs;
   for (const char* name : {"results.jsonl", "comparison.md", "comparison.json", "report.html"})
     outputs.add(settings.folder + "/" + name, {});
@@ -76,12 +83,10 @@ static void checkFolder(const eval::CompareSettings& settings) {
 static int runCompare(CompareArguments& a) {
   a.apply();
   const eval::CompareSettings& settings = a.settings;
-  if (!settings.reference.empty()) eval::readColor(settings.reference);  // before time is spent
-  std::error_code failed;
-  std::filesystem::create_directories(settings.folder, failed);
-  if (failed)
-    throw WriteError(fmt::format("cannot make the folder \"{}\": {}", settings.folder, failed.message()));
-  checkFolder(settings);
+  // Before time is spent.
+  checkNames(settings);
+  if (!settings.reference.empty()) eval::readColor(settings.reference);
+  makeFolder(settings);
 
   const InterruptScope interruptible;
   ConsoleObserver observer(a.quiet);
