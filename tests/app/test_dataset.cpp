@@ -168,7 +168,7 @@ TEST_F(Dataset, SaysWhatIsWrong) {
   expectFailure("dataset preview room.xml -o out.png", 3, "room.xml: is no shard of a data set");
   expectFailure("dataset preview empty -o out.jpg", 2, ".png");
   expectFailure("dataset check nowhere", 3, "there is no manifest");
-  expectFailure("dataset merge nowhere", 4, "nowhere");
+  expectFailure("dataset merge nowhere", 3, "nowhere");
 }
 
 }  // namespace

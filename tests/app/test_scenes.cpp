@@ -33,7 +33,7 @@ TEST_F(Odis, ScenesSayWhatIsWrong) {
   expectFailure("scenes generate --count 0 -o out", 2, "--count");
   expectFailure("scenes generate -o /proc/out", 4, "/proc/out");
   expectFailure("scenes sheet empty -o sheet.png", 2, "holds no scenes");
-  expectFailure("scenes sheet nowhere -o sheet.png", 4, "nowhere");
+  expectFailure("scenes sheet nowhere -o sheet.png", 3, "nowhere");
   expectFailure("scenes sheet empty -o sheet.jpg", 2, ".png");
   EXPECT_FALSE(exists("out"));
 }
