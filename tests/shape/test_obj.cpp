@@ -38,6 +38,23 @@ TEST(Obj, SharesEqualCornersOnly) {
   EXPECT_EQ(parseObj(vertices + "f 1/1 2/1 3/1\nf 3/1 2/2 4/1\n").positions.size(), 5u);
 }
 
+// However many corners meet in one position, those that are equal share a vertex.
+TEST(Obj, SharesCornersOfACrowdedPosition) {
+  constexpr size_t kCount = 100;
+  std::string text = "v 0 0 0\nv 1 0 0\nv 0 1 0\n", faces;
+  for (size_t i = 0; i < kCount; ++i) {
+    text += "vt " + std::to_string(i) + " 0\n";
+    faces += "f 1/" + std::to_string(i + 1) + " 2/1 3/1\n";
+  }
+  const MeshData mesh = parseObj(text + faces + faces);
+  EXPECT_EQ(mesh.triangles.size(), 2 * kCount);
+  ASSERT_EQ(mesh.positions.size(), kCount + 2);
+  for (size_t i = 0; i < kCount; ++i) {
+    EXPECT_EQ(mesh.uvs[mesh.triangles[i][0]].x, float(i));
+    EXPECT_EQ(mesh.triangles[kCount + i], mesh.triangles[i]) << i;
+  }
+}
+
 TEST(Obj, ReadsNegativeIndicesAndPolygons) {
   const MeshData mesh = parseObj(
       "v 9 9 9\nv 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv -1 1 0\nvn 0 0 1\nf -5//-1 -4//-1 -3//-1 -2//-1 "

@@ -112,5 +112,25 @@ TEST(Serialized, RefusesDamage) {
   EXPECT_THROW(parseSerialized(wild), SceneError);
 }
 
+// What unpacks to much more than the file has is no mesh: zeros shrink by a thousand to one.
+TEST(Serialized, RefusesWhatUnpacksToTooMuch) {
+  std::string zeros = body(4, kSingle, 0, 3, 2'000'000);
+  zeros.resize(zeros.size() + 24'000'000);
+  std::string bytes;
+  append(bytes, uint16_t(0x041C));
+  append(bytes, uint16_t(4));
+  bytes += deflated(zeros);
+  append(bytes, uint64_t(0));
+  append(bytes, uint32_t(1));
+  const TemporaryFile file("mesh.serialized", bytes);
+  try {
+    readSerialized(file.path(), 0, {});
+    FAIL() << "read";
+  } catch (const SceneError& error) {
+    EXPECT_NE(std::string(error.what()).find("more than the file can hold"), std::string::npos)
+        << error.what();
+  }
+}
+
 }  // namespace
 }  // namespace odis::test
