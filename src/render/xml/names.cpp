@@ -20,15 +20,18 @@ bool isDigit(char c) {
 }  // namespace
 
 size_t editDistance(const std::string& a, const std::string& b) {
-  std::vector<size_t> row(b.size() + 1);
+  // Rows of the table of distances between beginnings: of a's first i letters, and of one and two less.
+  std::vector<size_t> row(b.size() + 1), above, aboveThat;
   std::iota(row.begin(), row.end(), size_t(0));
   for (size_t i = 1; i <= a.size(); ++i) {
-    size_t diagonal = row[0];
+    aboveThat = std::move(above);
+    above = row;
     row[0] = i;
     for (size_t j = 1; j <= b.size(); ++j) {
-      const size_t replaced = diagonal + (a[i - 1] != b[j - 1]);
-      diagonal = row[j];
-      row[j] = std::min({row[j] + 1, row[j - 1] + 1, replaced});
+      const size_t replaced = above[j - 1] + (a[i - 1] != b[j - 1]);
+      row[j] = std::min({above[j] + 1, row[j - 1] + 1, replaced});
+      if (i > 1 && j > 1 && a[i - 1] == b[j - 2] && a[i - 2] == b[j - 1])
+        row[j] = std::min(row[j], aboveThat[j - 2] + 1);
     }
   }
   return row[b.size()];
@@ -62,7 +65,8 @@ std::string suggestion(const std::string& name, const std::vector<std::string>& 
                       &longer = name.size() < candidate.size() ? candidate : name;
     if (shorter.size() >= 4 && longer.find(shorter) != std::string::npos)
       distance = std::min<size_t>(distance, 2);
-    if (distance <= std::max<size_t>(1, std::min<size_t>(3, name.size() / 3)))
+    // A word of one letter resembles every other.
+    if (distance < name.size() && distance <= std::max<size_t>(1, std::min<size_t>(3, name.size() / 3)))
       near.emplace_back(distance, candidate);
   }
   std::sort(near.begin(), near.end());
