@@ -2,10 +2,51 @@
 
 #include <algorithm>
 #include <cctype>
+#include <cstring>
+#include <optional>
 
 #include "render/files/input_file.h"
 
 namespace odis::render {
+namespace {
+
+bool isPredefined(const std::string& entity) {
+  for (const char* known : {"lt", "gt", "amp", "quot", "apos"})
+    if (entity == known) return true;
+  return false;
+}
+
+// Where what begins at `start` ends, if it is a comment or the like in which '&' has no meaning; else `start`.
+size_t skipUnparsed(const std::string& text, size_t start) {
+  static constexpr std::pair<const char*, const char*> kUnparsed[] = {
+      {"<!--", "-->"}, {"<![CDATA[", "]]>"}, {"<?", "?>"}};
+  for (const auto& [opening, closing] : kUnparsed)
+    if (text.compare(start, std::strlen(opening), opening) == 0)
+      return std::min(text.find(closing, start), text.size() - 1);
+  if (text.compare(start, 9, "<!DOCTYPE") != 0) return start;
+  // Its declarations stand in brackets.
+  const size_t end = text.find_first_of("[>", start);
+  if (end == std::string::npos || text[end] == '>') return std::min(end, text.size() - 1);
+  return std::min(text.find(']', end), text.size() - 1);
+}
+
+// The first entity that XML itself doesn't define, as the offset of its '&' and its name; nothing if there is
+// none. pugixml would leave it in the text as it stands.
+std::optional<std::pair<size_t, std::string>> findEntity(const std::string& text) {
+  for (size_t i = text.find_first_of("<&"); i != std::string::npos; i = text.find_first_of("<&", i + 1)) {
+    i = skipUnparsed(text, i);
+    if (text[i] != '&') continue;
+    size_t end = i + 1;
+    while (end < text.size() && (std::isalnum(static_cast<unsigned char>(text[end])) || text[end] == '_'))
+      ++end;
+    std::string name = text.substr(i + 1, end - i - 1);
+    if (end < text.size() && text[end] == ';' && !name.empty() && !isPredefined(name))
+      return std::pair(i, std::move(name));
+  }
+  return {};
+}
+
+}  // namespace
 
 std::string XmlFile::readText(const std::string& path, const SourceLocation& at) {
   try {
@@ -36,6 +77,10 @@ XmlFile::XmlFile(std::string path, std::string text) : m_path(std::move(path)), 
     throw SceneError(locate(size_t(std::max<ptrdiff_t>(result.offset, 0))),
                      "this is not well-formed XML: " + reason);
   }
+  if (const auto entity = findEntity(m_text))
+    throw SceneError(locate(entity->first), "found the entity '&" + entity->second +
+                                                ";', expected one of &lt; &gt; &amp; &quot; &apos;, or a "
+                                                "<default> in place of an entity of your own");
   rejectText(m_document);
   if (!root()) throw SceneError({m_path, 1, 1}, "found no element, expected <scene version=\"...\">");
   for (pugi::xml_node other = root().next_sibling(); other; other = other.next_sibling())

@@ -31,6 +31,11 @@ std::vector<std::string> knownTags() {
   return tags;
 }
 
+bool isKnownTag(const std::string& tag) {
+  const std::vector<std::string> tags = knownTags();
+  return std::find(tags.begin(), tags.end(), tag) != tags.end();
+}
+
 }  // namespace
 
 XmlElement XmlParser::element(const Place& place, const pugi::xml_node& node) {
@@ -59,7 +64,8 @@ ParsedScene XmlParser::parse(const XmlFile& file) {
   const Place place{file};
   const XmlElement e = element(place, file.root());
   if (e.tag != "scene")
-    throw SceneError(e.at, "found <" + e.tag + ">, expected <scene version=\"...\"> around the whole file");
+    throw SceneError(e.at, "found <" + e.tag + ">" + suggestion(e.tag, {"scene"}) +
+                               ", expected <scene version=\"...\"> around the whole file");
   e.allow({"version", "id", "name", "type"});
   if (e.has("version")) {
     const std::string& version = e.require("version");
@@ -97,15 +103,16 @@ void XmlParser::parseNode(const Place& place, const pugi::xml_node& node, Proper
   if (e.tag == "scene")
     throw SceneError(e.at, "found <scene> within a scene, expected it around the whole file only");
   if (parseValue(place, node, e, owner)) return;
+  if (!isKnownTag(e.tag))
+    throw SceneError(e.at, "found the unknown element <" + e.tag + ">" + suggestion(e.tag, knownTags()) +
+                               ", expected an element of Mitsuba's scene format");
   if (node.first_child())
     throw SceneError(
         e.at, "found something inside <" + e.tag + ">, expected an empty element <" + e.tag + " .../>");
-  if (parseStructure(place, e, owner)) return;
-  throw SceneError(e.at, "found the unknown element <" + e.tag + ">" + suggestion(e.tag, knownTags()) +
-                             ", expected an element of Mitsuba's scene format");
+  parseStructure(place, e, owner);
 }
 
-bool XmlParser::parseStructure(const Place& place, const XmlElement& e, Properties& owner) {
+void XmlParser::parseStructure(const Place& place, const XmlElement& e, Properties& owner) {
   if (e.tag == "ref") {
     e.allow({"id", "name"});
     owner.children.push_back({e.has("name") ? snakeCase(e.require("name")) : "", nullptr});
@@ -128,10 +135,7 @@ bool XmlParser::parseStructure(const Place& place, const XmlElement& e, Properti
     m_folders.push_back(folder.string());
   } else if (e.tag == "include") {
     parseInclude(place, e, owner);
-  } else {
-    return false;
   }
-  return true;
 }
 
 void XmlParser::parseInclude(const Place& place, const XmlElement& e, Properties& owner) {

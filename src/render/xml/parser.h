@@ -33,7 +33,8 @@ class XmlParser {
   XmlElement element(const Place& place, const pugi::xml_node& node);
   void parseChildren(const Place& place, const pugi::xml_node& node, Properties& owner);
   void parseNode(const Place& place, const pugi::xml_node& node, Properties& owner);
-  bool parseStructure(const Place& place, const XmlElement& e, Properties& owner);
+  // <ref>, <default>, <alias>, <path>, <include>.
+  void parseStructure(const Place& place, const XmlElement& e, Properties& owner);
   void parseInclude(const Place& place, const XmlElement& e, Properties& owner);
   std::shared_ptr<Properties> parseObject(const Place& place, const pugi::xml_node& node,
                                           const XmlElement& e);
