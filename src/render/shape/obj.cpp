@@ -118,6 +118,7 @@ class ObjReader {
     int64_t index;
     if (!m_cursor.number(index))
       fail(fmt::format("found {}, expected the index of a {}", m_cursor.found(), what));
+    if (m_cursor.peek() == '.') fail(fmt::format("expected the index of a {}, a whole number", what));
     const int64_t resolved = index > 0 ? index - 1 : int64_t(count) + index;
     if (index == 0 || resolved < 0 || resolved >= int64_t(count))
       fail(index == 0

@@ -12,6 +12,7 @@
 #include <fmt/format.h>
 
 #include <bit>
+#include <cmath>
 #include <cstring>
 #include <optional>
 
@@ -214,8 +215,8 @@ class PlyReader {
     uint32_t first = 0, previous = 0;
     for (uint64_t i = 0; i < corners; ++i) {
       const double index = next(property.type);
-      if (!(index >= 0 && index < double(m_data.positions.size())))
-        fail(fmt::format("face {} refers to vertex {}, expected less than {}", m_row, index,
+      if (!(index >= 0 && index < double(m_data.positions.size())) || index != std::floor(index))
+        fail(fmt::format("face {} refers to vertex {}, expected a whole number less than {}", m_row, index,
                          m_data.positions.size()));
       const auto vertex = uint32_t(index);
       if (i == 0) first = vertex;
@@ -227,6 +228,8 @@ class PlyReader {
 
   uint64_t listLength(const Property& property) {
     const double length = next(*property.countType);
+    if (length != std::floor(length))
+      fail(fmt::format("a list of {} elements in row {}, expected a whole number", length, m_row));
     if (!(length >= 0 && length <= double(remaining())))
       fail(fmt::format("a list of {} elements in row {}, but only {} bytes follow", length, m_row,
                        remaining()));
