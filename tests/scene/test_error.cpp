@@ -170,13 +170,13 @@ TEST(Errors, OfParametersOfTheWrongType) {
       parse("<scene version='3.0.0'>\n<bsdf type='x'><string name='alpha' value='rough'/></bsdf></scene>");
   const Properties& node = *root->children.at(0).node;
   try {
-    node.number("alpha");
+    node.number("alpha", render::kAnyNumber);
     FAIL();
   } catch (const SceneError& error) {
     EXPECT_STREQ(error.what(), "test.xml:2:16: found the string 'rough' for 'alpha', expected a number");
   }
   try {
-    node.number("alpa");
+    node.number("alpa", render::kAnyNumber);
     FAIL();
   } catch (const SceneError& error) {
     EXPECT_STREQ(

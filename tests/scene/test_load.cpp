@@ -88,12 +88,12 @@ TEST(Load, RejectsFilmsThatCannotBe) {
     return load("<sensor type='perspective'><film type='hdrfilm'>" + parameters + "</film></sensor>").error;
   };
   EXPECT_EQ(film("<integer name='width' value='0'/>"),
-            "scene.xml:2:49: found 0 for 'width' of the film, expected 1 to 65536 pixels");
+            "scene.xml:2:49: found 0 for 'width', expected 1 to 65536");
   EXPECT_EQ(film("<integer name='height' value='65537'/>"),
-            "scene.xml:2:49: found 65537 for 'height' of the film, expected 1 to 65536 pixels");
-  EXPECT_EQ(film("<integer name='crop_offset_x' value='9223372036854775807'/>")
-                .rfind("scene.xml:2:28: found a crop", 0),
-            0u);
+            "scene.xml:2:49: found 65537 for 'height', expected 1 to 65536");
+  EXPECT_EQ(film("<integer name='crop_offset_x' value='9223372036854775807'/>"),
+            "scene.xml:2:49: found 9223372036854775807 for 'crop_offset_x', expected 0 to 65536");
+  EXPECT_EQ(film("<integer name='crop_offset_x' value='1'/>").rfind("scene.xml:2:28: found a crop", 0), 0u);
   EXPECT_EQ(film("<rfilter type='tent'><float name='radius' value='-1'/></rfilter>")
                 .rfind("scene.xml:2:70: found -1", 0),
             0u);

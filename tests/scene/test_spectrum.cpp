@@ -14,11 +14,13 @@ void expectColor(const Rgb& found, const Rgb& expected, float tolerance) {
 }
 
 Rgb reflectance(const std::string& element) {
-  return parse("<bsdf type='x'>" + element + "</bsdf>")->children.at(0).node->color("c");
+  return parse("<bsdf type='x'>" + element + "</bsdf>")->children.at(0).node->color("c", render::kAnyNumber);
 }
 
 Rgb radiance(const std::string& element) {
-  return parse("<emitter type='x'>" + element + "</emitter>")->children.at(0).node->color("c");
+  return parse("<emitter type='x'>" + element + "</emitter>")
+      ->children.at(0)
+      .node->color("c", render::kAnyNumber);
 }
 
 TEST(Spectrum, ReflectsUnderD65) {

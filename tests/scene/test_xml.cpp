@@ -63,13 +63,13 @@ TEST(Ages, AgreeOnWhatTheyDescribe) {
     ASSERT_TRUE(sensor && sensor->child("film") && sensor->child("sampler"));
     EXPECT_EQ(sensor->string("fov_axis"), "smaller");
     EXPECT_EQ(sensor->child("film")->type, "hdrfilm");
-    EXPECT_EQ(sensor->child("film")->integer("width"), 64);
-    EXPECT_EQ(sensor->child("sampler")->integer("sample_count"), 16);
+    EXPECT_EQ(sensor->child("film")->integer("width", render::kAnyNumber), 64);
+    EXPECT_EQ(sensor->child("sampler")->integer("sample_count", render::kAnyNumber), 16);
     const Properties* shape = root->child("shape");
     ASSERT_TRUE(shape && shape->child("bsdf"));
     EXPECT_TRUE(shape->boolean("face_normals"));
     EXPECT_EQ(shape->child("bsdf"), root->child("bsdf"));
-    EXPECT_FLOAT_EQ(shape->child("bsdf")->number("int_ior"), 1.5f);
+    EXPECT_FLOAT_EQ(shape->child("bsdf")->number("int_ior", render::kAnyNumber), 1.5f);
     ASSERT_TRUE(shape->child("bsdf")->child("texture", "diffuse_reflectance"));
     EXPECT_EQ(shape->child("bsdf")->child("texture")->string("filename"), "a b.png");
   }
@@ -83,21 +83,21 @@ TEST(Values, OfEveryKind) {
     <rgb name="grey" value="0.5"/><rgb name="hex" value="#ff0033"/><srgb name="srgb" value="#ffbc00"/>
     <spectrum name="flat" value="0.25"/></bsdf>)");
   const Properties& node = *root->children.at(0).node;
-  EXPECT_FLOAT_EQ(node.number("f"), -1.5e-3f);
-  EXPECT_EQ(node.integer("i"), -7);
-  EXPECT_EQ(node.number("i"), -7);
+  EXPECT_FLOAT_EQ(node.number("f", render::kAnyNumber), -1.5e-3f);
+  EXPECT_EQ(node.integer("i", render::kAnyNumber), -7);
+  EXPECT_EQ(node.number("i", render::kAnyNumber), -7);
   EXPECT_TRUE(node.boolean("b"));
   EXPECT_EQ(node.string("s"), "a, b");
   EXPECT_EQ(node.vector("p"), Vec3(1, 0, 3));
   EXPECT_EQ(node.vector("v"), Vec3(1, 2, 3));
-  EXPECT_EQ(node.color("c"), Rgb(0.1f, 0.2f, 0.3f));
-  EXPECT_EQ(node.color("spaced"), Rgb(0.1f, 0.2f, 0.3f));
-  EXPECT_EQ(node.color("grey"), Rgb(0.5f));
-  EXPECT_LT((node.color("hex") - Rgb(1, 0, 0.2f)).length(), 1e-6f);
+  EXPECT_EQ(node.color("c", render::kAnyNumber), Rgb(0.1f, 0.2f, 0.3f));
+  EXPECT_EQ(node.color("spaced", render::kAnyNumber), Rgb(0.1f, 0.2f, 0.3f));
+  EXPECT_EQ(node.color("grey", render::kAnyNumber), Rgb(0.5f));
+  EXPECT_LT((node.color("hex", render::kAnyNumber) - Rgb(1, 0, 0.2f)).length(), 1e-6f);
   // 0xbc = 188 is 0.5029 when decoded.
-  EXPECT_NEAR(node.color("srgb").y, 0.5029f, 1e-4f);
-  EXPECT_EQ(node.color("flat"), Rgb(0.25f));
-  EXPECT_EQ(node.number("missing", 4.0f), 4.0f);
+  EXPECT_NEAR(node.color("srgb", render::kAnyNumber).y, 0.5029f, 1e-4f);
+  EXPECT_EQ(node.color("flat", render::kAnyNumber), Rgb(0.25f));
+  EXPECT_EQ(node.number("missing", render::kAnyNumber, 4.0f), 4.0f);
 }
 
 TEST(Properties, RemembersWhatWasAskedFor) {
@@ -106,7 +106,7 @@ TEST(Properties, RemembersWhatWasAskedFor) {
       "<texture name='t' type='bitmap'/><bsdf type='y'/></bsdf>");
   const Properties& node = *root->children.at(0).node;
   EXPECT_EQ(node.unqueried().size(), 4u);
-  node.number("a");
+  node.number("a", render::kAnyNumber);
   node.child("bsdf");
   const auto left = node.unqueried();
   ASSERT_EQ(left.size(), 2u);
@@ -124,12 +124,12 @@ TEST(Variables, AreFilledInEverywhere) {
   };
   const Properties plain = integrator(parse(scene));
   EXPECT_EQ(plain.type, "path");
-  EXPECT_EQ(plain.integer("max_depth"), 3);
-  EXPECT_EQ(plain.integer("rr_depth"), 4);
+  EXPECT_EQ(plain.integer("max_depth", render::kAnyNumber), 3);
+  EXPECT_EQ(plain.integer("rr_depth", render::kAnyNumber), 4);
   EXPECT_EQ(plain.string("s"), "a3b 33 $ 1$");
   const Properties defined = integrator(parse(scene, {{"n", "7"}, {"kind", "volpath"}}));
   EXPECT_EQ(defined.type, "volpath");
-  EXPECT_EQ(defined.integer("max_depth"), 7);
+  EXPECT_EQ(defined.integer("max_depth", render::kAnyNumber), 7);
   EXPECT_EQ(defined.string("s"), "a7b 77 $ 1$");
 }
 
@@ -174,8 +174,8 @@ TEST(Includes, PutScenesAndSingleElementsInPlace) {
   const render::ParsedScene parsed = render::parseScene(path, {{"r", "0.25"}}, warnings);
   const Properties* shape = parsed.root->child("shape");
   ASSERT_TRUE(shape && shape->child("bsdf") && shape->child("emitter"));
-  EXPECT_EQ(shape->child("bsdf")->color("reflectance"), Rgb(0.25f));
-  EXPECT_EQ(shape->child("emitter")->color("radiance"), Rgb(0.25f));
+  EXPECT_EQ(shape->child("bsdf")->color("reflectance", render::kAnyNumber), Rgb(0.25f));
+  EXPECT_EQ(shape->child("emitter")->color("radiance", render::kAnyNumber), Rgb(0.25f));
   EXPECT_EQ(parsed.folders.size(), 2u);
 }
 

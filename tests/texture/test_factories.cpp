@@ -101,7 +101,8 @@ TEST_F(TextureFactories, ErrorsSayWhereAndWhat) {
     const std::string text =
         complaint(*element("bitmap", {{"filename", std::string("a.png")}, {name, value}}));
     EXPECT_NE(text.find("scene.xml:6:2"), std::string::npos) << text;
-    EXPECT_NE(text.find("\"" + value + "\", expected"), std::string::npos) << text;
+    EXPECT_NE(text.find("found '" + value + "' for '" + name + "', expected one of"), std::string::npos)
+        << text;
   }
   EXPECT_NE(complaint(*element("bitmap", {{"filename", std::string("a.png")}, {"gamma", -3.0}})), "");
   EXPECT_NE(complaint(*element("bitmap", {{"filename", std::string("b.png")}})).find("b.png"),

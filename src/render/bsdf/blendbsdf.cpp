@@ -1,6 +1,6 @@
 // blendbsdf: a linear blend of two BSDFs.
 //
-//   weight          number or texture: 0 gives the first, 1 the second; required
+//   weight          0 to 1, number or texture: 0 gives the first, 1 the second; required
 //   (nested bsdf)   two
 #include "render/bsdf/factories.h"
 #include "render/bsdf/parameter.h"
@@ -16,7 +16,7 @@ class Blend final : public Bsdf {
   }
 
   BsdfSample sample(const SurfacePoint& at, const Vec3& wo, float uLobe, const Vec2& u) const override {
-    const float w = weight(at);
+    const float w = m_weight(at);
     const int chosen = uLobe < w ? 1 : 0;
     const float share = chosen == 1 ? w : 1 - w;
     const float u0 = (chosen == 1 ? uLobe : uLobe - w) / share;
@@ -36,26 +36,24 @@ class Blend final : public Bsdf {
   }
 
   BsdfValue evaluate(const SurfacePoint& at, const Vec3& wo, const Vec3& wi) const override {
-    const float w = weight(at);
+    const float w = m_weight(at);
     const BsdfValue a = m_nested[0]->evaluate(at, wo, wi), b = m_nested[1]->evaluate(at, wo, wi);
     return {lerp(w, a.value, b.value), lerp(w, a.pdf, b.pdf), lerp(w, a.guidablePdf, b.guidablePdf)};
   }
 
   float guidableProbability(const SurfacePoint& at, const Vec3& wo) const override {
-    return lerp(weight(at), m_nested[0]->guidableProbability(at, wo),
+    return lerp(m_weight(at), m_nested[0]->guidableProbability(at, wo),
                 m_nested[1]->guidableProbability(at, wo));
   }
 
   BsdfFeatures features(const SurfacePoint& at, const Vec3& wo) const override {
-    const float w = weight(at);
+    const float w = m_weight(at);
     const BsdfFeatures a = m_nested[0]->features(at, wo), b = m_nested[1]->features(at, wo);
     const bool second = w * luminance(b.albedo) > (1 - w) * luminance(a.albedo);
     return {lerp(w, a.albedo, b.albedo), second ? b.roughness : a.roughness};
   }
 
  private:
-  float weight(const SurfacePoint& at) const { return std::min(std::max(0.0f, m_weight(at)), 1.0f); }
-
   BsdfPtr m_nested[2];
   ScalarParameter m_weight;
 };
@@ -63,11 +61,11 @@ class Blend final : public Bsdf {
 }  // namespace
 
 BsdfPtr makeBlend(const Properties& properties, Builder& builder) {
-  const TexturePtr weight = builder.optionalTexture(properties, "weight");
+  const TexturePtr weight = builder.optionalTexture(properties, "weight", {"number or texture", kUnit});
   if (!weight)
     throw SceneError(properties.location, "blendbsdf has no \"weight\", expected a number or a texture");
   return std::make_shared<Blend>(builder.nestedBsdf(properties, 0), builder.nestedBsdf(properties, 1),
-                                 ScalarParameter(weight));
+                                 ScalarParameter(weight, kUnit));
 }
 
 }  // namespace odis::render

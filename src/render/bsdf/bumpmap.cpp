@@ -46,7 +46,7 @@ BsdfPtr makeBumpMap(const Properties& properties, Builder& builder) {
   if (!heights)
     throw SceneError(properties.location, "bumpmap has no nested texture, expected one with the heights");
   return makeBumpMap(builder.nestedBsdf(properties, 0), builder.texture(*heights),
-                     properties.number("scale", 1.0f), readPerturbation(properties));
+                     properties.number("scale", kAnyNumber, 1.0f), readPerturbation(properties));
 }
 
 }  // namespace odis::render

@@ -40,9 +40,7 @@ class Diffuse final : public Bsdf {
 }  // namespace
 
 BsdfPtr makeDiffuse(const Properties& properties, Builder& builder) {
-  const bool old = builder.optionalTexture(properties, "diffuse_reflectance") != nullptr;
-  return std::make_shared<Diffuse>(
-      readReflectance(properties, builder, old ? "diffuse_reflectance" : "reflectance", 0.5f));
+  return std::make_shared<Diffuse>(readDiffuseReflectance(properties, builder));
 }
 
 }  // namespace odis::render

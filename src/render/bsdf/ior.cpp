@@ -1,9 +1,6 @@
 // Indices of refraction at 589 nm and 0 to 20 degrees Celsius; Hecht, "Optics", 4th edition.
 #include "render/bsdf/ior.h"
 
-#include <algorithm>
-#include <cmath>
-
 #include "render/xml/names.h"
 
 namespace odis::render {
@@ -27,23 +24,18 @@ constexpr NamedDielectric kNamedDielectrics[] = {
 }  // namespace
 
 float readIor(const Properties& properties, const std::string& name, const std::string& fallback) {
+  properties.declare(name, {"number or material", kIndexRange});
   const auto found = properties.parameters.find(name);
   const bool given = found != properties.parameters.end();
-  if (given && !std::holds_alternative<std::string>(found->second.value)) {
-    const float value = properties.number(name);
-    if (!(value > 0) || !std::isfinite(value))
-      throw SceneError(found->second.location, "\"" + name + "\" is not a positive number");
-    return value;
-  }
+  if (given && !std::holds_alternative<std::string>(found->second.value))
+    return properties.number(name, kIndexRange);
   const std::string material = lowerCase(properties.string(name, fallback));
   std::string known;
   for (const NamedDielectric& candidate : kNamedDielectrics) {
     if (material == candidate.name) return candidate.ior;
     known += std::string(known.empty() ? "\"" : ", \"") + candidate.name + "\"";
   }
-  throw SceneError(
-      given ? found->second.location : properties.location,
-      "unknown material \"" + material + "\" for \"" + name + "\", expected a number or one of " + known);
+  properties.refuse(name, "the unknown material '" + material + "'", "a number or one of " + known);
 }
 
 }  // namespace odis::render

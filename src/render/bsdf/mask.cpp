@@ -1,6 +1,6 @@
 // mask: lets a part of the light pass straight through, the rest meets the nested BSDF.
 //
-//   opacity         number or texture; 0.5
+//   opacity         0 to 1, number or texture; 0.5
 //   (nested bsdf)   one
 #include "render/bsdf/factories.h"
 #include "render/bsdf/parameter.h"
@@ -16,7 +16,7 @@ class Mask final : public Bsdf {
   }
 
   BsdfSample sample(const SurfacePoint& at, const Vec3& wo, float uLobe, const Vec2& u) const override {
-    const float opacity = opacityAt(at);
+    const float opacity = m_opacity(at);
     if (uLobe >= opacity) return discreteSample(-wo, Rgb(1.0f), 1 - opacity, Lobe::null);
     BsdfSample result = m_nested->sample(at, wo, std::min(uLobe / opacity, kOneMinusEpsilon), u);
     result.pdf *= opacity;
@@ -27,23 +27,21 @@ class Mask final : public Bsdf {
   BsdfValue evaluate(const SurfacePoint& at, const Vec3& wo, const Vec3& wi) const override {
     BsdfValue result = m_nested->evaluate(at, wo, wi);
     if (!(result.pdf > 0)) return result;
-    const float opacity = opacityAt(at);
+    const float opacity = m_opacity(at);
     return {result.value * opacity, result.pdf * opacity, result.guidablePdf * opacity};
   }
 
   float guidableProbability(const SurfacePoint& at, const Vec3& wo) const override {
-    return m_nested->guidableProbability(at, wo) * opacityAt(at);
+    return m_nested->guidableProbability(at, wo) * m_opacity(at);
   }
 
   BsdfFeatures features(const SurfacePoint& at, const Vec3& wo) const override {
-    const float opacity = opacityAt(at);
+    const float opacity = m_opacity(at);
     const BsdfFeatures nested = m_nested->features(at, wo);
     return {lerp(opacity, Rgb(1.0f), nested.albedo), opacity < 0.5f ? 0 : nested.roughness};
   }
 
  private:
-  float opacityAt(const SurfacePoint& at) const { return std::min(std::max(0.0f, m_opacity(at)), 1.0f); }
-
   BsdfPtr m_nested;
   ScalarParameter m_opacity;
 };
@@ -52,7 +50,7 @@ class Mask final : public Bsdf {
 
 BsdfPtr makeMask(const Properties& properties, Builder& builder) {
   return std::make_shared<Mask>(builder.nestedBsdf(properties, 0),
-                                readScalar(properties, builder, "opacity", 0.5f));
+                                readScalar(properties, builder, "opacity", kUnit, 0.5f));
 }
 
 }  // namespace odis::render

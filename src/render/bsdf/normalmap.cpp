@@ -35,7 +35,7 @@ BsdfPtr makeNormalMap(BsdfPtr nested, TexturePtr normals, const PerturbationOpti
 }
 
 BsdfPtr makeNormalMap(const Properties& properties, Builder& builder) {
-  TexturePtr normals = builder.optionalTexture(properties, "normalmap");
+  TexturePtr normals = builder.optionalTexture(properties, "normalmap", {"texture"});
   if (!normals) {
     // Files of earlier versions nest the texture under any name.
     const Properties* nested = properties.child("texture");

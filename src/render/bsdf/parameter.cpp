@@ -11,49 +11,55 @@ namespace odis::render {
 
 RgbParameter readReflectance(const Properties& properties, Builder& builder, const std::string& name,
                              float fallback) {
-  const RgbParameter result(builder.texture(properties, name, Rgb(fallback)), true);
+  const RgbParameter result(
+      builder.texture(properties, name, {"colour or texture", kUnit, "", true}, Rgb(fallback)), true);
   if (!result.isConstant()) return result;
   const Rgb clamped = clampUnit(result.mean());
   if (clamped == result.mean()) return result;
-  builder.warn(properties.location,
+  builder.warn(properties.placeOf(name),
                fmt::format("\"{}\" of {} is outside [0, 1] and was clamped", name, properties.type));
   return clamped;
 }
 
+RgbParameter readDiffuseReflectance(const Properties& properties, Builder& builder) {
+  const char* const other = "diffuse_reflectance";
+  const RgbParameter reflectance = readReflectance(properties, builder, "reflectance", 0.5f),
+                     otherwise = readReflectance(properties, builder, other, 0.5f);
+  return properties.has(other) || properties.child("texture", other) ? otherwise : reflectance;
+}
+
 ScalarParameter readScalar(const Properties& properties, Builder& builder, const std::string& name,
-                           float fallback) {
-  return ScalarParameter(builder.texture(properties, name, Rgb(fallback)));
+                           const NumberRange& range, float fallback) {
+  return {builder.texture(properties, name, {"number or texture", range}, Rgb(fallback)), range};
 }
 
 RoughnessParameters readRoughness(const Properties& properties, Builder& builder) {
   RoughnessParameters result;
-  const std::string distribution = lowerCase(properties.string("distribution", "beckmann"));
+  const std::string distribution = properties.word("distribution", "beckmann|ggx|phong|as", "beckmann");
   if (distribution == "ggx") {
     result.type = Microfacet::Type::ggx;
   } else if (distribution == "phong" || distribution == "as") {
-    builder.warn(properties.location,
+    builder.warn(properties.placeOf("distribution"),
                  "the \"" + distribution +
                      "\" distribution of microfacets is drawn as the \"beckmann\" distribution "
                      "of the same roughness");
-  } else if (distribution != "beckmann") {
-    throw SceneError(properties.location, "unknown distribution of microfacets \"" + distribution +
-                                              "\", expected \"beckmann\" or \"ggx\"");
   }
   result.sampleVisible = properties.boolean("sample_visible", true);
-  const TexturePtr alpha = builder.optionalTexture(properties, "alpha");
-  const TexturePtr alphaU = builder.optionalTexture(properties, "alpha_u");
-  const TexturePtr alphaV = builder.optionalTexture(properties, "alpha_v");
+  const Declaration declaration{"number or texture", kUnit};
+  const TexturePtr alpha = builder.optionalTexture(properties, "alpha", declaration);
+  const TexturePtr alphaU = builder.optionalTexture(properties, "alpha_u", declaration);
+  const TexturePtr alphaV = builder.optionalTexture(properties, "alpha_v", declaration);
   if (!alphaU != !alphaV)
     throw SceneError(properties.location, "\"alpha_u\" and \"alpha_v\" must be given together");
   if (alpha && alphaU)
     throw SceneError(properties.location,
                      "found both \"alpha\" and \"alpha_u\", \"alpha_v\", expected one or the other");
   if (alphaU) {
-    result.alphaU = ScalarParameter(alphaU);
-    result.alphaV = ScalarParameter(alphaV);
+    result.alphaU = ScalarParameter(alphaU, kUnit);
+    result.alphaV = ScalarParameter(alphaV, kUnit);
     result.anisotropic = true;
   } else {
-    result.alphaU = result.alphaV = alpha ? ScalarParameter(alpha) : ScalarParameter(0.1f);
+    result.alphaU = result.alphaV = alpha ? ScalarParameter(alpha, kUnit) : ScalarParameter(0.1f);
   }
   return result;
 }
@@ -70,8 +76,10 @@ Rgb ComplexIor::reflectance(const SurfacePoint& at, float cosTheta) const {
 ComplexIor readComplexIor(const Properties& properties, Builder& builder) {
   ComplexIor result;
   const std::string material = properties.string("material", "none");
-  const TexturePtr eta = builder.optionalTexture(properties, "eta"),
-                   k = builder.optionalTexture(properties, "k");
+  // Mirrors are made with a large k.
+  const Declaration declaration{"colour or texture", between(0, 1e6)};
+  const TexturePtr eta = builder.optionalTexture(properties, "eta", declaration),
+                   k = builder.optionalTexture(properties, "k", declaration);
   if (eta || k || material == "none") {
     if (material != "none")
       builder.warn(properties.location,
@@ -81,13 +89,12 @@ ComplexIor readComplexIor(const Properties& properties, Builder& builder) {
   } else {
     const Metal* metal = findMetal(material);
     if (!metal)
-      throw SceneError(properties.location,
-                       "unknown material \"" + material +
-                           "\", expected a metal such as \"Au\", \"Ag\", \"Al\", \"Cu\", or \"none\"");
+      properties.refuse("material", "'" + material + "'",
+                        "a metal such as \"Au\", \"Ag\", \"Al\", \"Cu\", or \"none\"");
     result.eta = Rgb(metal->eta[0], metal->eta[1], metal->eta[2]);
     result.k = Rgb(metal->k[0], metal->k[1], metal->k[2]);
   }
-  if (properties.has("ext_eta")) result.scale = 1 / readIor(properties, "ext_eta", "air");
+  result.scale = 1 / readIor(properties, "ext_eta", "vacuum");
   return result;
 }
 

@@ -45,27 +45,40 @@ class RgbParameter {
 class ScalarParameter {
  public:
   ScalarParameter(float constant = 0) : m_mean(constant) {}
-  explicit ScalarParameter(const TexturePtr& texture) : m_texture(texture->isConstant() ? nullptr : texture) {
+  // What the texture holds is clamped to the range where it is looked up; not-a-number counts as the least.
+  ScalarParameter(const TexturePtr& texture, const NumberRange& range)
+      : m_texture(texture->isConstant() ? nullptr : texture),
+        m_least(float(range.least)),
+        m_most(float(range.most)) {
     const Rgb mean = texture->mean();
-    m_mean = mean.x == mean.y && mean.y == mean.z ? mean.x : luminance(mean);
+    m_mean = clamped(mean.x == mean.y && mean.y == mean.z ? mean.x : luminance(mean));
   }
 
-  float operator()(const SurfacePoint& at) const { return m_texture ? m_texture->scalar(at.uv) : m_mean; }
+  float operator()(const SurfacePoint& at) const {
+    return m_texture ? clamped(m_texture->scalar(at.uv)) : m_mean;
+  }
   float mean() const { return m_mean; }
   bool isConstant() const { return !m_texture; }
   bool isZero() const { return !m_texture && m_mean == 0; }
 
  private:
+  float clamped(float x) const { return std::min(std::max(m_least, x), m_most); }
+
   TexturePtr m_texture;
-  float m_mean;
+  float m_mean, m_least = 0, m_most = 0;
 };
 
 // A reflectance or transmittance: a constant outside [0, 1] is clamped, with a warning, a texture at every
 // look-up.
 RgbParameter readReflectance(const Properties& properties, Builder& builder, const std::string& name,
                              float fallback);
+// "reflectance" (0.5), which is also called "diffuse_reflectance".
+RgbParameter readDiffuseReflectance(const Properties& properties, Builder& builder);
+// A constant outside of the range is refused, a texture clamped at every look-up.
 ScalarParameter readScalar(const Properties& properties, Builder& builder, const std::string& name,
-                           float fallback);
+                           const NumberRange& range, float fallback);
+// What roughness, weights and the like may be.
+inline constexpr NumberRange kUnit = between(0, 1);
 
 // Index of refraction of the inside over that of the outside, each a number or the name of a material.
 float readRelativeIor(const Properties& properties, const std::string& interior,
@@ -80,7 +93,8 @@ struct ComplexIor {
 };
 ComplexIor readComplexIor(const Properties& properties, Builder& builder);
 
-// "distribution" (beckmann), "alpha" (0.1) or "alpha_u" and "alpha_v", "sample_visible" (true).
+// "distribution" (beckmann), "alpha" (0.1; less than 0.0001 counts as that) or "alpha_u" and "alpha_v",
+// "sample_visible" (true).
 struct RoughnessParameters {
   Microfacet::Type type = Microfacet::Type::beckmann;
   ScalarParameter alphaU, alphaV;

@@ -1,7 +1,7 @@
 // phong: the modified Phong model, a diffuse and a glossy lobe, one-sided (Lafortune and Willems 1994, "Using
 // the Modified Phong Reflectance Model for Physically Based Rendering").
 //
-//   exponent               number or texture, of the cosine about the mirror direction; 30
+//   exponent               0 to 1e7, number or texture, of the cosine about the mirror direction; 30
 //   specular_reflectance   rgb or texture; 0.2
 //   diffuse_reflectance    rgb or texture; 0.5
 //
@@ -24,7 +24,7 @@ class Phong final : public Bsdf {
 
   BsdfSample sample(const SurfacePoint& at, const Vec3& wo, float uLobe, const Vec2& u) const override {
     if (!(wo.z > 0)) return {};
-    const float n = exponent(at);
+    const float n = m_exponent(at);
     if (uLobe >= m_specularProbability) {
       const Vec3 wi = squareToCosineHemisphere(u);
       return finishSample(wi, evaluate(at, n, wo, wi), Lobe::smooth);
@@ -35,21 +35,20 @@ class Phong final : public Bsdf {
   }
 
   BsdfValue evaluate(const SurfacePoint& at, const Vec3& wo, const Vec3& wi) const override {
-    return evaluate(at, exponent(at), wo, wi);
+    return evaluate(at, m_exponent(at), wo, wi);
   }
 
   float guidableProbability(const SurfacePoint& at, const Vec3& wo) const override {
     if (!(wo.z > 0)) return 0;
-    return glossyLobe(exponent(at)) == Lobe::smooth ? 1 : 1 - m_specularProbability;
+    return glossyLobe(m_exponent(at)) == Lobe::smooth ? 1 : 1 - m_specularProbability;
   }
 
   BsdfFeatures features(const SurfacePoint& at, const Vec3&) const override {
     const Rgb d = m_diffuse(at), s = m_specular(at);
-    return {clampUnit(d + s), luminance(d) > luminance(s) ? 1 : roughness(exponent(at))};
+    return {clampUnit(d + s), luminance(d) > luminance(s) ? 1 : roughness(m_exponent(at))};
   }
 
  private:
-  float exponent(const SurfacePoint& at) const { return std::min(std::max(0.0f, m_exponent(at)), 1e7f); }
   static float roughness(float n) { return std::sqrt(2 / (n + 2)); }
   static Lobe glossyLobe(float n) {
     return roughness(n) < kMinGuidedRoughness ? Lobe::nearDelta : Lobe::smooth;
@@ -78,7 +77,7 @@ class Phong final : public Bsdf {
 BsdfPtr makePhong(const Properties& properties, Builder& builder) {
   return std::make_shared<Phong>(readReflectance(properties, builder, "diffuse_reflectance", 0.5f),
                                  readReflectance(properties, builder, "specular_reflectance", 0.2f),
-                                 readScalar(properties, builder, "exponent", 30));
+                                 readScalar(properties, builder, "exponent", between(0, 1e7), 30));
 }
 
 }  // namespace odis::render

@@ -13,12 +13,13 @@
 //   flatness         0: blends the diffuse part towards an approximation of subsurface scattering
 //   clearcoat, clearcoat_gloss 0, 0: a second interface, and how glossy it is
 //   specular         0.5: reflectance of the dielectric; eta = 2 / (1 - sqrt(0.08 specular)) - 1
-//   eta              index of refraction (any positive number), instead of specular
+//   eta              index of refraction, 0.01 to 100, instead of specular
 //   main_specular_sampling_rate, clearcoat_sampling_rate, diffuse_reflectance_sampling_rate
-//                    1: relative rates at which the lobes are sampled
+//                    1, 0 to 1000: relative rates at which the lobes are sampled
 #include "render/bsdf/principled.h"
 
 #include "render/bsdf/factories.h"
+#include "render/bsdf/ior.h"
 #include "render/bsdf/parameter.h"
 
 namespace odis::render {
@@ -30,10 +31,6 @@ struct PrincipledParameters {
       flatness, clearcoat, clearcoatGloss;
   float eta, specularRate, clearcoatRate, diffuseRate;
 };
-
-float unit(float x) {
-  return std::min(std::max(0.0f, x), 1.0f);
-}
 
 class Principled final : public Bsdf {
  public:
@@ -75,19 +72,19 @@ class Principled final : public Bsdf {
  private:
   PrincipledPoint point(const SurfacePoint& at) const {
     const PrincipledParameters& p = m_parameters;
-    const float roughness = unit(p.roughness(at));
-    const float aspect = std::sqrt(1 - 0.9f * unit(p.anisotropic(at)));
+    const float roughness = p.roughness(at);
+    const float aspect = std::sqrt(1 - 0.9f * p.anisotropic(at));
     const float alpha = sqr(roughness);
     return {
         p.baseColor(at),
         roughness,
-        unit(p.metallic(at)),
-        unit(p.specularTransmission(at)),
-        unit(p.specularTint(at)),
-        unit(p.sheen(at)),
-        unit(p.sheenTint(at)),
-        unit(p.flatness(at)),
-        unit(p.clearcoat(at)),
+        p.metallic(at),
+        p.specularTransmission(at),
+        p.specularTint(at),
+        p.sheen(at),
+        p.sheenTint(at),
+        p.flatness(at),
+        p.clearcoat(at),
         p.eta,
         Microfacet(Microfacet::Type::ggx, std::max(0.001f, alpha / aspect), std::max(0.001f, alpha * aspect)),
         ClearcoatFacets(p.clearcoatGloss(at)),
@@ -100,31 +97,27 @@ class Principled final : public Bsdf {
 };
 
 float readEta(const Properties& properties, bool transparent) {
-  if (properties.has("eta")) {
+  const std::optional<float> eta = properties.optionalNumber("eta", kIndexRange);
+  const float specular = properties.number("specular", kUnit, 0.5f);
+  if (eta) {
     if (properties.has("specular"))
-      throw SceneError(properties.location, "found both \"eta\" and \"specular\", expected one or the other");
-    const float eta = properties.number("eta");
-    if (!(eta > 0) || !std::isfinite(eta))
-      throw SceneError(properties.location, "\"eta\" is not a positive number");
+      throw SceneError(properties.placeOf("eta"),
+                       "found both \"eta\" and \"specular\", expected one or the other");
     // Without a change of index there is no direction of refraction.
-    return transparent && eta == 1 ? 1.001f : eta;
+    return transparent && *eta == 1 ? 1.001f : *eta;
   }
-  const float specular = unit(properties.number("specular", 0.5f));
   return 2 / (1 - std::sqrt(0.08f * (transparent && specular == 0 ? 1e-3f : specular))) - 1;
 }
 
 float readRate(const Properties& properties, const std::string& name) {
-  const float rate = properties.number(name, 1.0f);
-  if (!(rate >= 0) || !std::isfinite(rate))
-    throw SceneError(properties.location, "\"" + name + "\" is negative");
-  return rate;
+  return properties.number(name, between(0, 1000), 1.0f);
 }
 
 }  // namespace
 
 BsdfPtr makePrincipled(const Properties& properties, Builder& builder) {
   const auto scalar = [&](const char* name, float fallback) {
-    return readScalar(properties, builder, name, fallback);
+    return readScalar(properties, builder, name, kUnit, fallback);
   };
   PrincipledParameters p;
   p.baseColor = readReflectance(properties, builder, "base_color", 0.5f);

@@ -11,7 +11,7 @@ namespace odis::render {
 // Isotropic GTR distribution with gamma = 1, the long-tailed one of the clearcoat.
 class ClearcoatFacets {
  public:
-  explicit ClearcoatFacets(float gloss) : m_alpha(lerp(std::clamp(gloss, 0.0f, 1.0f), 0.1f, 0.001f)) {}
+  explicit ClearcoatFacets(float gloss) : m_alpha(lerp(gloss, 0.1f, 0.001f)) {}
 
   float d(const Vec3& m) const;
   float pdf(const Vec3& m) const { return m.z > 0 ? m.z * d(m) : 0; }

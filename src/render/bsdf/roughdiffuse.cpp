@@ -70,10 +70,9 @@ class RoughDiffuse final : public Bsdf {
 }  // namespace
 
 BsdfPtr makeRoughDiffuse(const Properties& properties, Builder& builder) {
-  const bool old = builder.optionalTexture(properties, "diffuse_reflectance") != nullptr;
-  return std::make_shared<RoughDiffuse>(
-      readReflectance(properties, builder, old ? "diffuse_reflectance" : "reflectance", 0.5f),
-      readScalar(properties, builder, "alpha", 0.2f), properties.boolean("use_fast_approx", false));
+  return std::make_shared<RoughDiffuse>(readDiffuseReflectance(properties, builder),
+                                        readScalar(properties, builder, "alpha", kUnit, 0.2f),
+                                        properties.boolean("use_fast_approx", false));
 }
 
 }  // namespace odis::render

@@ -10,6 +10,7 @@
 // from a table of 64 x 64 over uv.
 #include "render/emitter/area.h"
 
+#include "render/emitter/factories.h"
 #include "render/emitter/textured_mesh_light.h"
 #include "render/emitter/textured_shape_light.h"
 #include "render/scene/builder.h"
@@ -72,9 +73,8 @@ std::shared_ptr<SurfaceEmitter> makeSurfaceEmitter(const Properties& node, const
   if (node.type != "area")
     throw SceneError(node.location,
                      "a shape cannot carry the emitter \"" + node.type + "\"; expected \"area\"");
-  TexturePtr radiance = builder.texture(node, "radiance", {1, 1, 1});
-  const auto parameter = node.parameters.find("radiance");
-  const SourceLocation& at = parameter != node.parameters.end() ? parameter->second.location : node.location;
+  TexturePtr radiance = builder.texture(node, "radiance", {"colour or texture", kEmissionRange}, {1, 1, 1});
+  const SourceLocation& at = node.placeOf("radiance");
   const Rgb mean = radiance->mean();
   if (!isFinite(mean)) throw SceneError(at, "the radiance of an area light is not a finite number");
   if (mean.x < 0 || mean.y < 0 || mean.z < 0)

@@ -15,8 +15,8 @@ EmitterSample DirectionalLight::sample(uint32_t, const Vec3&, const Vec2&) const
 
 std::vector<EmitterPtr> makeDirectional(const Properties& node, Builder&) {
   refuseBoth(node, "direction", "to_world");
-  const Vec3 direction = node.has("direction") ? node.vector("direction")
-                                               : transformVector(node.transform("to_world"), Vec3(0, 0, 1));
+  const Vec3 forward = transformVector(node.transform("to_world"), Vec3(0, 0, 1));
+  const Vec3 direction = node.vector("direction", forward);
   if (!isFinite(direction) || !(length(direction) > 0))
     throw SceneError(node.location,
                      "the direction of a directional light is not a direction; expected a finite vector"

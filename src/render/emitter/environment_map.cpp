@@ -169,10 +169,7 @@ float EnvironmentMap::pdf(const Vec3&, const Vec3& wi) const {
 std::vector<EmitterPtr> makeEnvironmentMap(const Properties& node, Builder& builder) {
   const std::string name = node.string("filename");
   const SourceLocation& at = node.parameters.at("filename").location;
-  const float gamma = node.number("gamma", -1.0f), scale = emissionScale(node, "scale", 1.0f);
-  if (!(gamma > 0) && gamma != -1)
-    throw SceneError(node.location, "the gamma of an envmap is " + std::to_string(gamma) +
-                                        "; expected more than 0, or -1 for sRGB");
+  const float gamma = node.number("gamma", kGammaRange, -1.0f), scale = emissionScale(node, "scale", 1.0f);
   const Matrix4 toWorld = node.transform("to_world");
   if (!std::isnormal(toWorld.minorOf(3, 3)))
     throw SceneError(node.location, "the to_world of an envmap has no inverse");

@@ -14,10 +14,11 @@ std::vector<EmitterPtr> makeSpot(const Properties& node, Builder& builder);
 std::vector<EmitterPtr> makeSun(const Properties& node, Builder& builder);
 std::vector<EmitterPtr> makeSunSky(const Properties& node, Builder& builder);
 
-// The amount of light that a parameter gives, 1 if it is absent; throws SceneError unless it is finite and
-// not negative.
+// What radiance and the like may be: sums of it and their squares stay finite.
+inline constexpr NumberRange kEmissionRange = between(0, 1e15);
+// The amount of light that a parameter gives, 1 if it is absent.
 Rgb emission(const Properties& node, const std::string& name);
-// A scale that multiplies light; the same checks.
+// A scale that multiplies light.
 float emissionScale(const Properties& node, const std::string& name, float fallback);
 // Throws SceneError if both parameters are given.
 void refuseBoth(const Properties& node, const std::string& first, const std::string& second);

@@ -26,8 +26,8 @@ EmitterSample PointLight::sample(uint32_t, const Vec3& ref, const Vec2&) const {
 
 std::vector<EmitterPtr> makePoint(const Properties& node, Builder&) {
   refuseBoth(node, "position", "to_world");
-  const Vec3 position = node.has("position") ? node.vector("position")
-                                             : transformPoint(node.transform("to_world"), Vec3(0, 0, 0));
+  const Vec3 origin = transformPoint(node.transform("to_world"), Vec3(0, 0, 0));
+  const Vec3 position = node.vector("position", origin);
   if (!isFinite(position)) throw SceneError(node.location, "the position of a point light is not finite");
   return {std::make_shared<PointLight>(position, emission(node, "intensity"))};
 }

@@ -1,23 +1,35 @@
 // The emitters that a scene file can name. Area lights belong to shapes: see makeSurfaceEmitter.
-#include <unordered_map>
+#include <utility>
 
 #include "render/emitter/factories.h"
 
 namespace odis::render {
 
+namespace {
+
+constexpr std::pair<const char*, EmitterFactory> kFactories[] = {
+    {"constant", makeConstant},
+    {"directional", makeDirectional},
+    {"envmap", makeEnvironmentMap},
+    {"point", makePoint},
+    {"sky", makeSky},
+    {"spot", makeSpot},
+    {"sun", makeSun},
+    {"sunsky", makeSunSky},
+};
+
+}  // namespace
+
 EmitterFactory findEmitterFactory(const std::string& type) {
-  static const std::unordered_map<std::string, EmitterFactory> factories = {
-      {"constant", makeConstant},
-      {"directional", makeDirectional},
-      {"envmap", makeEnvironmentMap},
-      {"point", makePoint},
-      {"sky", makeSky},
-      {"spot", makeSpot},
-      {"sun", makeSun},
-      {"sunsky", makeSunSky},
-  };
-  const auto found = factories.find(type);
-  return found == factories.end() ? nullptr : found->second;
+  for (const auto& [name, factory] : kFactories)
+    if (type == name) return factory;
+  return nullptr;
+}
+
+std::vector<std::string> emitterTypes() {
+  std::vector<std::string> types;
+  for (const auto& entry : kFactories) types.emplace_back(entry.first);
+  return types;
 }
 
 }  // namespace odis::render

@@ -51,15 +51,12 @@ EmitterSample SpotLight::sample(uint32_t, const Vec3& ref, const Vec2&) const {
 
 std::vector<EmitterPtr> makeSpot(const Properties& node, Builder& builder) {
   const Matrix4 toWorld = node.transform("to_world");
-  const float cutoff = node.number("cutoff_angle", 20.0f);
-  float beamWidth = node.number("beam_width", cutoff * 0.75f);
-  if (!(cutoff > 0 && cutoff <= 180))
-    throw SceneError(node.location, "the cutoff_angle of a spot light is " + std::to_string(cutoff) +
-                                        " degrees; expected more than 0 and at most 180");
-  if (!(beamWidth >= 0 && beamWidth <= cutoff)) {
-    builder.warn(node.location,
-                 "the beam_width of a spot light is not within 0 and its cutoff_angle; it is clamped");
-    beamWidth = beamWidth > cutoff ? cutoff : 0.0f;
+  const float cutoff = node.number("cutoff_angle", between(0.001, 180), 20.0f);
+  float beamWidth = node.number("beam_width", between(0, 180), cutoff * 0.75f);
+  if (beamWidth > cutoff) {
+    builder.warn(node.placeOf("beam_width"),
+                 "the beam_width of a spot light is more than its cutoff_angle; it is clamped");
+    beamWidth = cutoff;
   }
   const Vec3 position = transformPoint(toWorld, Vec3(0, 0, 0)),
              axis = transformVector(toWorld, Vec3(0, 0, 1));

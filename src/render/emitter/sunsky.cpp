@@ -52,15 +52,15 @@ const Matrix4 kZUp(1, 0, 0, 0, 0, 0, 1, 0, 0, -1, 0, 0, 0, 0, 0, 1);
 
 Vec3 directionFromTime(const Properties& node, bool zUp) {
   TimeAndPlace when;
-  when.year = int(node.integer("year", when.year));
-  when.month = int(node.integer("month", when.month));
-  when.day = int(node.integer("day", when.day));
-  when.hour = node.number("hour", float(when.hour));
-  when.minute = node.number("minute", float(when.minute));
-  when.second = node.number("second", float(when.second));
-  when.latitude = node.number("latitude", float(when.latitude));
-  when.longitude = node.number("longitude", float(when.longitude));
-  when.timezone = node.number("timezone", float(when.timezone));
+  when.year = int(node.integer("year", between(1, 9999), when.year));
+  when.month = int(node.integer("month", between(1, 12), when.month));
+  when.day = int(node.integer("day", between(1, 31), when.day));
+  when.hour = node.number("hour", between(0, 24), float(when.hour));
+  when.minute = node.number("minute", between(0, 60), float(when.minute));
+  when.second = node.number("second", between(0, 60), float(when.second));
+  when.latitude = node.number("latitude", between(-90, 90), float(when.latitude));
+  when.longitude = node.number("longitude", between(-360, 360), float(when.longitude));
+  when.timezone = node.number("timezone", between(-24, 24), float(when.timezone));
   const SunPosition sun = sunPosition(when);
   const float north = float(std::sin(sun.zenith) * std::cos(sun.azimuth));
   const float east = float(std::sin(sun.zenith) * std::sin(sun.azimuth));
@@ -76,21 +76,14 @@ Daylight readDaylight(const Properties& node) {
   if (zUp) result.toWorld = kZUp * result.toWorld;
   if (!std::isnormal(result.toWorld.minorOf(3, 3)))
     throw SceneError(node.location, "the to_world of \"" + node.type + "\" has no inverse");
-  result.albedo = node.color("albedo", Rgb(0.3f));
-  result.turbidity = node.number("turbidity", 3.0f);
-  if (!(result.turbidity >= 1 && result.turbidity <= 10))
-    throw SceneError(node.location, "the turbidity of \"" + node.type + "\" is " +
-                                        std::to_string(result.turbidity) + "; expected 1 to 10");
-  result.stretch = node.number("stretch", 1.0f);
-  if (!(result.stretch >= 1 && result.stretch <= 2))
-    throw SceneError(node.location, "the stretch of \"" + node.type + "\" is " +
-                                        std::to_string(result.stretch) + "; expected 1 to 2");
+  result.albedo = node.color("albedo", between(0, 1), Rgb(0.3f));
+  result.turbidity = node.number("turbidity", between(1, 10), 3.0f);
+  result.stretch = node.number("stretch", between(1, 2), 1.0f);
 
   for (const char* parameter : {"latitude", "longitude", "timezone", "year", "month", "day", "hour"})
     refuseBoth(node, "sun_direction", parameter);
-  Vec3 toSun = node.has("sun_direction")
-                   ? transformVector(result.toWorld.inverse(), node.vector("sun_direction"))
-                   : directionFromTime(node, zUp);
+  const Vec3 ofTime = directionFromTime(node, zUp), given = node.vector("sun_direction", ofTime);
+  Vec3 toSun = node.has("sun_direction") ? transformVector(result.toWorld.inverse(), given) : ofTime;
   if (!isFinite(toSun) || !(length(toSun) > 0))
     throw SceneError(node.location, "the direction of the sun is not a finite vector other than zero");
   toSun = normalize(toSun);
@@ -104,10 +97,7 @@ Daylight readDaylight(const Properties& node) {
 }
 
 EmitterPtr skyLight(const Properties& node, const Daylight& daylight, float scale) {
-  const int64_t width = node.integer("resolution", 512);
-  if (width < 4 || width > 16384)
-    throw SceneError(node.location, "the resolution of \"" + node.type + "\" is " + std::to_string(width) +
-                                        "; expected 4 to 16384");
+  const int64_t width = node.integer("resolution", between(4, 16384), 512);
   const Sky sky(daylight.turbidity, daylight.sunZenith, daylight.albedo);
   return std::make_shared<SkyDome>(sky, daylight.sunDirection, scale, daylight.stretch, int(width),
                                    daylight.toWorld);
@@ -115,11 +105,9 @@ EmitterPtr skyLight(const Properties& node, const Daylight& daylight, float scal
 
 EmitterPtr sunLight(const Properties& node, const Daylight& daylight, float scale) {
   refuseBoth(node, "sun_aperture", "sun_radius_scale");
-  const float diameter = node.has("sun_aperture") ? node.number("sun_aperture")
-                                                  : kSunDiameter * node.number("sun_radius_scale", 1.0f);
-  if (!(diameter >= 0 && diameter <= 360))
-    throw SceneError(node.location, "the sun of \"" + node.type + "\" is " + std::to_string(diameter) +
-                                        " degrees wide; expected 0 to 360");
+  // At most the whole sphere.
+  const float scaled = kSunDiameter * node.number("sun_radius_scale", between(0, 670), 1.0f);
+  const float diameter = node.number("sun_aperture", between(0, 360), scaled);
   // The stretch moves the sun along with the sky about it.
   Vec3 local = daylight.sunDirection;
   const float horizontal = std::hypot(local.x, local.z), zenith = daylight.sunZenith * daylight.stretch;

@@ -1,5 +1,7 @@
 #include "render/film/filter.h"
 
+#include <fmt/format.h>
+
 #include <array>
 #include <stdexcept>
 #include <utility>
@@ -8,15 +10,16 @@ namespace odis::render {
 
 namespace {
 
-void require(bool valid, const char* message) {
-  if (!valid) throw std::invalid_argument(message);
+void require(float value, const NumberRange& range, const std::string& what) {
+  if (!range.contains(value))
+    throw std::invalid_argument(fmt::format("{} is {}, expected {}", what, value, range.text()));
 }
 
 // Constant within the radius. Offsets lie in [-radius, radius).
 class BoxFilter final : public Filter {
  public:
   explicit BoxFilter(float radius) : m_radius(radius) {
-    require(radius > 0 && std::isfinite(radius), "the radius of a box filter must be positive");
+    require(radius, kFilterRadius, "the radius of a box filter");
   }
   FilterSample sample(const Vec2& u) const override {
     return {{(2 * u.x - 1) * m_radius, (2 * u.y - 1) * m_radius}, 1.0f};
@@ -36,7 +39,7 @@ class BoxFilter final : public Filter {
 class TentFilter final : public Filter {
  public:
   explicit TentFilter(float radius) : m_radius(radius) {
-    require(radius > 0 && std::isfinite(radius), "the radius of a tent filter must be positive");
+    require(radius, kFilterRadius, "the radius of a tent filter");
   }
   FilterSample sample(const Vec2& u) const override { return {{invert(u.x), invert(u.y)}, 1.0f}; }
   float value(const Vec2& offset) const override { return profile(offset.x) * profile(offset.y); }
@@ -147,13 +150,13 @@ std::unique_ptr<Filter> makeTentFilter(float radius) {
 }
 
 std::unique_ptr<Filter> makeGaussianFilter(float stddev) {
-  require(stddev > 0 && std::isfinite(stddev),
-          "the standard deviation of a gaussian filter must be positive");
+  require(stddev, kFilterRadius, "the standard deviation of a gaussian filter");
   return std::make_unique<TabulatedFilter<GaussianProfile>>(GaussianProfile(stddev), "gaussian");
 }
 
 std::unique_ptr<Filter> makeMitchellFilter(float b, float c) {
-  require(std::isfinite(b) && std::isfinite(c), "the parameters of a mitchell filter must be finite");
+  require(b, kMitchellRange, "b of a mitchell filter");
+  require(c, kMitchellRange, "c of a mitchell filter");
   const bool catmullRom = b == 0.0f && c == 0.5f;
   return std::make_unique<TabulatedFilter<MitchellProfile>>(MitchellProfile{b, c},
                                                             catmullRom ? "catmullrom" : "mitchell");

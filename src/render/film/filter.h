@@ -7,6 +7,7 @@
 #include <memory>
 #include <string>
 
+#include "render/math/interval.h"
 #include "render/math/vec.h"
 
 namespace odis::render {
@@ -26,7 +27,12 @@ class Filter {
   virtual std::string name() const = 0;
 };
 
-// Parameters and defaults as in Mitsuba. Separable.
+// In pixels: narrower filters have no place in single precision, wider ones blur everything.
+inline constexpr NumberRange kFilterRadius = between(0.001, 100);
+// Of b and c: beyond, the lobes cancel each other and only noise is left.
+inline constexpr NumberRange kMitchellRange = between(0, 1);
+
+// Parameters and defaults as in Mitsuba; throw std::invalid_argument. Separable.
 std::unique_ptr<Filter> makeBoxFilter(float radius = 0.5f);
 std::unique_ptr<Filter> makeTentFilter(float radius = 1.0f);
 std::unique_ptr<Filter> makeGaussianFilter(float stddev = 0.5f);  // radius 4 stddev

@@ -10,22 +10,7 @@
 namespace odis::render {
 namespace {
 
-// What scene files name, for suggestions: of these, the ones that a registry knows.
-constexpr const char* kTextureTypes[] = {"bitmap", "checkerboard", "uniform",       "srgb",
-                                         "scale",  "gridtexture",  "mesh_attribute"};
-constexpr const char* kBsdfTypes[] = {
-    "diffuse",        "roughdiffuse", "dielectric",   "thindielectric", "roughdielectric", "conductor",
-    "roughconductor", "plastic",      "roughplastic", "principled",     "principledthin",  "twosided",
-    "mask",           "blendbsdf",    "mixturebsdf",  "bumpmap",        "normalmap",       "coating",
-    "roughcoating",   "phong",        "ward",         "null",           "difftrans"};
-constexpr const char* kEmitterTypes[] = {"area",   "point", "spot", "directional", "collimated", "constant",
-                                         "envmap", "sky",   "sun",  "sunsky",      "projector"};
-
-template <class Types, class Find>
-std::string unknownType(const Properties& node, const Types& types, Find&& find) {
-  std::vector<std::string> known;
-  for (const char* type : types)
-    if (find(type)) known.push_back(type);
+std::string unknownType(const Properties& node, const std::vector<std::string>& known) {
   return "the " + node.tag + " '" + node.type + "' is unknown" + suggestion(node.type, known);
 }
 
@@ -39,15 +24,19 @@ bool isHarmless(const std::string& name) {
 
 }  // namespace
 
-TexturePtr Builder::texture(const Properties& parent, const std::string& name, const Rgb& fallback) {
-  if (TexturePtr found = optionalTexture(parent, name)) return found;
+TexturePtr Builder::texture(const Properties& parent, const std::string& name, const Declaration& declaration,
+                            const Rgb& fallback) {
+  if (TexturePtr found = optionalTexture(parent, name, declaration)) return found;
   return std::make_shared<ConstantTexture>(fallback);
 }
 
-TexturePtr Builder::optionalTexture(const Properties& parent, const std::string& name) {
+TexturePtr Builder::optionalTexture(const Properties& parent, const std::string& name,
+                                    const Declaration& declaration) {
+  parent.declare(name, declaration);
   if (const Properties* node = parent.child("texture", name)) return texture(*node);
   if (!parent.has(name)) return nullptr;
-  return std::make_shared<ConstantTexture>(parent.color(name));
+  return std::make_shared<ConstantTexture>(
+      parent.color(name, declaration.clamped ? kAnyNumber : declaration.range));
 }
 
 TexturePtr Builder::texture(const Properties& node) {
@@ -58,7 +47,7 @@ TexturePtr Builder::texture(const Properties& node) {
     made = factory(node, *this);
     warnUnqueried(node);
   } else {
-    warn(node.location, unknownType(node, kTextureTypes, findTextureFactory) + ", a constant of 0.5 is used");
+    warn(node.location, unknownType(node, textureTypes()) + ", a constant of 0.5 is used");
     made = std::make_shared<ConstantTexture>(Rgb(0.5f));
   }
   return m_textures[&node] = made;
@@ -72,7 +61,7 @@ BsdfPtr Builder::bsdf(const Properties& node) {
     made = factory(node, *this);
     warnUnqueried(node);
   } else {
-    warn(node.location, unknownType(node, kBsdfTypes, findBsdfFactory) + ", a grey diffuse one is used");
+    warn(node.location, unknownType(node, bsdfTypes()) + ", a grey diffuse one is used");
     made = findBsdfFactory("diffuse")(Properties(), *this);
   }
   return m_bsdfs[&node] = made;
@@ -96,15 +85,17 @@ std::vector<EmitterPtr> Builder::emitters(const Properties& node) {
     warnUnqueried(node);
     return made;
   }
-  warn(node.location, unknownType(node, kEmitterTypes, findEmitterFactory) + ", it is left out");
+  warn(node.location, unknownType(node, emitterTypes()) + ", it is left out");
   return {};
 }
 
 void Builder::warnUnqueried(const Properties& node) {
+  std::vector<std::string> known;
+  for (const auto& [name, declaration] : node.declarations()) known.push_back(name);
   for (const auto& [name, location] : node.unqueried())
     if (!isHarmless(name))
-      warn(location,
-           "unknown parameter '" + name + "' of the " + node.tag + " '" + node.type + "' is ignored");
+      warn(location, "unknown parameter '" + name + "' of the " + node.tag + " '" + node.type +
+                         "' is ignored" + suggestion(name, known));
 }
 
 std::string Builder::resolvePath(const std::string& fileName, const SourceLocation& at) {

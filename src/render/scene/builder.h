@@ -18,16 +18,25 @@ namespace odis::render {
 
 class Image;
 
+// What a colour within a texture may be: its use says what is sensible.
+inline constexpr Declaration kAnyTexture{"colour or texture"};
+// The gamma of an image file: of a power curve, or -1 for sRGB.
+inline constexpr NumberRange kGammaRange{0.01, 100, true, true, -1};
+
 class Builder {
  public:
   // `folders`: where files are looked for that are not beside the scene file that names them.
   explicit Builder(Warnings& warnings, std::vector<std::string> folders = {})
       : m_warnings(warnings), m_folders(std::move(folders)) {}
 
-  // A texture parameter: a nested <texture>, an rgb, a number, or the fallback as a constant.
-  TexturePtr texture(const Properties& parent, const std::string& name, const Rgb& fallback);
+  // A texture parameter: a nested <texture>, an rgb, a number, or the fallback as a constant. A constant
+  // outside of the declared range is refused, or left as it is for who clamps it; textures are looked up as
+  // they are.
+  TexturePtr texture(const Properties& parent, const std::string& name, const Declaration& declaration,
+                     const Rgb& fallback);
   // The same, null if the parameter is absent.
-  TexturePtr optionalTexture(const Properties& parent, const std::string& name);
+  TexturePtr optionalTexture(const Properties& parent, const std::string& name,
+                             const Declaration& declaration);
   TexturePtr texture(const Properties& node);
   BsdfPtr bsdf(const Properties& node);
   // The nested BSDF number `index` (0 first) of `parent`; throws SceneError if it is not there.
@@ -60,10 +69,14 @@ class Builder {
 using TextureFactory = TexturePtr (*)(const Properties&, Builder&);
 using BsdfFactory = BsdfPtr (*)(const Properties&, Builder&);
 using EmitterFactory = std::vector<EmitterPtr> (*)(const Properties&, Builder&);
-TextureFactory findTextureFactory(
-    const std::string& type);                          // src/render/texture/registry.cpp; null if unknown
-BsdfFactory findBsdfFactory(const std::string& type);  // src/render/bsdf/registry.cpp
+// Null if the type is unknown. Beside them the types that there are, in the order of the alphabet.
+TextureFactory findTextureFactory(const std::string& type);  // src/render/texture/registry.cpp
+BsdfFactory findBsdfFactory(const std::string& type);        // src/render/bsdf/registry.cpp
 EmitterFactory findEmitterFactory(const std::string& type);  // src/render/emitter/registry.cpp
+std::vector<std::string> textureTypes();
+std::vector<std::string> bsdfTypes();
+std::vector<std::string> emitterTypes();
+std::vector<std::string> shapeTypes();  // src/render/shape/registry.cpp
 
 // Makes the geometry of a <shape> element: its BSDF and emitter are set by who calls. Throws SceneError;
 // null, with a warning, if there is nothing to draw (an empty mesh). src/render/shape/registry.cpp

@@ -1,8 +1,7 @@
 // Scene::load: from the tree of Properties to a scene that can be rendered.
-#include <limits>
-
 #include "render/scene/builder.h"
 #include "render/scene/load_film.h"
+#include "render/scene/load_integrator.h"
 #include "render/scene/load_shapes.h"
 #include "render/scene/scene.h"
 #include "render/sensor/perspective.h"
@@ -11,50 +10,6 @@
 
 namespace odis::render {
 namespace {
-
-IntegratorSettings loadIntegrator(const Properties* node, Warnings& warnings) {
-  IntegratorSettings settings;
-  settings.type = "";
-  if (!node) return settings;
-  settings.type = node->type;
-  if (node->type != "path" && node->type != "odis" && !node->type.empty())
-    warnings.add(
-        node->location,
-        "the integrator '" + node->type +
-            "' is not one of path and odis, the integrator of this program is used with its path depths");
-  // Integrators that record something about another hold that other one.
-  while (const Properties* nested = node->child("integrator")) node = nested;
-  const auto depth = [&](const char* name, int fallback, int least) {
-    const int64_t value = node->integer(name, fallback);
-    if (value < least || value > std::numeric_limits<int>::max())
-      throw SceneError(node->parameters.at(name).location, "found " + std::to_string(value) + " for '" +
-                                                               name + "', expected " + std::to_string(least) +
-                                                               " or more");
-    return int(value);
-  };
-  settings.maxDepth = depth("max_depth", -1, -1);
-  // 0.6 counts it from one, too, but allows a zero.
-  settings.rrDepth = depth("rr_depth", 5, 0);
-  if (node->has("hide_emitters") && node->boolean("hide_emitters"))
-    warnings.add(node->parameters.at("hide_emitters").location,
-                 "'hide_emitters' is not supported and is ignored");
-  return settings;
-}
-
-int loadSampleCount(const Properties* sampler, Warnings& warnings) {
-  if (!sampler) return 0;
-  if (sampler->type != "independent" && sampler->type != "sobol")
-    warnings.add(sampler->location, "the sampler '" + sampler->type +
-                                        "' is not one of independent and sobol, the sampler of this program "
-                                        "is used with its sample count");
-  if (!sampler->has("sample_count")) return 0;
-  const int64_t count = sampler->integer("sample_count");
-  if (count < 1 || count > std::numeric_limits<int>::max())
-    throw SceneError(sampler->parameters.at("sample_count").location,
-                     "found " + std::to_string(count) + " for 'sample_count', expected 1 to " +
-                         std::to_string(std::numeric_limits<int>::max()));
-  return int(count);
-}
 
 // For scenes without a camera: all of the scene, seen along -z.
 std::shared_ptr<const Sensor> defaultSensor(const SceneBounds& bounds, const Vec2i& resolution) {
@@ -94,8 +49,14 @@ std::unique_ptr<Scene> Scene::load(const std::string& path, const LoadOptions& o
       if (first)
         warnings.add(node.location, "a scene has one " + node.tag + " only, this further one is ignored");
       if (!first) first = &node;
+    } else if (node.id.empty() && node.tag != "film" && node.tag != "sampler") {
+      // With an id others may refer to it.
+      warnings.add(node.location,
+                   "the " + node.tag + " '" + node.type + "' belongs to nothing and is ignored");
     }
   }
+  for (const auto& [name, parameter] : root.parameters)
+    warnings.add(parameter.location, "unknown parameter '" + name + "' of the scene is ignored");
   scene->finish();
 
   // Scenes of 0.5 may keep film and sampler beside the sensor.
@@ -105,9 +66,7 @@ std::unique_ptr<Scene> Scene::load(const std::string& path, const LoadOptions& o
   };
   const FilmSettings film = loadFilm(part("film"), options, warnings);
   scene->setFilm(film);
-  IntegratorSettings settings = loadIntegrator(integrator, warnings);
-  settings.samplesPerPixel = loadSampleCount(part("sampler"), warnings);
-  scene->setIntegrator(settings);
+  scene->setIntegrator(loadIntegrator(integrator, part("sampler"), warnings));
   const Vec2i resolution(film.width, film.height);
   if (sensor) {
     scene->setSensor(makeSensor(*sensor, resolution, warnings));

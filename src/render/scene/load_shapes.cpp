@@ -7,12 +7,6 @@
 namespace odis::render {
 namespace {
 
-bool isKnown(const std::string& type) {
-  static const char* const types[] = {"cube", "cylinder",  "disk",       "obj",
-                                      "ply",  "rectangle", "serialized", "sphere"};
-  return std::find(std::begin(types), std::end(types), type) != std::end(types);
-}
-
 // The children with this tag, marked as queried.
 std::vector<const Properties*> childrenOf(const Properties& node, const std::string& tag) {
   std::vector<const Properties*> result;
@@ -38,12 +32,11 @@ void ShapeLoader::load(const Properties& node) {
 }
 
 ShapePtr ShapeLoader::make(const Properties& node, bool grouped) {
-  if (!isKnown(node.type)) {
-    m_builder.warn(node.location,
-                   "the shape '" + node.type + "' is unknown" +
-                       suggestion(node.type, {"cube", "cylinder", "disk", "obj", "ply", "rectangle",
-                                              "serialized", "sphere", "instance", "shapegroup", "merge"}) +
-                       ", it is left out");
+  std::vector<std::string> known = shapeTypes();
+  if (std::find(known.begin(), known.end(), node.type) == known.end()) {
+    known.insert(known.end(), {"instance", "shapegroup", "merge"});
+    m_builder.warn(node.location, "the shape '" + node.type + "' is unknown" + suggestion(node.type, known) +
+                                      ", it is left out");
     return nullptr;
   }
   ShapePtr shape = makeShape(node, m_builder);

@@ -24,12 +24,6 @@ Matrix4 rigidToWorld(const Properties& node, Warnings& warnings) {
   return toWorld;
 }
 
-// Where a parameter stands; the sensor itself if the value is a default.
-const SourceLocation& placeOf(const Properties& node, const std::string& name) {
-  const auto found = node.parameters.find(name);
-  return found == node.parameters.end() ? node.location : found->second.location;
-}
-
 }  // namespace
 
 std::shared_ptr<const Sensor> makeSensor(const Properties& node, const Vec2i& resolution,
@@ -39,19 +33,18 @@ std::shared_ptr<const Sensor> makeSensor(const Properties& node, const Vec2i& re
     warnings.add(node.location, "the sensor '" + node.type + "' is unknown" +
                                     suggestion(node.type, {"perspective", "thinlens"}) +
                                     ", a perspective sensor is used");
-  const Vec2 offset(node.number("principal_point_offset_x", 0.0f),
-                    node.number("principal_point_offset_y", 0.0f));
+  // In widths and heights of the film.
+  constexpr NumberRange offsets = between(-100, 100);
+  const Vec2 offset(node.number("principal_point_offset_x", offsets, 0.0f),
+                    node.number("principal_point_offset_y", offsets, 0.0f));
   const Projection projection(horizontalFieldOfView(node, resolution), resolution, offset);
   const Matrix4 toWorld = rigidToWorld(node, warnings);
   if (!lens) return std::make_shared<Perspective>(toWorld, projection);
-  const float focusDistance = node.number("focus_distance", node.number("far_clip", 1e4f));
-  if (!(focusDistance > 0))
-    throw SceneError(placeOf(node, "focus_distance"),
-                     "found the focus distance " + std::to_string(focusDistance) + ", expected more than 0");
-  const float radius = node.number("aperture_radius");
-  if (!(radius >= 0))
-    throw SceneError(placeOf(node, "aperture_radius"),
-                     "found the aperture radius " + std::to_string(radius) + ", expected 0 or more");
+  // Squares of distances stay within single precision.
+  constexpr NumberRange distances = between(1e-15, 1e15);
+  const float focusDistance =
+      node.number("focus_distance", distances, node.number("far_clip", distances, 1e4f));
+  const float radius = node.number("aperture_radius", between(0, 1e15));
   return std::make_shared<ThinLens>(toWorld, projection, radius, focusDistance);
 }
 

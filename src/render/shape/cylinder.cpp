@@ -106,9 +106,7 @@ ShapePtr makeCylinder(const Properties& node, Builder& builder) {
   const Affine affine(readToWorld(node));
   const Vec3d p0(node.vector("p0", Vec3(0, 0, 0))), p1(node.vector("p1", Vec3(0, 0, 1)));
   const double length = std::sqrt((p1 - p0).dot(p1 - p0));
-  const float radius = node.number("radius", 1.0f);
-  if (!(radius > 0) || !std::isfinite(radius))
-    throw SceneError(node.location, "the radius of a cylinder must be positive and finite");
+  const float radius = node.number("radius", kRadiusRange, 1.0f);
   if (!(length > 0) || !std::isfinite(length))
     throw SceneError(node.location, "p0 and p1 of a cylinder must be finite and apart");
 

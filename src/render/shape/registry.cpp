@@ -5,6 +5,25 @@
 
 namespace odis::render {
 
+namespace {
+
+struct Entry {
+  const char* type;
+  ShapePtr (*factory)(const Properties&, Builder&);
+};
+constexpr Entry kEntries[] = {
+    {"cube", makeCube},
+    {"cylinder", makeCylinder},
+    {"disk", makeDisk},
+    {"obj", makeObj},
+    {"ply", makePly},
+    {"rectangle", makeRectangle},
+    {"serialized", makeSerialized},
+    {"sphere", makeSphere},
+};
+
+}  // namespace
+
 Matrix4 readToWorld(const Properties& node) {
   const Matrix4 matrix = node.transform("to_world");
   const Imath::V3d x(matrix[0][0], matrix[0][1], matrix[0][2]), y(matrix[1][0], matrix[1][1], matrix[1][2]),
@@ -13,25 +32,23 @@ Matrix4 readToWorld(const Properties& node) {
   const double volume = std::abs(x.cross(y).dot(z)), box = std::sqrt(x.dot(x) * y.dot(y) * z.dot(z));
   const Vec3 origin(matrix[3][0], matrix[3][1], matrix[3][2]);
   if (!(volume > 1e-9 * box) || !std::isfinite(box) || !isFinite(origin)) {
-    const auto parameter = node.parameters.find("to_world");
     throw SceneError(
-        parameter == node.parameters.end() ? node.location : parameter->second.location,
+        node.placeOf("to_world"),
         "to_world cannot be inverted; expected a finite transform that keeps all three dimensions");
   }
   return matrix;
 }
 
 MeshFile::MeshFile(const Properties& node, Builder& builder, bool flipTexCoordsDefault) {
-  const auto parameter = node.parameters.find("filename");
-  location = parameter == node.parameters.end() ? node.location : parameter->second.location;
+  location = node.placeOf("filename");
   path = builder.resolvePath(node.string("filename"), location);
   options.toWorld = readToWorld(node);
   options.faceNormals = node.boolean("face_normals", false);
   options.flipNormals = node.boolean("flip_normals", false);
   flipTexCoords = node.boolean("flip_tex_coords", flipTexCoordsDefault);
-  if (node.has("max_smooth_angle")) {
-    node.number("max_smooth_angle");
-    builder.warn(node.location, "max_smooth_angle is not supported: normals are smooth everywhere");
+  if (node.optionalNumber("max_smooth_angle", between(0, 180))) {
+    builder.warn(node.placeOf("max_smooth_angle"),
+                 "max_smooth_angle is not supported: normals are smooth everywhere");
   }
 }
 
@@ -42,26 +59,18 @@ std::shared_ptr<Mesh> MeshFile::makeMesh(MeshData data, Builder& builder) const 
 }
 
 ShapePtr makeShape(const Properties& node, Builder& builder) {
-  struct Entry {
-    const char* type;
-    ShapePtr (*factory)(const Properties&, Builder&);
-  };
-  static constexpr Entry entries[] = {
-      {"cube", makeCube},
-      {"cylinder", makeCylinder},
-      {"disk", makeDisk},
-      {"obj", makeObj},
-      {"ply", makePly},
-      {"rectangle", makeRectangle},
-      {"serialized", makeSerialized},
-      {"sphere", makeSphere},
-  };
   std::string known;
-  for (const Entry& entry : entries) {
+  for (const Entry& entry : kEntries) {
     if (node.type == entry.type) return entry.factory(node, builder);
     known += (known.empty() ? "" : ", ") + std::string(entry.type);
   }
   throw SceneError(node.location, fmt::format("unknown shape \"{}\", expected one of: {}", node.type, known));
+}
+
+std::vector<std::string> shapeTypes() {
+  std::vector<std::string> types;
+  for (const Entry& entry : kEntries) types.emplace_back(entry.type);
+  return types;
 }
 
 }  // namespace odis::render

@@ -166,7 +166,8 @@ SerializedMesh readSerialized(const std::string& path, int64_t shapeIndex, const
 
 ShapePtr makeSerialized(const Properties& node, Builder& builder) {
   MeshFile file(node, builder, false);
-  SerializedMesh mesh = readSerialized(file.path, node.integer("shape_index", 0), file.location);
+  SerializedMesh mesh =
+      readSerialized(file.path, node.integer("shape_index", between(0, INT32_MAX), 0), file.location);
   file.options.faceNormals |= mesh.faceNormals;
   return file.makeMesh(std::move(mesh.data), builder);
 }

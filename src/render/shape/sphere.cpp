@@ -130,9 +130,7 @@ ShapePtr makeSphere(const Properties& node, Builder& builder) {
   const Affine affine(readToWorld(node));
   if (!isSquare(affine.x, affine.y) || !isSquare(affine.y, affine.z) || !isSquare(affine.z, affine.x))
     builder.warn(node.location, "to_world shears or scales unevenly, which a sphere can't: it stays round");
-  const float radius = node.number("radius", 1.0f);
-  if (!(radius > 0) || !std::isfinite(radius))
-    throw SceneError(node.location, "the radius of a sphere must be positive and finite");
+  const float radius = node.number("radius", kRadiusRange, 1.0f);
   const Vec3d center = affine.point(Vec3d(node.vector("center", Vec3(0, 0, 0))));
   // Orthonormal axes, also if the transform's are not quite.
   const double scale = std::sqrt(affine.x.dot(affine.x));

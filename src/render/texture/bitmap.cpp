@@ -54,42 +54,25 @@ float tame(float x) {
 }
 
 WrapMode readWrapMode(const Properties& node, const std::string& name, WrapMode fallback) {
-  if (!node.has(name)) return fallback;
-  const std::string mode = node.string(name);
+  const std::string mode = node.word(name, "repeat|clamp|mirror|zero|one", "");
   if (mode == "repeat") return WrapMode::repeat;
   if (mode == "clamp") return WrapMode::clamp;
   if (mode == "mirror") return WrapMode::mirror;
   if (mode == "zero") return WrapMode::zero;
   if (mode == "one") return WrapMode::one;
-  throw SceneError(node.parameters.at(name).location,
-                   "unknown " + name + " \"" + mode + "\", expected repeat, clamp, mirror, zero or one");
-}
-
-bool readNearest(const Properties& node) {
-  const std::string filter = node.string("filter_type", "bilinear");
-  if (filter == "nearest") return true;
-  if (filter == "bilinear" || filter == "trilinear" || filter == "ewa") return false;
-  throw SceneError(node.parameters.at("filter_type").location,
-                   "unknown filter_type \"" + filter + "\", expected bilinear, nearest, trilinear or ewa");
+  return fallback;
 }
 
 std::shared_ptr<const Image> readImage(const Properties& node, Builder& builder) {
-  const std::string fileName = node.string("filename");
-  const SourceLocation& at = node.parameters.at("filename").location;
+  const std::string fileName = node.string("filename"), channel = node.word("channel", "r|g|b|a", "");
+  const SourceLocation& at = node.placeOf("filename");
   const std::string path = builder.resolvePath(fileName, at);
-  const float gamma = node.number("gamma", -1.0f);
+  const float gamma = node.number("gamma", kGammaRange, -1.0f);
   const bool raw = node.boolean("raw", false) || gamma == 1.0f;
-  if (gamma != -1.0f && !(gamma > 0.0f && std::isfinite(gamma)))
-    throw SceneError(node.parameters.at("gamma").location, "gamma must be positive, or -1 for sRGB");
   const bool power = gamma > 0.0f && !raw;
   std::shared_ptr<const Image> image = builder.image(path, !raw && !power, at);
   if (power) image = image->withGamma(gamma);
-  const std::string channel = node.string("channel", "");
-  if (channel.empty()) return image;
-  if (channel != "r" && channel != "g" && channel != "b" && channel != "a")
-    throw SceneError(node.parameters.at("channel").location,
-                     "unknown channel \"" + channel + "\", expected r, g, b or a");
-  return image->channel(channel[0]);
+  return channel.empty() ? image : image->channel(channel[0]);
 }
 
 }  // namespace
@@ -169,7 +152,7 @@ TexturePtr makeBitmapTexture(const Properties& node, Builder& builder) {
   const WrapMode both = readWrapMode(node, "wrap_mode", WrapMode::repeat);
   options.wrapU = readWrapMode(node, "wrap_mode_u", both);
   options.wrapV = readWrapMode(node, "wrap_mode_v", both);
-  options.nearest = readNearest(node);
+  options.nearest = node.word("filter_type", "bilinear|nearest|trilinear|ewa", "bilinear") == "nearest";
   options.toUv = readUvTransform(node);
   // Known, and without a meaning here: asking keeps them out of the list of unknown parameters.
   for (const char* name : {"accel", "format", "max_anisotropy", "cache"})

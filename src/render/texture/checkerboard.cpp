@@ -12,8 +12,8 @@
 namespace odis::render {
 
 TexturePtr makeCheckerboardTexture(const Properties& node, Builder& builder) {
-  return std::make_shared<CheckerboardTexture>(builder.texture(node, "color0", Rgb(0.4f)),
-                                               builder.texture(node, "color1", Rgb(0.2f)),
+  return std::make_shared<CheckerboardTexture>(builder.texture(node, "color0", kAnyTexture, Rgb(0.4f)),
+                                               builder.texture(node, "color1", kAnyTexture, Rgb(0.2f)),
                                                readUvTransform(node));
 }
 

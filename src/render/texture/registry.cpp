@@ -1,4 +1,6 @@
 // The textures that scenes may name.
+#include <utility>
+
 #include "render/scene/builder.h"
 
 namespace odis::render {
@@ -7,11 +9,26 @@ TexturePtr makeBitmapTexture(const Properties&, Builder&);
 TexturePtr makeCheckerboardTexture(const Properties&, Builder&);
 TexturePtr makeScaleTexture(const Properties&, Builder&);
 
+namespace {
+
+constexpr std::pair<const char*, TextureFactory> kFactories[] = {
+    {"bitmap", makeBitmapTexture},
+    {"checkerboard", makeCheckerboardTexture},
+    {"scale", makeScaleTexture},
+};
+
+}  // namespace
+
 TextureFactory findTextureFactory(const std::string& type) {
-  if (type == "bitmap") return makeBitmapTexture;
-  if (type == "checkerboard") return makeCheckerboardTexture;
-  if (type == "scale") return makeScaleTexture;
+  for (const auto& [name, factory] : kFactories)
+    if (type == name) return factory;
   return nullptr;
+}
+
+std::vector<std::string> textureTypes() {
+  std::vector<std::string> types;
+  for (const auto& entry : kFactories) types.emplace_back(entry.first);
+  return types;
 }
 
 }  // namespace odis::render

@@ -24,7 +24,7 @@ Vec2 ScaleTexture::gradient(const Vec2& uv) const {
 }
 
 TexturePtr makeScaleTexture(const Properties& node, Builder& builder) {
-  const TexturePtr factor = builder.texture(node, "scale", Rgb(1.0f));
+  const TexturePtr factor = builder.texture(node, "scale", kAnyTexture, Rgb(1.0f));
   for (const Properties::Child& child : node.children) {
     if (child.node->tag != "texture" || child.name == "scale") continue;
     child.queried = true;

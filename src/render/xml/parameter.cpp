@@ -12,11 +12,16 @@ float decodeSrgb(float x) {
   return x <= 0.04045f ? x / 12.92f : std::pow((x + 0.055f) / 1.055f, 2.4f);
 }
 
+// In kelvin; hotter than any star.
+constexpr NumberRange kTemperatures{0, 1e6, false};
+
 // "5000" or "5000K".
 double parseTemperature(std::string text, const SourceLocation& at) {
   if (!text.empty() && (text.back() == 'K' || text.back() == 'k')) text.pop_back();
   const double kelvin = parseNumber(text, "the temperature", at);
-  if (kelvin <= 0) throw SceneError(at, "found the temperature '" + text + "', expected more than 0 kelvin");
+  if (!kTemperatures.contains(kelvin))
+    throw SceneError(at,
+                     "found the temperature '" + text + "', expected " + kTemperatures.text() + " kelvin");
   return kelvin;
 }
 
@@ -128,16 +133,13 @@ PropertyValue XmlParser::parseSpectrumValue(const Place& place, const XmlElement
 
 PropertyValue XmlParser::parseSpectrumObject(const Place& place, const Properties& node) {
   const SpectrumUse use = place.emitter ? SpectrumUse::emission : SpectrumUse::reflectance;
-  const float scale = node.number("scale", 1.0f);
-  if (node.type == "uniform") return double(node.number("value", 1.0f)) * scale;
-  if (node.type == "d65") return Rgb(node.color("color", node.color("value", Rgb(1.0f))) * scale);
-  if (node.type == "srgb") return Rgb(node.color("color") * scale);
-  if (node.type == "blackbody") {
-    const float kelvin = node.number("temperature");
-    if (kelvin <= 0)
-      throw SceneError(node.location, "found a temperature of 0 kelvin or less, expected more");
-    return Rgb(blackbodyToRgb(kelvin) * scale);
-  }
+  // What the colour is used for says what it may be.
+  const NumberRange& any = kAnyNumber;
+  const float scale = node.number("scale", any, 1.0f);
+  if (node.type == "uniform") return double(node.number("value", any, 1.0f)) * scale;
+  if (node.type == "d65") return Rgb(node.color("color", any, node.color("value", any, Rgb(1.0f))) * scale);
+  if (node.type == "srgb") return Rgb(node.color("color", any) * scale);
+  if (node.type == "blackbody") return Rgb(blackbodyToRgb(node.number("temperature", kTemperatures)) * scale);
   if (node.type != "regular" && node.type != "irregular")
     throw SceneError(node.location, "found the spectrum '" + node.type +
                                         "', expected uniform, d65, srgb, blackbody, regular or irregular");
@@ -146,7 +148,9 @@ PropertyValue XmlParser::parseSpectrumObject(const Place& place, const Propertie
   if (node.type == "irregular") {
     wavelengths = parseNumbers(node.string("wavelengths"), "'wavelengths'", node.location);
   } else {
-    const double low = node.number("wavelength_min"), high = node.number("wavelength_max");
+    constexpr NumberRange nanometres{0, 1e6, false};
+    const double low = node.number("wavelength_min", nanometres),
+                 high = node.number("wavelength_max", nanometres);
     for (size_t i = 0; i < values.size(); ++i)
       wavelengths.push_back(low + (high - low) * double(i) / std::max<double>(1, double(values.size()) - 1));
   }

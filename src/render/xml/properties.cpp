@@ -1,5 +1,7 @@
 #include "render/xml/properties.h"
 
+#include <sstream>
+
 #include "render/xml/names.h"
 
 namespace odis::render {
@@ -12,34 +14,43 @@ std::string describe(const PropertyValue& value) {
   return kinds[value.index()];
 }
 
-// The parameter, marked as queried; null if it is missing and may be.
+// "a number", "an integer", "true or false".
+std::string withArticle(const std::string& type) {
+  if (type == "boolean") return "true or false";
+  return (type == "integer" ? "an " : "a ") + type;
+}
+
+// The parameter, declared and marked as queried; null if it is missing and may be.
 const Properties::Parameter* find(const Properties& node, const std::string& name, bool mayBeMissing,
-                                  const char* expected) {
+                                  const Declaration& declaration) {
+  node.declare(name, declaration);
   const auto found = node.parameters.find(name);
   if (found == node.parameters.end()) {
     if (mayBeMissing) return nullptr;
     std::vector<std::string> known;
     for (const auto& entry : node.parameters) known.push_back(entry.first);
     throw SceneError(node.location, "the " + node.tag + " '" + node.type + "' has no parameter '" + name +
-                                        "'" + suggestion(name, known) + ", expected " + expected);
+                                        "'" + suggestion(name, known) + ", expected " +
+                                        withArticle(declaration.type));
   }
   found->second.queried = true;
   return &found->second;
 }
 
-[[noreturn]] void throwWrongType(const Properties::Parameter& parameter, const std::string& name,
-                                 const char* expected) {
-  throw SceneError(parameter.location,
-                   "found " + describe(parameter.value) + " for '" + name + "', expected " + expected);
-}
-
 // A getter for values that are stored as they are asked for.
 template <class T>
-T get(const Properties& node, const std::string& name, const T* fallback, const char* expected) {
-  const Properties::Parameter* parameter = find(node, name, fallback != nullptr, expected);
+T get(const Properties& node, const std::string& name, const T* fallback, const char* type) {
+  const Properties::Parameter* parameter = find(node, name, fallback != nullptr, {type});
   if (!parameter) return *fallback;
   if (const T* value = std::get_if<T>(&parameter->value)) return *value;
-  throwWrongType(*parameter, name, expected);
+  node.refuse(name, describe(parameter->value), withArticle(type));
+}
+
+// A number, be it stored as one or as an integer.
+std::optional<double> numberIn(const PropertyValue& value) {
+  if (const double* number = std::get_if<double>(&value)) return *number;
+  if (const int64_t* integer = std::get_if<int64_t>(&value)) return double(*integer);
+  return {};
 }
 
 template <class T>
@@ -49,41 +60,93 @@ const T* pointer(const std::optional<T>& value) {
 
 }  // namespace
 
-float Properties::number(const std::string& name, std::optional<float> fallback) const {
-  const Parameter* parameter = find(*this, name, fallback.has_value(), "a number");
-  if (!parameter) return *fallback;
-  if (const double* value = std::get_if<double>(&parameter->value)) return float(*value);
-  if (const int64_t* value = std::get_if<int64_t>(&parameter->value)) return float(*value);
-  throwWrongType(*parameter, name, "a number");
+std::string Declaration::text() const {
+  const std::string limits = *words ? words : range.text();
+  return type + (limits == "any" ? "" : ", " + limits) + (clamped ? ", clamped" : "");
 }
 
-int64_t Properties::integer(const std::string& name, std::optional<int64_t> fallback) const {
-  return get(*this, name, pointer(fallback), "an integer");
+float Properties::number(const std::string& name, const NumberRange& range,
+                         std::optional<float> fallback) const {
+  const Parameter* parameter = find(*this, name, fallback.has_value(), {"number", range});
+  if (!parameter) return *fallback;
+  const std::optional<double> value = numberIn(parameter->value);
+  if (!value) refuse(name, describe(parameter->value), "a number");
+  if (!range.contains(*value)) refuse(name, fmt::format("{}", *value), range.text());
+  return float(*value);
+}
+
+std::optional<float> Properties::optionalNumber(const std::string& name, const NumberRange& range) const {
+  const float value = number(name, range, 0.0f);
+  return has(name) ? std::optional(value) : std::nullopt;
+}
+
+int64_t Properties::integer(const std::string& name, const NumberRange& range,
+                            std::optional<int64_t> fallback) const {
+  const Parameter* parameter = find(*this, name, fallback.has_value(), {"integer", range});
+  if (!parameter) return *fallback;
+  const int64_t* value = std::get_if<int64_t>(&parameter->value);
+  if (!value) refuse(name, describe(parameter->value), "an integer");
+  if (!range.contains(double(*value))) refuse(name, std::to_string(*value), range.text());
+  return *value;
 }
 
 bool Properties::boolean(const std::string& name, std::optional<bool> fallback) const {
-  return get(*this, name, pointer(fallback), "true or false");
+  return get(*this, name, pointer(fallback), "boolean");
 }
 
 std::string Properties::string(const std::string& name, std::optional<std::string> fallback) const {
-  return get(*this, name, pointer(fallback), "a string");
+  return get(*this, name, pointer(fallback), "string");
+}
+
+std::string Properties::word(const std::string& name, const char* words, const std::string& fallback) const {
+  declare(name, {.type = "string", .words = words});
+  if (!has(name)) return fallback;
+  const std::string given = string(name), found = lowerCase(given);
+  std::vector<std::string> known;
+  std::istringstream stream(words);
+  for (std::string word; std::getline(stream, word, '|');) {
+    if (word == found) return word;
+    known.push_back(word);
+  }
+  refuse(name, "'" + given + "'" + suggestion(found, known), std::string("one of ") + words);
 }
 
 Vec3 Properties::vector(const std::string& name, std::optional<Vec3> fallback) const {
-  return get(*this, name, pointer(fallback), "a point or a vector");
+  return get(*this, name, pointer(fallback), "point or vector");
 }
 
-Rgb Properties::color(const std::string& name, std::optional<Rgb> fallback) const {
-  const Parameter* parameter = find(*this, name, fallback.has_value(), "a colour");
+Rgb Properties::color(const std::string& name, const NumberRange& range, std::optional<Rgb> fallback) const {
+  const Parameter* parameter = find(*this, name, fallback.has_value(), {"colour or number", range});
   if (!parameter) return *fallback;
-  if (const Rgb* value = std::get_if<Rgb>(&parameter->value)) return *value;
-  if (const double* value = std::get_if<double>(&parameter->value)) return Rgb(float(*value));
-  if (const int64_t* value = std::get_if<int64_t>(&parameter->value)) return Rgb(float(*value));
-  throwWrongType(*parameter, name, "a colour or a number");
+  if (const std::optional<double> value = numberIn(parameter->value)) {
+    if (!range.contains(*value)) refuse(name, fmt::format("{}", *value), range.text());
+    return Rgb(float(*value));
+  }
+  const Rgb* value = std::get_if<Rgb>(&parameter->value);
+  if (!value) refuse(name, describe(parameter->value), "a colour or a number");
+  for (const float channel : {value->x, value->y, value->z})
+    if (!range.contains(channel))
+      refuse(name, fmt::format("{}, {}, {}", value->x, value->y, value->z),
+             range.text() + " in each channel");
+  return *value;
 }
 
 Matrix4 Properties::transform(const std::string& name, const Matrix4& fallback) const {
-  return get(*this, name, &fallback, "a transform");
+  return get(*this, name, &fallback, "transform");
+}
+
+void Properties::declare(const std::string& name, const Declaration& declaration) const {
+  m_declarations.emplace(name, declaration);
+}
+
+const SourceLocation& Properties::placeOf(const std::string& name) const {
+  const auto found = parameters.find(name);
+  return found == parameters.end() ? location : found->second.location;
+}
+
+void Properties::refuse(const std::string& name, const std::string& found,
+                        const std::string& expected) const {
+  throw SceneError(placeOf(name), "found " + found + " for '" + name + "', expected " + expected);
 }
 
 const Properties* Properties::child(const std::string& tagName, const std::string& name) const {
@@ -105,6 +168,15 @@ std::vector<std::pair<std::string, SourceLocation>> Properties::unqueried() cons
           candidate.name.empty() ? candidate.node->tag + " " + candidate.node->type : candidate.name,
           candidate.node->location);
   return result;
+}
+
+void warnOfMisspelt(const Properties& node, Warnings& warnings) {
+  std::vector<std::string> known;
+  for (const auto& [name, declaration] : node.declarations()) known.push_back(name);
+  for (const auto& [name, location] : node.unqueried())
+    if (const std::string meant = suggestion(name, known); !meant.empty())
+      warnings.add(location, "unknown parameter '" + name + "' of the " + node.tag + " '" + node.type +
+                                 "' is ignored" + meant);
 }
 
 }  // namespace odis::render

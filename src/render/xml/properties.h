@@ -10,6 +10,7 @@
 #include <variant>
 #include <vector>
 
+#include "render/math/interval.h"
 #include "render/math/vec.h"
 #include "render/xml/error.h"
 
@@ -17,6 +18,17 @@ namespace odis::render {
 
 // A spectrum given as wavelength:value pairs or as a file name is turned into linear RGB by the parser.
 using PropertyValue = std::variant<bool, int64_t, double, std::string, Vec3, Rgb, Matrix4>;
+
+// What a parameter may be, as the getter that read it has said. The manual's table is checked against these.
+struct Declaration {
+  const char* type;                // "number", "integer", "boolean", "point", ...
+  NumberRange range = kAnyNumber;  // of a number, or of each channel of a colour
+  const char* words = "";          // of a string that is one of several: "x|y|diagonal"
+  bool clamped = false;            // into the range, with a warning, instead of refused
+
+  // "number, 0 to 1".
+  std::string text() const;
+};
 
 class Properties {
  public:
@@ -40,21 +52,43 @@ class Properties {
 
   bool has(const std::string& name) const { return parameters.count(name) > 0; }
 
-  // Each getter throws SceneError at the parameter's place if its type is not the one asked for (an integer
-  // is accepted where a number is); without a fallback also if it is missing. Each marks the parameter as
-  // queried.
-  float number(const std::string& name, std::optional<float> fallback = {}) const;
-  int64_t integer(const std::string& name, std::optional<int64_t> fallback = {}) const;
+  // Each getter declares what the parameter may be, marks it as queried, and throws SceneError at its place
+  // if it is something else (an integer is accepted where a number is); without a fallback also if it is
+  // missing.
+  float number(const std::string& name, const NumberRange& range, std::optional<float> fallback = {}) const;
+  int64_t integer(const std::string& name, const NumberRange& range,
+                  std::optional<int64_t> fallback = {}) const;
   bool boolean(const std::string& name, std::optional<bool> fallback = {}) const;
   std::string string(const std::string& name, std::optional<std::string> fallback = {}) const;
-  Vec3 vector(const std::string& name, std::optional<Vec3> fallback = {}) const;   // point or vector
-  Rgb color(const std::string& name, std::optional<Rgb> fallback = {}) const;      // a number is a grey
+  // One of `words`, "a|b|c", in lower case.
+  std::string word(const std::string& name, const char* words, const std::string& fallback) const;
+  Vec3 vector(const std::string& name, std::optional<Vec3> fallback = {}) const;  // point or vector
+  // A number is a grey.
+  Rgb color(const std::string& name, const NumberRange& range, std::optional<Rgb> fallback = {}) const;
   Matrix4 transform(const std::string& name, const Matrix4& fallback = {}) const;  // rows multiply: p * M
+  // A number that may be absent.
+  std::optional<float> optionalNumber(const std::string& name, const NumberRange& range) const;
 
   // The first nested element with this tag (and name, unless ""); null if there is none. Marks it as queried.
   const Properties* child(const std::string& tagName, const std::string& name = "") const;
-  // The parameters and children that nobody asked for, as "name (file:line:column)"; for warnings.
+  // The parameters and children that nobody asked for; for warnings.
   std::vector<std::pair<std::string, SourceLocation>> unqueried() const;
+  // What has been asked for, given or not.
+  const std::map<std::string, Declaration>& declarations() const { return m_declarations; }
+  // Says what a parameter may be; the getters do so themselves. The first to say it counts.
+  void declare(const std::string& name, const Declaration& declaration) const;
+  // Where the parameter stands; the element itself if it has none of this name.
+  const SourceLocation& placeOf(const std::string& name) const;
+  // Throws SceneError: "found 2 for 'alpha', expected 0 to 1".
+  [[noreturn]] void refuse(const std::string& name, const std::string& found,
+                           const std::string& expected) const;
+
+ private:
+  mutable std::map<std::string, Declaration> m_declarations;
 };
+
+// Warns of parameters that nobody asked for and that resemble one that somebody did: for elements of which
+// only a part is read.
+void warnOfMisspelt(const Properties& node, Warnings& warnings);
 
 }  // namespace odis::render

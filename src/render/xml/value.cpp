@@ -104,12 +104,13 @@ Vec3 parseVector(const XmlElement& element, double missing, bool allowSingle) {
         throw SceneError(element.at,
                          "<" + element.tag + "> has both 'value' and '" + name + "', expected one of them");
     const std::string& text = element.require("value");
-    const std::vector<double> v = parseNumbers(text, "<" + element.tag + ">", element.at);
+    const std::string what =
+        element.has("name") ? "'" + element.require("name") + "'" : "<" + element.tag + ">";
+    const std::vector<double> v = parseNumbers(text, what, element.at);
     if (v.size() == 3) return Vec3(float(v[0]), float(v[1]), float(v[2]));
     if (v.size() == 1 && allowSingle) return Vec3(float(v[0]));
     throw SceneError(element.at, "found " + std::to_string(v.size()) + " numbers in " + quoted(text) +
-                                     " for <" + element.tag + ">, expected " +
-                                     (allowSingle ? "1 or 3" : "3"));
+                                     " for " + what + ", expected " + (allowSingle ? "1 or 3" : "3"));
   }
   if (!element.has("x") && !element.has("y") && !element.has("z"))
     throw SceneError(element.at, "<" + element.tag + "> has no numbers, expected x, y, z or value=\"x y z\"");
