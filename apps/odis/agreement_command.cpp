@@ -13,6 +13,7 @@
 #include "output.h"
 #include "render/film/filter.h"
 #include "render/image/write.h"
+#include "validators.h"
 
 namespace odis::app {
 
@@ -113,22 +114,25 @@ Command addAgreementCommand(CLI::App& parent) {
       "errors\nplus {2} % of the reference.",
       eval::kAgreementBlock, eval::kAgreementErrors, 100 * eval::kAgreementShare));
   const auto a = std::make_shared<AgreementArguments>();
-  const CLI::Range positive(1, 1 << 24);
   app->add_option("SCENE", a->scene, "Mitsuba scene file")->required();
   app->add_option("REFERENCE", a->reference, "EXR file with R, G, B and their standard errors, stderr.R, ...")
       ->required();
   app->add_option("--picture", a->picture,
                   "PNG of the blocks that do not agree: red too bright, blue too dark");
-  app->add_option("--spp", a->spp, "Samples per pixel")->check(positive)->capture_default_str();
-  app->add_option("--seed", a->seed, "Another seed, another noise")->capture_default_str();
+  app->add_option("--spp", a->spp, "Samples per pixel")
+      ->check(within(kSamplesPerPixel))
+      ->capture_default_str();
+  app->add_option("--seed", a->seed, "Another seed, another noise")
+      ->check(within(kSeed))
+      ->capture_default_str();
   app->add_option("--max-depth", a->maxDepth, "As the reference has it")
-      ->check(CLI::Range(-1, 1 << 20))
+      ->check(within(kMaxDepth))
       ->capture_default_str();
   app->add_option("--rr-depth", a->rrDepth, "As the reference has it")
-      ->check(positive)
+      ->check(within(kRouletteDepth))
       ->capture_default_str();
   app->add_option("--threads", a->threads, "0: one a core")
-      ->check(CLI::Range(0, 4096))
+      ->check(within(kThreadCount))
       ->capture_default_str();
   app->add_flag("--json", a->json, "Print JSON");
   app->add_flag("-q,--quiet", a->quiet, "No progress");

@@ -11,6 +11,7 @@
 #include "console.h"
 #include "eval/analysis_text.h"
 #include "output.h"
+#include "validators.h"
 
 namespace odis::app {
 
@@ -69,33 +70,33 @@ Command addAnalyzeCommand(CLI::App& parent) {
       "pixels; after +-, standard errors. See docs/variance.md.");
   const auto a = std::make_shared<AnalyzeArguments>();
   eval::AnalyzeSettings& settings = a->settings;
-  const CLI::Range positive(1, 1 << 20);
   app->add_option("SCENE", a->scenes, "Mitsuba 3 scene files")->required();
   app->add_option("--methods", a->methods, "name=options of `odis render`, with commas between methods")
       ->delimiter(',')
       ->allow_extra_args(false)
       ->capture_default_str();
   app->add_option("--spp", settings.samples, "Samples per pixel, and for each cause as many more")
-      ->check(CLI::Range(2, 1 << 20))
+      ->check(within(2, 1 << 20))
       ->capture_default_str();
   app->add_option("--image-spp", settings.imageSpp,
                   "Samples per pixel of the image whose last sample is looked at: what its guide has learned")
-      ->check(CLI::Range(2, 1 << 20))
+      ->check(within(2, 1 << 20))
       ->capture_default_str();
   app->add_option("--reference-spp", settings.referenceSpp,
                   "Samples per pixel of what variances are relative to")
-      ->check(positive)
+      ->check(within(kSamplesPerPixel))
       ->capture_default_str();
   app->add_option("--pixels", a->pixels,
                   "Make the images about so many pixels large, if --resolution and --crop say nothing")
-      ->check(CLI::Range(1, 1 << 24))
+      ->check(within(kPixelCount))
       ->capture_default_str();
-  app->add_option("--max-depth", settings.maxDepth, "In place of the scenes'")
-      ->check(CLI::Range(-1, 1 << 20));
-  app->add_option("--rr-depth", settings.rrDepth, "In place of the scenes'")->check(positive);
-  app->add_option("--seed", settings.seed, "Another seed, another noise")->capture_default_str();
+  app->add_option("--max-depth", settings.maxDepth, "In place of the scenes'")->check(within(kMaxDepth));
+  app->add_option("--rr-depth", settings.rrDepth, "In place of the scenes'")->check(within(kRouletteDepth));
+  app->add_option("--seed", settings.seed, "Another seed, another noise")
+      ->check(within(kSeed))
+      ->capture_default_str();
   app->add_option("--threads", a->threads, "0: one a core")
-      ->check(CLI::Range(0, 4096))
+      ->check(within(kThreadCount))
       ->capture_default_str();
   app->add_option("-o,--output", a->output, "JSON file to write as well");
   app->add_flag("--json", a->json, "Print JSON");

@@ -10,6 +10,7 @@
 #include "console.h"
 #include "eval/benchmark.h"
 #include "eval/compare.h"
+#include "validators.h"
 
 namespace odis::app {
 
@@ -92,28 +93,27 @@ Command addBenchCommand(CLI::App& parent) {
       "and of\n"
       "building cells, maps and selection probabilities.");
   const auto a = std::make_shared<BenchArguments>();
-  const CLI::Range positive(1, 1 << 24);
   app->add_option("SCENE", a->scenes, "Mitsuba scene files")->required();
   app->add_option("--spp", a->settings.spp, "Samples per pixel, of which one is the pilot")
-      ->check(CLI::Range(2, 1 << 20))
+      ->check(within(2, 1 << 20))
       ->capture_default_str();
   app->add_option("--rounds", a->settings.rounds, "How often each renders")
-      ->check(positive)
+      ->check(within(1, 1 << 24))
       ->capture_default_str();
   app->add_option("--pixels", a->pixels, "Make the images about so many pixels large")
-      ->check(positive)
+      ->check(within(kPixelCount))
       ->capture_default_str();
   app->add_option("--sampler", a->sampler, "Where random numbers come from")
       ->check(CLI::IsMember({"sobol", "independent"}))
       ->capture_default_str();
   app->add_option("--max-depth", a->settings.maxDepth, "In place of the scenes'")
-      ->check(CLI::Range(-1, 1 << 20))
+      ->check(within(kMaxDepth))
       ->capture_default_str();
   app->add_option("--rr-depth", a->settings.rrDepth, "In place of the scenes'")
-      ->check(positive)
+      ->check(within(kRouletteDepth))
       ->capture_default_str();
   app->add_option("--threads", a->settings.threads, "0: one a core")
-      ->check(CLI::Range(0, 4096))
+      ->check(within(kThreadCount))
       ->capture_default_str();
   app->add_flag("--json", a->json, "Print JSON");
   app->add_flag("-q,--quiet", a->quiet, "No progress");

@@ -4,6 +4,7 @@
 #include <functional>
 #include <stdexcept>
 #include <string>
+#include <vector>
 
 #include "render/files/replace_file.h"
 
@@ -51,6 +52,9 @@ Command addBenchCommand(CLI::App& parent);
 Command addAnalyzeCommand(CLI::App& parent);
 Command addInspectCommand(CLI::App& parent);
 Command addTrainCommand(CLI::App& parent);
+
+// All of them, in the order in which help shows them.
+std::vector<Command> addCommands(CLI::App& parent, const std::string& commandLine);
 
 // Runs the whole command line; errors go to stderr. Returns an ExitCode.
 int runCommandLine(int argc, char** argv);

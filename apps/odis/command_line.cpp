@@ -55,20 +55,20 @@ static int flushed(int code) {
   return code == kOk ? fail(kWriteError, "what was printed can't be written") : code;
 }
 
-static std::vector<Command> addCommands(CLI::App& app, const std::string& commandLine) {
-  return {addRenderCommand(app, commandLine),
-          addCompareCommand(app, commandLine),
-          addAnalyzeCommand(app),
-          addTrainCommand(app),
-          addInspectCommand(app),
-          addAgreementCommand(app),
-          addBenchCommand(app),
-          addMetricsCommand(app),
-          addImageCommand(app),
-          addMontageCommand(app),
-          addSceneCommand(app),
-          addScenesCommand(app),
-          addDatasetCommand(app)};
+std::vector<Command> addCommands(CLI::App& parent, const std::string& commandLine) {
+  return {addRenderCommand(parent, commandLine),
+          addCompareCommand(parent, commandLine),
+          addAnalyzeCommand(parent),
+          addTrainCommand(parent),
+          addInspectCommand(parent),
+          addAgreementCommand(parent),
+          addBenchCommand(parent),
+          addMetricsCommand(parent),
+          addImageCommand(parent),
+          addMontageCommand(parent),
+          addSceneCommand(parent),
+          addScenesCommand(parent),
+          addDatasetCommand(parent)};
 }
 
 int runCommandLine(int argc, char** argv) {

@@ -3,7 +3,8 @@
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>
 
-#include <charconv>
+#include <algorithm>
+#include <functional>
 #include <set>
 
 #include "command.h"
@@ -17,27 +18,29 @@ void CompareArguments::addTo(CLI::App& app) {
       ->delimiter(',')
       ->allow_extra_args(false)
       ->capture_default_str();
-  const CLI::Range positive(1, 1 << 24);
   app.add_option("--spp", spp, "Samples per pixel of each method, with commas between several: 4,8,16")
       ->capture_default_str();
   app.add_flag("--equal-time", settings.equalTime,
                "The other methods also with as many samples as fit in the first one's time");
   app.add_option("--seeds", settings.seeds, "How often each method renders")
-      ->check(positive)
+      ->check(within(1, 1 << 24))
       ->capture_default_str();
   app.add_option("--reference-spp", settings.referenceSpp, "Samples per pixel of references; they are kept")
-      ->check(positive)
+      ->check(within(kSamplesPerPixel))
       ->capture_default_str();
   app.add_option("--reference", settings.reference, "EXR file to use as the reference");
-  app.add_option("--pixels", pixels, "Make the images about so many pixels large")->check(positive);
-  app.add_option("--max-depth", settings.maxDepth, "In place of the scenes'")->check(CLI::Range(-1, 1 << 20));
-  app.add_option("--rr-depth", settings.rrDepth, "In place of the scenes'")->check(CLI::Range(1, 1 << 20));
+  app.add_option("--pixels", pixels, "Make the images about so many pixels large")
+      ->check(within(kPixelCount));
+  app.add_option("--max-depth", settings.maxDepth, "In place of the scenes'")->check(within(kMaxDepth));
+  app.add_option("--rr-depth", settings.rrDepth, "In place of the scenes'")->check(within(kRouletteDepth));
   app.add_option("-o,--output", settings.folder, "Folder for report, results, references and images")
       ->required();
   app.add_flag("--images", images, "Also write PNGs of seed 0, and one of all methods side by side");
-  app.add_option("--exposure", exposure, "Of the PNGs, in stops")->check(stops())->capture_default_str();
+  app.add_option("--exposure", exposure, "Of the PNGs, in stops")
+      ->check(within(kStops))
+      ->capture_default_str();
   app.add_flag("--fresh", settings.fresh, "Forget earlier results; references are kept");
-  app.add_option("--threads", threads, "0: one a core")->check(CLI::Range(0, 4096))->capture_default_str();
+  app.add_option("--threads", threads, "0: one a core")->check(within(kThreadCount))->capture_default_str();
   app.add_flag("-q,--quiet", quiet, "Print the tables only");
   part.addTo(app);
 }
@@ -60,22 +63,15 @@ void CompareArguments::apply() {
 }
 
 std::vector<int> parseSampleCounts(const std::string& text) {
-  constexpr int kMost = 1 << 24;
-  const auto fail = [&] {
-    throw UsageError(fmt::format(
-        "--spp: found \"{}\", expected whole numbers from 1 to {} that rise, as in 4,8,16", text, kMost));
-  };
-  std::vector<int> counts;
-  for (size_t begin = 0; begin <= text.size();) {
-    const size_t end = std::min(text.find(',', begin), text.size());
-    int value = 0;
-    const auto [stop, error] = std::from_chars(text.data() + begin, text.data() + end, value);
-    const bool whole = error == std::errc() && stop == text.data() + end;
-    if (!whole || value < 1 || value > kMost || (!counts.empty() && value <= counts.back())) fail();
-    counts.push_back(value);
-    begin = end + 1;
-  }
-  return counts;
+  const size_t count = size_t(std::count(text.begin(), text.end(), ',')) + 1;
+  const auto counts = parseNumbers<int>(text, ',', count, kSamplesPerPixel);
+  const bool rising =
+      counts && std::adjacent_find(counts->begin(), counts->end(), std::greater_equal<>()) == counts->end();
+  if (!rising)
+    throw UsageError(
+        fmt::format("--spp: found \"{}\", expected whole numbers from {} that rise, as in 4,8,16", text,
+                    kSamplesPerPixel.text()));
+  return *counts;
 }
 
 std::vector<eval::Method> parseMethods(const std::vector<std::string>& texts, int threads) {

@@ -14,6 +14,7 @@
 #include "learn/data/dataset.h"
 #include "learn/data/dataset_info.h"
 #include "render/files/read_json.h"
+#include "validators.h"
 
 namespace odis::app {
 
@@ -37,7 +38,7 @@ int merge(const DatasetArguments& a) {
     learn::gatherShards(a.folders, folder, countingOn(a.quiet));
   }
   if (a.seeds.empty()) return collectManifest(folder, {}, a.quiet);
-  const Range seeds = parseRange("--seeds", a.seeds);
+  const Range seeds = parseRange("--seeds", a.seeds, kSeed);
   return collectManifest(folder, learn::seedSources(seeds.first, seeds.last), a.quiet);
 }
 

@@ -11,6 +11,7 @@
 #include "counter.h"
 #include "dataset_manifest.h"
 #include "dataset_range.h"
+#include "validators.h"
 
 namespace odis::app {
 
@@ -46,14 +47,13 @@ class GenerateObserver : public learn::ShardObserver {
 };
 
 std::vector<learn::ShardSource> sourcesOf(const GenerateArguments& a) {
-  const Range parts = a.shards.empty() ? Range{1, uint64_t(a.of)} : parseRange("--shards", a.shards);
-  if (parts.first < 1 || parts.last > uint64_t(a.of))
-    throw UsageError(fmt::format("--shards: found {}, expected parts from 1 to {} (--of)", a.shards, a.of));
+  Range parts{1, uint64_t(a.of)};
+  if (!a.shards.empty()) parts = parseRange("--shards", a.shards, {parts.first, parts.last});
   std::vector<learn::ShardSource> all;
   if (a.seeds.empty()) {
     all = learn::folderSources(a.scenes);
   } else {
-    const Range seeds = parseRange("--seeds", a.seeds);
+    const Range seeds = parseRange("--seeds", a.seeds, kSeed);
     all = learn::seedSources(seeds.first, seeds.last);
   }
   return learn::partOf(all, int(parts.first), int(parts.last), a.of);
@@ -98,10 +98,10 @@ Command addDatasetGenerate(CLI::App& parent) {
   app->add_option("--shards", a->shards,
                   "Make these parts only, FIRST-LAST of the parts that --of cuts the seeds into");
   app->add_option("--of", a->of, "Into how many parts, for many machines: a part each")
-      ->check(CLI::Range(1, 1'000'000))
+      ->check(within(1, 1'000'000))
       ->capture_default_str();
   app->add_option("--jobs", a->jobs, "Shards to make at a time, a thread each; 0: one a core")
-      ->check(CLI::Range(0, 4096))
+      ->check(within(kThreadCount))
       ->capture_default_str();
   app->add_option("--hdri", a->hdri, "Folder of environment maps for generated scenes (HDR, EXR)");
   app->add_option("--textures", a->textures, "Folder of textures for them (PNG, JPEG)");

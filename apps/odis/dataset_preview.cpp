@@ -55,8 +55,8 @@ Command addDatasetPreview(CLI::App& parent) {
   const auto a = std::make_shared<PreviewArguments>();
   app->add_option("PATH", a->path, "Folder of shards, or a shard")->required();
   app->add_option("-o,--output", a->output, "PNG to write")->required();
-  app->add_option("--count", a->count, "How many targets")->check(CLI::Range(1, 500))->capture_default_str();
-  app->add_option("--exposure", a->exposure, "In stops")->check(stops())->capture_default_str();
+  app->add_option("--count", a->count, "How many targets")->check(within(1, 500))->capture_default_str();
+  app->add_option("--exposure", a->exposure, "In stops")->check(within(kStops))->capture_default_str();
   return {app, [a] { return preview(*a); }};
 }
 

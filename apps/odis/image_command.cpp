@@ -134,7 +134,7 @@ Command addImageCommand(CLI::App& parent) {
       false);
   CLI::App* sub = add("convert", "Write one layer as PNG or EXR", "The image", 1, true);
   sub->add_option("--layer", a->layer, "Which layer, as in albedo.R; default: the one without a name");
-  sub->add_option("--exposure", a->exposure, "In stops")->check(stops())->capture_default_str();
+  sub->add_option("--exposure", a->exposure, "In stops")->check(within(kStops))->capture_default_str();
   sub->add_option("--tone-map", a->toneMap, "Of PNGs: highlights rolled off or clamped")
       ->check(CLI::IsMember({"filmic", "clamp"}))
       ->capture_default_str();
@@ -145,7 +145,7 @@ Command addImageCommand(CLI::App& parent) {
       ->check(CLI::IsMember({"signed", "absolute", "relative", "flip"}))
       ->capture_default_str();
   sub->add_option("--full", a->full, "Where the colours end; default: 99 % of the pixels are below, FLIP: 1")
-      ->check(numberBetween(1e-30, 1e30));
+      ->check(within(1e-30, 1e30));
   add("average", "The mean of images of one size, channel by channel", "EXR files", 0, true);
   add("merge", "The layers of several images in one", "EXR files; name=FILE puts name. before its channels",
       0, true);

@@ -12,6 +12,7 @@
 #include "console.h"
 #include "learn/inspect/picture.h"
 #include "output.h"
+#include "render/image/limits.h"
 #include "render/image/write.h"
 #include "render_arguments.h"
 #include "validators.h"
@@ -33,34 +34,26 @@ struct InspectArguments {
   SceneArguments part;
 };
 
-// So many finite numbers with commas between them.
-std::vector<float> numbers(const std::string& option, const std::string& text, size_t count) {
-  std::vector<float> result;
-  std::istringstream stream(text);
-  for (std::string part; std::getline(stream, part, ',');) {
-    float value = 0;
-    if (!CLI::detail::lexical_cast(part, value) || !std::isfinite(value)) break;
-    result.push_back(value);
-  }
-  if (result.size() != count || size_t(std::count(text.begin(), text.end(), ',')) + 1 != count)
-    throw UsageError(
-        fmt::format("{}: found \"{}\", expected {} numbers with commas between them", option, text, count));
-  return result;
-}
+// Squares of coordinates stay within single precision.
+constexpr Interval<float> kCoordinates{-1e15f, 1e15f};
 
 Float3 vector(const std::string& option, const std::string& text) {
-  const std::vector<float> v = numbers(option, text, 3);
-  return {v[0], v[1], v[2]};
+  const auto v = parseNumbers<float>(text, ',', 3, kCoordinates);
+  if (!v)
+    throw UsageError(
+        fmt::format("{}: found \"{}\", expected x,y,z, each {}", option, text, expectedNumber(kCoordinates)));
+  return {v->at(0), v->at(1), v->at(2)};
 }
 
 void readPlace(InspectArguments& a) {
   if (a.pixel.empty() == a.point.empty()) throw UsageError("expected --pixel x,y or --point x,y,z");
   if (!a.pixel.empty()) {
-    const std::vector<float> at = numbers("--pixel", a.pixel, 2);
-    if (at[0] != std::floor(at[0]) || at[1] != std::floor(at[1]) || std::abs(at[0]) > 1e9f ||
-        std::abs(at[1]) > 1e9f)
-      throw UsageError(fmt::format("--pixel: found \"{}\", expected whole numbers", a.pixel));
-    a.settings.pixel = Vec2i(int(at[0]), int(at[1]));
+    constexpr Interval<int> pixels{0, kMaxImageSide - 1};
+    const auto at = parseNumbers<int>(a.pixel, ',', 2, pixels);
+    if (!at)
+      throw UsageError(
+          fmt::format("--pixel: found \"{}\", expected x,y, each {}", a.pixel, expectedNumber(pixels)));
+    a.settings.pixel = Vec2i(at->at(0), at->at(1));
     if (!a.normal.empty()) throw UsageError("--normal: goes with --point, a pixel's vertex has one");
     return;
   }
@@ -133,15 +126,17 @@ Command addInspectCommand(CLI::App& parent) {
   app->add_option("-o,--output", a->output, "Picture to write: .png, or .exr with maps as they are");
   app->add_option("--json", a->json, "Write all numbers and maps");
   app->add_option("--paths", a->settings.paths, "That the converged map is made of, about")
-      ->check(CLI::Range(1, 1 << 30))
+      ->check(within(1, 1 << 30))
       ->capture_default_str();
   app->add_option("--spp", a->spp, "Of the image whose pilot it is; default: what the scene asks for, else 4")
-      ->check(CLI::Range(1, 1 << 24));
-  app->add_option("--max-depth", a->maxDepth, "In place of the scene's")->check(CLI::Range(-1, 1 << 20));
-  app->add_option("--rr-depth", a->rrDepth, "In place of the scene's")->check(CLI::Range(1, 1 << 20));
-  app->add_option("--seed", a->seed, "Another seed, another noise")->capture_default_str();
+      ->check(within(kSamplesPerPixel));
+  app->add_option("--max-depth", a->maxDepth, "In place of the scene's")->check(within(kMaxDepth));
+  app->add_option("--rr-depth", a->rrDepth, "In place of the scene's")->check(within(kRouletteDepth));
+  app->add_option("--seed", a->seed, "Another seed, another noise")
+      ->check(within(kSeed))
+      ->capture_default_str();
   app->add_option("--threads", a->threads, "0: one a core")
-      ->check(CLI::Range(0, 4096))
+      ->check(within(kThreadCount))
       ->capture_default_str();
   app->add_flag("-q,--quiet", a->quiet, "No progress");
   a->method.addTo(*app);

@@ -20,7 +20,9 @@ Command addMontageCommand(CLI::App& parent) {
   const auto arguments = std::make_shared<Arguments>();
   app->add_option("IMAGES", arguments->images, "EXR files, left to right")->required();
   app->add_option("-o,--output", arguments->output, "PNG to write")->required();
-  app->add_option("--exposure", arguments->exposure, "In stops")->check(stops())->capture_default_str();
+  app->add_option("--exposure", arguments->exposure, "In stops")
+      ->check(within(kStops))
+      ->capture_default_str();
   return {app, [arguments] {
             Outputs outputs;
             outputs.add(arguments->output, {".png"});

@@ -3,9 +3,6 @@
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>
 
-#include <limits>
-#include <sstream>
-
 #include "command.h"
 #include "render/image/limits.h"
 #include "settings.h"
@@ -78,20 +75,20 @@ void RenderArguments::addTo(CLI::App& app) {
   app.add_option("-o,--output", output,
                  "Image to write, .exr or .png; default: the scene's name, in this folder");
   app.add_option("--png", png, "Write a PNG for a look as well");
-  app.add_option("--exposure", exposure, "Of the PNG, in stops")->check(stops())->capture_default_str();
-  app.add_option("--spp", spp, "Samples per pixel, pilot included; default: what the scene asks for, else 4")
-      ->check(CLI::Range(1, 1 << 24));
-  app.add_option("--seed", seed, "Another seed, another noise")
-      ->check(numberBetween(0, double(std::numeric_limits<uint64_t>::max())))
+  app.add_option("--exposure", exposure, "Of the PNG, in stops")
+      ->check(within(kStops))
       ->capture_default_str();
-  app.add_option("--threads", threads, "0: one a core")->check(CLI::Range(0, 4096))->capture_default_str();
+  app.add_option("--spp", spp, "Samples per pixel, pilot included; default: what the scene asks for, else 4")
+      ->check(within(kSamplesPerPixel));
+  app.add_option("--seed", seed, "Another seed, another noise")->check(within(kSeed))->capture_default_str();
+  app.add_option("--threads", threads, "0: one a core")->check(within(kThreadCount))->capture_default_str();
   app.add_option("--max-depth", maxDepth,
                  "Bounces; -1: no limit, 1: lights only, 2: direct light; default: scene's")
-      ->check(CLI::Range(-1, 1 << 20));
+      ->check(within(kMaxDepth));
   app.add_option("--rr-depth", rrDepth, "Russian roulette starts here; default: scene's")
-      ->check(CLI::Range(1, 1 << 20));
+      ->check(within(kRouletteDepth));
   app.add_option("--time-limit", timeLimit, "Stop after so many seconds; 0: no limit")
-      ->check(numberBetween(0, 1e9))
+      ->check(within(0.0, 1e9))
       ->capture_default_str();
   app.add_option("--aov", aov, "Further layers: albedo,normal,position,depth,roughness,guide or all");
   app.add_flag("--variance", variance, "Write each pixel's estimated variance as a layer");
@@ -107,28 +104,24 @@ void RenderArguments::addTo(CLI::App& app) {
 }
 
 Vec2i parseResolution(const std::string& text) {
-  std::istringstream stream(text);
-  Vec2i size(0, 0);
-  char times = 0;
-  stream >> size.x >> times >> size.y;
-  if (!stream || !stream.eof() || times != 'x' || size.x < 1 || size.y < 1)
-    throw UsageError(fmt::format("--resolution: found \"{}\", expected WIDTHxHEIGHT, as in 640x360", text));
-  if (size.x > kMaxImageSide || size.y > kMaxImageSide)
-    throw UsageError(
-        fmt::format("--resolution: found {}, expected at most {} pixels a side", text, kMaxImageSide));
-  return size;
+  constexpr Interval<int> sides{1, kMaxImageSide};
+  const auto size = parseNumbers<int>(text, 'x', 2, sides);
+  if (!size)
+    throw UsageError(fmt::format(
+        "--resolution: found \"{}\", expected WIDTHxHEIGHT, as in 640x360, each a whole number from {}", text,
+        sides.text()));
+  return {size->at(0), size->at(1)};
 }
 
 Crop parseCrop(const std::string& text) {
-  std::istringstream stream(text);
-  Crop crop;
-  char commas[3] = {};
-  stream >> crop.x >> commas[0] >> crop.y >> commas[1] >> crop.width >> commas[2] >> crop.height;
-  const bool separated = commas[0] == ',' && commas[1] == ',' && commas[2] == ',';
-  if (!stream || !stream.eof() || !separated || crop.x < 0 || crop.y < 0 || crop.width < 1 || crop.height < 1)
+  constexpr Interval<int> pixels{0, kMaxImageSide};
+  const auto crop = parseNumbers<int>(text, ',', 4, pixels);
+  if (!crop || crop->at(2) < 1 || crop->at(3) < 1)
     throw UsageError(
-        fmt::format("--crop: found \"{}\", expected x,y,width,height in pixels, as in 0,0,64,64", text));
-  return crop;
+        fmt::format("--crop: found \"{}\", expected x,y,width,height in pixels, as in 0,0,64,64, each a "
+                    "whole number from {}",
+                    text, pixels.text()));
+  return {crop->at(0), crop->at(1), crop->at(2), crop->at(3)};
 }
 
 std::pair<std::string, std::string> parseDefine(const std::string& text) {

@@ -3,12 +3,13 @@
 #include <CLI/CLI.hpp>
 
 #include <chrono>
-#include <cstdio>
 #include <filesystem>
+#include <limits>
 #include <memory>
 
 #include "command.h"
 #include "console.h"
+#include "numbers.h"
 #include "output.h"
 #include "records.h"
 #include "render/image/tev.h"
@@ -37,12 +38,13 @@ static RenderOptions renderOptions(const RenderArguments& a, const Scene& scene,
 }
 
 static int printReplay(const RenderArguments& a, const Scene& scene, const RenderOptions& options) {
-  int x = 0, y = 0, sample = 0, read = 0;
-  if (std::sscanf(a.replay.c_str(), "%d,%d,%d%n", &x, &y, &sample, &read) != 3 ||
-      size_t(read) != a.replay.size())
-    throw UsageError(fmt::format("--replay: found \"{}\", expected x,y,sample", a.replay));
+  const auto place = parseNumbers<int>(a.replay, ',', 3, {0, std::numeric_limits<int>::max()});
+  if (!place)
+    throw UsageError(
+        fmt::format("--replay: found \"{}\", expected x,y,sample, whole numbers from 0", a.replay));
+  const int x = place->at(0), y = place->at(1), sample = place->at(2);
   const FilmSettings& film = scene.film();
-  if (x < 0 || y < 0 || sample < 0 || x >= film.width || y >= film.height || sample >= options.spp)
+  if (x >= film.width || y >= film.height || sample >= options.spp)
     throw UsageError(fmt::format("--replay: {} is outside of the image of {} x {} pixels of {} samples",
                                  a.replay, film.width, film.height, options.spp));
   fmt::print("{}\n", render::replay(scene, options, Vec2i(x, y), sample));

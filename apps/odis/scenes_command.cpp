@@ -108,8 +108,9 @@ Command addScenesCommand(CLI::App& parent) {
   for (const learn::Kind& kind : learn::kinds()) list += fmt::format("\n  {:<12} {}", kind.name, kind.what);
   sub->footer(list);
   sub->add_option("--seed", a->seed, "Of the first scene; the others have the next numbers")
+      ->check(within(kSeed))
       ->capture_default_str();
-  sub->add_option("--count", a->count, "How many")->check(CLI::Range(1, 100'000'000))->capture_default_str();
+  sub->add_option("--count", a->count, "How many")->check(within(1, 100'000'000))->capture_default_str();
   sub->add_option("-o,--output", a->output, "Folder to make them in; what is there already is left alone")
       ->required();
   sub->add_option("--kind", a->kind, "All of this kind; default: of all kinds");
@@ -121,16 +122,14 @@ Command addScenesCommand(CLI::App& parent) {
   sub = app->add_subcommand("sheet", "Render all scenes of a folder small, into one PNG with their names");
   sub->add_option("FOLDER", a->folder, "Folder of scenes")->required();
   sub->add_option("-o,--output", a->output, "PNG to write")->required();
-  sub->add_option("--spp", a->sheet.spp, "Samples per pixel")
-      ->check(CLI::Range(1, 65536))
-      ->capture_default_str();
+  sub->add_option("--spp", a->sheet.spp, "Samples per pixel")->check(within(1, 65536))->capture_default_str();
   sub->add_option("--width", a->sheet.width, "Of a picture, in pixels")
-      ->check(CLI::Range(16, 2048))
+      ->check(within(16, 2048))
       ->capture_default_str();
   sub->add_option("--columns", a->sheet.columns, "Pictures in a row")
-      ->check(CLI::Range(1, 100))
+      ->check(within(1, 100))
       ->capture_default_str();
-  sub->add_option("--exposure", a->exposure, "In stops")->check(stops())->capture_default_str();
+  sub->add_option("--exposure", a->exposure, "In stops")->check(within(kStops))->capture_default_str();
   sub->add_flag("-q,--quiet", a->quiet, "Print errors only");
   return {app, [a, app] { return app->got_subcommand("generate") ? generate(*a) : sheet(*a); }};
 }

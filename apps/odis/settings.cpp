@@ -1,11 +1,11 @@
 #include "settings.h"
 
 #include <fmt/format.h>
-#include <CLI/CLI.hpp>
 
 #include <algorithm>
 
 #include "command.h"
+#include "numbers.h"
 #include "suggest.h"
 
 namespace odis::app {
@@ -20,18 +20,16 @@ using Set = std::function<void(RenderOptions&, const std::string&)>;
   throw UsageError(fmt::format("--set {}: found \"{}\", expected {}", key, value, expected));
 }
 
-// A number in [least, most]; NaN is in no interval.
 template <class Number>
 Setting number(const std::string& key, Number least, Number most, const std::string& defaultValue,
                const std::string& meaning, const std::function<void(RenderOptions&, Number)>& set) {
-  const std::string range = fmt::format("{} to {}", least, most);
+  const Interval<Number> range{least, most};
   const auto parse = [=](RenderOptions& options, const std::string& text) {
-    Number value{};
-    if (!CLI::detail::lexical_cast(text, value) || !(value >= least && value <= most))
-      fail(key, text, (std::is_integral_v<Number> ? "a whole number from " : "a number from ") + range);
-    set(options, value);
+    const std::optional<Number> value = parseNumber<Number>(text);
+    if (!value || !range.contains(*value)) fail(key, text, expectedNumber(range));
+    set(options, *value);
   };
-  return {key, range, defaultValue, meaning, parse};
+  return {key, range.text(), defaultValue, meaning, parse};
 }
 
 // One word of several; the first is the default if none is said to be.
@@ -49,15 +47,22 @@ Setting choice(const std::string& key, const std::vector<std::pair<std::string, 
   return {key, names, defaultValue, meaning, parse};
 }
 
+constexpr Interval<float> kPriorSamples{0, 1e9f};
+constexpr Interval<double> kPilotWeight{0, 1e6};
+
 void setPriorSamples(RenderOptions& options, const std::string& text) {
-  std::vector<std::string> words = CLI::detail::split(text, ':');
-  float values[kCellLevels];
-  bool good = words.size() == kCellLevels;
-  for (size_t i = 0; good && i < kCellLevels; ++i)
-    good = CLI::detail::lexical_cast(words[i], values[i]) && values[i] >= 0 && values[i] <= 1e9f;
-  if (!good)
-    fail("prior-samples", text, "four numbers from 0 to 1e9 with colons between them, as in 250:250:120:30");
-  std::copy_n(values, kCellLevels, options.guideOptions.priorSamples);
+  const auto values = parseNumbers<float>(text, ':', kCellLevels, kPriorSamples);
+  if (!values)
+    fail("prior-samples", text,
+         "four numbers from " + kPriorSamples.text() + " with colons between them, as in 250:250:120:30");
+  std::copy_n(values->begin(), kCellLevels, options.guideOptions.priorSamples);
+}
+
+void setPilotWeight(RenderOptions& options, const std::string& text) {
+  const std::optional<double> value = parseNumber<double>(text);
+  if (text != "auto" && !(value && kPilotWeight.contains(*value)))
+    fail("pilot-weight", text, "auto or " + expectedNumber(kPilotWeight));
+  options.pilotWeight = text == "auto" ? -1 : *value;
 }
 
 std::vector<Setting> settingsOfPaths() {
@@ -110,16 +115,15 @@ std::vector<Setting> settingsOfPilotAndCells() {
       number<int>("refine", 0, 1 << 20, "3",
                   "Guided samples per pixel that the guide learns from, too, after 1, 3, 7, ... of them.",
                   [](Options& o, int v) { o.refineSpp = v; }),
-      number<double>("pilot-weight", -1, 1e6, "-1",
-                     "Weight of a pilot sample; a guided one's is 1. -1: by predicted variance.",
-                     [](Options& o, double v) { o.pilotWeight = v; }),
+      {"pilot-weight", "auto or " + kPilotWeight.text(), "auto",
+       "A pilot sample's weight, relative to a guided one; auto: by variance.", setPilotWeight},
       number<float>("bsdf-fraction", 0, 1, "0",
                     "Probability that a guided draw stays with the BSDF. 0: by variance and cost.",
                     [](Options& o, float v) { o.guideOptions.fixedBsdfFraction = v; }),
       number<int>("cells", 1, 1 << 16, "32", "Finest cells along the diagonal of what the pilot saw.",
                   [](Options& o, int v) { o.guideOptions.cellsPerDiagonal = v; }),
-      {"prior-samples", "four numbers", "250:250:120:30",
-       "Samples a coarser level is worth to the formula, finest first.", setPriorSamples},
+      {"prior-samples", "four times " + kPriorSamples.text(), "250:250:120:30",
+       "Samples a coarser level is worth, finest first.", setPriorSamples},
       number<float>("map-floor", 0, 1, "0.03", "Share of the uniform distribution in every map.",
                     [](Options& o, float v) { o.guideOptions.floor = v; }),
   };

@@ -7,6 +7,7 @@
 
 #include "command.h"
 #include "command_runner.h"
+#include "support/markdown_table.h"
 
 namespace {
 
@@ -15,6 +16,7 @@ using odis::app::applySettings;
 using odis::app::Setting;
 using odis::app::UsageError;
 using odis::render::RenderOptions;
+using odis::test::cellsOfRow;
 using odis::test::Odis;
 
 // What is wrong with a text of --set; empty if nothing is.
@@ -100,9 +102,10 @@ TEST(Settings, WhatIsNoNumberIsRefused) {
 
 TEST(Settings, FourNumbersAreFour) {
   for (const char* values : {"250", "250:250:120", "250:250:120:30:30", "250 250 120 30", "a:b:c:d"})
-    EXPECT_EQ(complaintAbout(std::string("prior-samples=") + values),
-              "--set prior-samples: found \"" + std::string(values) +
-                  "\", expected four numbers from 0 to 1e9 with colons between them, as in 250:250:120:30");
+    EXPECT_EQ(
+        complaintAbout(std::string("prior-samples=") + values),
+        "--set prior-samples: found \"" + std::string(values) +
+            "\", expected four numbers from 0 to 1000000000 with colons between them, as in 250:250:120:30");
 }
 
 TEST(Settings, AWordThatIsNoChoiceIsRefused) {
@@ -149,25 +152,6 @@ TEST(Settings, DefaultsAreThoseOfTheOptions) {
   EXPECT_EQ(o.ppg.bsdfFraction, expected.ppg.bsdfFraction);
   EXPECT_EQ(o.restir.neighbours, expected.restir.neighbours);
   EXPECT_EQ(o.restir.radius, expected.restir.radius);
-}
-
-// The cells of a row of a Markdown table, without the spaces around them; "\|" is a bar that separates
-// nothing.
-std::vector<std::string> cellsOfRow(const std::string& line) {
-  std::vector<std::string> cells;
-  std::string cell;
-  for (size_t i = 1; i < line.size(); ++i) {
-    if (line[i] == '\\' && i + 1 < line.size() && line[i + 1] == '|') {
-      cell += line[++i];
-    } else if (line[i] == '|') {
-      const size_t first = cell.find_first_not_of(' '), last = cell.find_last_not_of(' ');
-      cells.push_back(first == std::string::npos ? "" : cell.substr(first, last + 1 - first));
-      cell.clear();
-    } else {
-      cell += line[i];
-    }
-  }
-  return cells;
 }
 
 // The heading that a setting belongs under.

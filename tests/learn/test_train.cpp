@@ -382,7 +382,7 @@ TEST(TrainConfig, MistakesAreNamed) {
   EXPECT_NE(errorOf("{").find("is not JSON"), std::string::npos);
   EXPECT_NE(errorOf(R"({"steps": 10})").find("data: is missing"), std::string::npos);
   EXPECT_NE(errorOf(R"({"data": "d", "step": 10})").find("step: is no key"), std::string::npos);
-  EXPECT_NE(errorOf(R"({"data": "d", "steps": 1.5})").find("steps: expected a whole number"),
+  EXPECT_NE(errorOf(R"({"data": "d", "steps": 1.5})").find("steps: found 1.5, expected a whole number"),
             std::string::npos);
   EXPECT_NE(errorOf(R"({"data": "d", "batch": 0})").find("batch: found 0"), std::string::npos);
   EXPECT_NE(errorOf(R"({"data": "d", "loss": "l3"})").find("loss: found l3"), std::string::npos);

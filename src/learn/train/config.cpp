@@ -3,8 +3,11 @@
 #include <fmt/format.h>
 
 #include <filesystem>
+#include <vector>
 
 #include "render/files/read_json.h"
+#include "render/math/interval.h"
+#include "render/xml/names.h"
 
 namespace odis::learn {
 
@@ -31,6 +34,7 @@ class Keys {
   Keys(const std::string& path, const nlohmann::json& json) : m_path(path), m_left(json) {}
 
   void take(const char* key, std::string& value) {
+    m_known.push_back(key);
     if (const auto found = m_left.find(key); found != m_left.end()) {
       if (!found->is_string()) fail(key, "expected a text");
       value = found->get<std::string>();
@@ -39,12 +43,15 @@ class Keys {
   }
   template <class T>
   void take(const char* key, T& value, T least, T most) {
+    m_known.push_back(key);
     if (const auto found = m_left.find(key); found != m_left.end()) {
-      if (!found->is_number() || (std::is_integral_v<T> && !found->is_number_integer()))
-        fail(key, std::is_integral_v<T> ? "expected a whole number" : "expected a number");
-      const double number = found->get<double>();
-      if (!(number >= double(least) && number <= double(most)))
-        fail(key, fmt::format("found {}, expected {} to {}", number, least, most));
+      const render::Interval<T> range{least, most};
+      const bool fits = std::is_integral_v<T> ? found->is_number_integer() : found->is_number();
+      // Whole numbers are within what a double holds exactly.
+      const double number = fits ? found->template get<double>() : 0;
+      if (!fits || !(number >= double(least) && number <= double(most)))
+        fail(key, fmt::format("found {}, expected {} from {}", found->dump(),
+                              std::is_integral_v<T> ? "a whole number" : "a number", range.text()));
       value = T(number);
       m_left.erase(found);
     }
@@ -67,12 +74,15 @@ class Keys {
     throw ConfigError(fmt::format("{}: {}: {}", m_path, key, why));
   }
   void expectNoneLeft() const {
-    if (!m_left.empty()) fail(m_left.begin().key(), "is no key of a training, see docs/network.md");
+    if (m_left.empty()) return;
+    const std::string& key = m_left.begin().key();
+    fail(key, "is no key of a training" + render::suggestion(key, m_known) + ", see docs/network.md");
   }
 
  private:
   const std::string& m_path;
   nlohmann::json m_left;
+  std::vector<std::string> m_known;
 };
 
 }  // namespace
