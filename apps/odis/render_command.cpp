@@ -57,13 +57,18 @@ static double secondsSince(std::chrono::steady_clock::time_point start) {
 
 static void sendToTev(const RenderArguments& a, const RenderedImage& frame) {
   try {
-    TevClient(a.tev).send(a.output, frame.width, frame.height, frame.color.data());
+    TevClient(TevAddress(a.tev)).send(a.output, frame.width, frame.height, frame.color.data());
   } catch (const std::exception& error) {  // the image is written all the same
     say(fmt::format("warning: {}\n", error.what()));
   }
 }
 
 static Outputs outputsOf(const RenderArguments& a) {
+  try {
+    if (!a.tev.empty()) TevAddress{a.tev};
+  } catch (const std::runtime_error& error) {
+    throw UsageError(fmt::format("--tev: {}", error.what()));
+  }
   Outputs outputs;
   outputs.add(a.output, {".exr", ".png"});
   if (!a.png.empty()) outputs.add(a.png, {".png"});

@@ -112,7 +112,7 @@ TEST(TevClient, CreatesThenUpdates) {
   const std::vector<Rgb> pixels = {{1, 2, 3},    {4, 5, 6},  {7, 8, 9},
                                    {10, 11, 12}, {-1, 0, 1}, {0.5f, 0.25f, 1e10f}};
   {
-    TevClient client(listener.address());
+    TevClient client{TevAddress(listener.address())};
     client.send("a", 3, 2, pixels.data());
     client.send("a", 3, 2, pixels.data());
     client.send("a", 2, 3, pixels.data());
@@ -137,13 +137,13 @@ TEST(TevClient, SaysWhyItCannotConnect) {
     address = listener.address();
   }
   try {
-    TevClient client(address);
+    TevClient client{TevAddress(address)};
     FAIL() << "connected to nobody";
   } catch (const std::runtime_error& e) {
     EXPECT_NE(std::string(e.what()).find(address), std::string::npos) << e.what();
   }
-  EXPECT_THROW(TevClient("localhost:"), std::runtime_error);
-  EXPECT_THROW(TevClient("localhost:tev"), std::runtime_error);
+  for (const char* wrong : {"localhost:", "localhost:tev", "localhost:0", "localhost:65536", "localhost:-1"})
+    EXPECT_THROW(TevAddress{wrong}, std::runtime_error) << wrong;
 }
 
 }  // namespace

@@ -10,8 +10,11 @@
 #include <algorithm>
 #include <bit>
 #include <cerrno>
+#include <charconv>
 #include <cstring>
 #include <stdexcept>
+
+#include "render/math/interval.h"
 
 namespace odis::render {
 
@@ -75,14 +78,23 @@ int connectTo(const std::string& host, const std::string& port, const std::strin
 
 }  // namespace
 
-TevClient::TevClient(const std::string& address) : m_address(address) {
-  const size_t colon = address.rfind(':');
-  std::string host = address.substr(0, colon);
+TevAddress::TevAddress(const std::string& text) : text(text) {
+  constexpr Interval<int> ports{1, 65535};
+  const size_t colon = text.rfind(':');
+  host = text.substr(0, colon);
   if (host.empty()) host = "127.0.0.1";
-  const std::string port = colon == std::string::npos ? "14158" : address.substr(colon + 1);
-  if (port.empty() || port.find_first_not_of("0123456789") != std::string::npos)
-    throw std::runtime_error(fmt::format("\"{}\" is no address of tev, expected host:port", address));
-  m_socket = connectTo(host, port, address);
+  if (colon == std::string::npos) return;
+  port = text.substr(colon + 1);
+  int number = 0;
+  const char* const end = port.data() + port.size();
+  const auto [stop, error] = std::from_chars(port.data(), end, number);
+  if (error != std::errc() || stop != end || !ports.contains(number))
+    throw std::runtime_error(fmt::format(
+        "\"{}\" is no address of tev, expected host:port with a port from {}", text, ports.text()));
+}
+
+TevClient::TevClient(const TevAddress& address) : m_address(address.text) {
+  m_socket = connectTo(address.host, address.port, address.text);
 }
 
 TevClient::~TevClient() {

@@ -8,11 +8,18 @@
 
 namespace odis::render {
 
+// "host:port", "host" (port 14158, tev's own) or ":port" (this machine).
+struct TevAddress {
+  // Throws std::runtime_error if the port is no number from 1 to 65535.
+  explicit TevAddress(const std::string& text);
+
+  std::string text, host, port = "14158";
+};
+
 class TevClient {
  public:
-  // Connects to "host:port", "host" (port 14158, tev's own) or ":port" (this machine). Throws
-  // std::runtime_error with address and reason.
-  explicit TevClient(const std::string& address);
+  // Connects; throws std::runtime_error with address and reason.
+  explicit TevClient(const TevAddress& address);
   ~TevClient();
   TevClient(const TevClient&) = delete;
   TevClient& operator=(const TevClient&) = delete;
