@@ -18,7 +18,8 @@ void CompareArguments::addTo(CLI::App& app) {
       ->delimiter(',')
       ->allow_extra_args(false)
       ->capture_default_str();
-  app.add_option("--spp", spp, "Samples per pixel of each method, with commas between several: 4,8,16")
+  app.add_option("--spp", spp,
+                 "Samples per pixel of each method, 1 to 16777216, with commas between several: 4,8,16")
       ->capture_default_str();
   app.add_flag("--equal-time", settings.equalTime,
                "The other methods also with as many samples as fit in the first one's time");

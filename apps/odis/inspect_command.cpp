@@ -120,7 +120,7 @@ Command addInspectCommand(CLI::App& parent) {
       "what really arrives there. See docs/inspect.md.");
   const auto a = std::make_shared<InspectArguments>();
   app->add_option("SCENE", a->scene, "Mitsuba 3 scene file")->required();
-  app->add_option("--pixel", a->pixel, "x,y in the full image, from the upper left");
+  app->add_option("--pixel", a->pixel, "x,y in the full image, from the upper left, each 0 to 65535");
   app->add_option("--point", a->point, "x,y,z in the world, on a surface");
   app->add_option("--normal", a->normal, "x,y,z: where the surface at the point faces; default: any");
   app->add_option("-o,--output", a->output, "Picture to write: .png, or .exr with maps as they are");

@@ -57,9 +57,11 @@ void SceneArguments::addTo(CLI::App& app) {
   app.add_option("-D,--define", defines, "Replaces a <default> of the scene file: -D key=value")
       ->allow_extra_args(false)
       ->group(group);
-  app.add_option("--resolution", resolution, "Size of the full image, in place of the scene's: 640x360")
+  app.add_option("--resolution", resolution,
+                 "Size of the full image, in place of the scene's: 640x360, each 1 to 65536")
       ->group(group);
-  app.add_option("--crop", crop, "Part of the image to render: x,y,width,height")->group(group);
+  app.add_option("--crop", crop, "Part of the image to render: x,y,width,height, each 0 to 65536")
+      ->group(group);
 }
 
 LoadOptions SceneArguments::loadOptions() const {

@@ -44,6 +44,8 @@ const learn::Kind* kindNamed(const std::string& name) {
 
 int generate(const ScenesArguments& a) {
   const learn::Kind* only = kindNamed(a.kind);
+  if (a.seed > kSeed.most - uint64_t(a.count - 1))
+    throw UsageError(fmt::format("--count: found {}, expected seeds that end before 2^64", a.count));
   const learn::Assets assets(a.hdri, a.textures, a.furniture);
   std::error_code error;
   std::filesystem::create_directories(a.output, error);
