@@ -100,6 +100,19 @@ TEST(Errors, OfXmlItself) {
             "test.xml:1:1: found the version 'new', expected numbers such as 3.0.0");
 }
 
+TEST(Errors, OfEntitiesThatXmlDoesNotDefine) {
+  const auto scene = [](const std::string& start, const std::string& value) {
+    return errorOf("<?xml version='1.0'?>" + start + "\n<scene version='3.0.0'><string name='a' value='" +
+                   value + "'/></scene>");
+  };
+  const std::string expected = "test.xml:2:48: found the entity '&b;', expected one of ";
+  for (const char* start :
+       {"", "<!DOCTYPE scene SYSTEM 'a.dtd'>", "<!-- &c; -->", "<!DOCTYPE scene [<!ENTITY b '1'> ]>"})
+    EXPECT_EQ(scene(start, "&b;").rfind(expected, 0), 0u) << scene(start, "&b;");
+  for (const char* value : {"&lt;&gt;&amp;&quot;&apos;", "&#65;&#x41;", "&amp;b;", "a&b.png", "a & b;", "&"})
+    EXPECT_EQ(scene("<!-- &c; -->", value), "no error") << value;
+}
+
 TEST(Errors, OfTheWholeFile) {
   render::Warnings warnings;
   EXPECT_THROW(render::parseScene("/no/such/scene.xml", {}, warnings), SceneError);

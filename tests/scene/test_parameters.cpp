@@ -140,7 +140,8 @@ TEST(Parameters, AreRefusedOutsideOfTheirRangesAndTakenAtTheirEnds) {
 TEST(Parameters, ThatAreMisspeltGetAWarningWithTheNameThatWasMeant) {
   const ElementMaker maker;
   for (const ElementType& type : allElementTypes())
-    for (const auto& [name, declaration] : maker.make(type).declarations) {
+    for (const auto& entry : maker.make(type).declarations) {
+      const std::string& name = entry.first;
       if (name.size() < 4) continue;
       const std::string wrong = name.substr(0, name.size() - 1) + "x";
       const Made made = maker.make(type, wrong, valueElement("string", wrong, "1"));

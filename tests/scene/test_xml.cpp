@@ -28,6 +28,8 @@ TEST(Names, BecomeSnakeCase) {
 
 TEST(Names, SuggestWhatIsNear) {
   EXPECT_EQ(render::suggestion("difuse", {"diffuse", "mask"}), " (did you mean 'diffuse'?)");
+  EXPECT_EQ(render::suggestion("alhpa", {"alpha", "mask"}), " (did you mean 'alpha'?)");
+  EXPECT_EQ(render::suggestion("z", {"x", "y"}), "");
   EXPECT_EQ(render::suggestion("xyz", {"diffuse", "mask"}), "");
 }
 

@@ -16,7 +16,8 @@ bool isPredefined(const std::string& entity) {
   return false;
 }
 
-// Where what begins at `start` ends, if it is a comment or the like in which '&' has no meaning; else `start`.
+// Where what begins at `start` ends, if it is a comment or the like in which '&' has no meaning; else
+// `start`.
 size_t skipUnparsed(const std::string& text, size_t start) {
   static constexpr std::pair<const char*, const char*> kUnparsed[] = {
       {"<!--", "-->"}, {"<![CDATA[", "]]>"}, {"<?", "?>"}};
