@@ -90,12 +90,10 @@ std::vector<EmitterPtr> Builder::emitters(const Properties& node) {
 }
 
 void Builder::warnUnqueried(const Properties& node) {
-  std::vector<std::string> known;
-  for (const auto& [name, declaration] : node.declarations()) known.push_back(name);
   for (const auto& [name, location] : node.unqueried())
     if (!isHarmless(name))
       warn(location, "unknown parameter '" + name + "' of the " + node.tag + " '" + node.type +
-                         "' is ignored" + suggestion(name, known));
+                         "' is ignored" + node.suggestionFor(name));
 }
 
 std::string Builder::resolvePath(const std::string& fileName, const SourceLocation& at) {

@@ -139,6 +139,12 @@ void Properties::declare(const std::string& name, const Declaration& declaration
   m_declarations.emplace(name, declaration);
 }
 
+std::string Properties::suggestionFor(const std::string& name) const {
+  std::vector<std::string> known;
+  for (const auto& entry : m_declarations) known.push_back(entry.first);
+  return suggestion(name, known);
+}
+
 const SourceLocation& Properties::placeOf(const std::string& name) const {
   const auto found = parameters.find(name);
   return found == parameters.end() ? location : found->second.location;
@@ -171,10 +177,8 @@ std::vector<std::pair<std::string, SourceLocation>> Properties::unqueried() cons
 }
 
 void warnOfMisspelt(const Properties& node, Warnings& warnings) {
-  std::vector<std::string> known;
-  for (const auto& [name, declaration] : node.declarations()) known.push_back(name);
   for (const auto& [name, location] : node.unqueried())
-    if (const std::string meant = suggestion(name, known); !meant.empty())
+    if (const std::string meant = node.suggestionFor(name); !meant.empty())
       warnings.add(location, "unknown parameter '" + name + "' of the " + node.tag + " '" + node.type +
                                  "' is ignored" + meant);
 }

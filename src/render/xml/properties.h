@@ -75,6 +75,8 @@ class Properties {
   std::vector<std::pair<std::string, SourceLocation>> unqueried() const;
   // What has been asked for, given or not.
   const std::map<std::string, Declaration>& declarations() const { return m_declarations; }
+  // " (did you mean 'a'?)" with a parameter that has been asked for.
+  std::string suggestionFor(const std::string& name) const;
   // Says what a parameter may be; the getters do so themselves. The first to say it counts.
   void declare(const std::string& name, const Declaration& declaration) const;
   // Where the parameter stands; the element itself if it has none of this name.
