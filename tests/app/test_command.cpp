@@ -37,7 +37,7 @@ TEST_F(Odis, WrongUsageIsTwo) {
   expectFailure("render room.xml --replay 1,2", 2, "expected x,y,sample");
   expectFailure("render room.xml --replay 99,2,0", 2, "outside");
   expectFailure("render room.xml --crop 10,0,4,4", 2, "expected one within the 12x8 pixels");
-  expectFailure("render room.xml --resolution 65537x2", 2, "at most 65536");
+  expectFailure("render room.xml --resolution 65537x2", 2, "from 1 to 65536");
   expectFailure("render room.xml --seed -1", 2, "--seed");
   for (const char* option : {"--exposure", "--time-limit"})
     expectFailure(std::string("render room.xml ") + option + " nan", 2, option);
@@ -131,11 +131,11 @@ TEST_F(Odis, InspectsAPlace) {
   ASSERT_EQ(run("inspect room.xml --point 0,0,3 --paths 1 -o cell.exr -q").code, 0);
   EXPECT_EQ(odis::render::readExr(file("cell.exr").string()).window.width, 1408);
   expectFailure("inspect room.xml", 2, "expected --pixel x,y or --point x,y,z");
-  expectFailure("inspect room.xml --pixel 6", 2, "expected 2 numbers");
-  expectFailure("inspect room.xml --pixel 6,4.5", 2, "whole numbers");
+  expectFailure("inspect room.xml --pixel 6", 2, "expected x,y, each a whole number");
+  expectFailure("inspect room.xml --pixel 6,4.5", 2, "whole number");
   expectFailure("inspect room.xml --pixel 12,4", 2, "12,4 is outside of the image, expected x from 0 to 11");
   expectFailure("inspect room.xml --pixel 0,0", 2, "meets nothing that may be guided");
-  expectFailure("inspect room.xml --point 0,0,nan", 2, "expected 3 numbers");
+  expectFailure("inspect room.xml --point 0,0,nan", 2, "expected x,y,z, each a number");
   expectFailure("inspect room.xml --point 50,0,3 -q", 2, "the nearest place that it saw");
   expectFailure("inspect room.xml --pixel 6,4 --integrator path", 2, "--integrator odis");
 }

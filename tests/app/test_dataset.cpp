@@ -155,8 +155,8 @@ TEST_F(Dataset, SaysWhatIsWrong) {
   expectFailure("dataset generate -o out --seeds 1 --quick --quality", 2, "--quick excludes --quality");
   for (const char* seeds : {"x", "3-1", "1-", "1-2-3", "-1", "1.5"})
     expectFailure(std::string("dataset generate -o out --seeds=") + seeds, 2, "expected FIRST-LAST");
-  expectFailure("dataset generate -o out --seeds 1-9 --shards 4 --of 3", 2, "expected parts from 1 to 3");
-  expectFailure("dataset generate -o out --seeds 1-9 --shards 0 --of 3", 2, "expected parts from 1 to 3");
+  expectFailure("dataset generate -o out --seeds 1-9 --shards 4 --of 3", 2, "whole numbers from 1 to 3");
+  expectFailure("dataset generate -o out --seeds 1-9 --shards 0 --of 3", 2, "whole numbers from 1 to 3");
   expectFailure("dataset generate -o out --seeds 1-9 --of 0", 2, "--of");
   expectFailure("dataset generate -o /proc/out --seeds 1", 4, "/proc/out");
   std::filesystem::create_directory(file("empty"));
