@@ -15,8 +15,8 @@ ShapePtr makeRectangle(const Properties& node, Builder& builder);
 ShapePtr makeSerialized(const Properties& node, Builder& builder);
 ShapePtr makeSphere(const Properties& node, Builder& builder);
 
-// Squares of a radius stay within single precision.
-inline constexpr NumberRange kRadiusRange = between(1e-15, 1e15);
+// Light finds spheres that are all but points; the squares of larger ones leave single precision.
+inline constexpr NumberRange kRadiusRange = between(1e-30, 1e15);
 
 // The parameter to_world; throws SceneError if it can't be inverted.
 Matrix4 readToWorld(const Properties& node);
