@@ -48,7 +48,6 @@ Setting choice(const std::string& key, const std::vector<std::pair<std::string, 
 }
 
 constexpr Interval<float> kPriorSamples{0, 1e9f};
-constexpr Interval<double> kPilotWeight{0, 1e6};
 
 void setPriorSamples(RenderOptions& options, const std::string& text) {
   const auto values = parseNumbers<float>(text, ':', kCellLevels, kPriorSamples);
@@ -56,13 +55,6 @@ void setPriorSamples(RenderOptions& options, const std::string& text) {
     fail("prior-samples", text,
          "four numbers from " + kPriorSamples.text() + " with colons between them, as in 250:250:120:30");
   std::copy_n(values->begin(), kCellLevels, options.guideOptions.priorSamples);
-}
-
-void setPilotWeight(RenderOptions& options, const std::string& text) {
-  const std::optional<double> value = parseNumber<double>(text);
-  if (text != "auto" && !(value && kPilotWeight.contains(*value)))
-    fail("pilot-weight", text, "auto or " + expectedNumber(kPilotWeight));
-  options.pilotWeight = text == "auto" ? -1 : *value;
 }
 
 std::vector<Setting> settingsOfPaths() {
@@ -115,8 +107,8 @@ std::vector<Setting> settingsOfPilotAndCells() {
       number<int>("refine", 0, 1 << 20, "3",
                   "Guided samples per pixel that the guide learns from, too, after 1, 3, 7, ... of them.",
                   [](Options& o, int v) { o.refineSpp = v; }),
-      {"pilot-weight", "auto or " + kPilotWeight.text(), "auto",
-       "A pilot sample's weight, relative to a guided one; auto: by variance.", setPilotWeight},
+      number<double>("pilot-weight", 0, 1e6, "0.6", "Weight of a pilot sample; a guided one's is 1.",
+                     [](Options& o, double v) { o.pilotWeight = v; }),
       number<float>("bsdf-fraction", 0, 1, "0",
                     "Probability that a guided draw stays with the BSDF. 0: by variance and cost.",
                     [](Options& o, float v) { o.guideOptions.fixedBsdfFraction = v; }),

@@ -17,14 +17,12 @@
 //   1. the pilot, unguided, tells of each pixel's value;
 //   2. its vertices are gathered in cells; the model turns those into maps, BSDF sampling fractions, what
 //      roulette needs and what the choice of lights needs;
-//   3. the weights of the pilot's samples are settled;
-//   4. guided samples follow; the guide is refined by the first of them, and after the first of all it is
+//   3. guided samples follow; the guide is refined by the first of them, and after the first of all it is
 //      settled how many samples each pixel has.
 //
 // Unbiasedness rests on these rules: a sample's guide was built before the sample was drawn, from other
-// samples; what a sample weighs and whether it is drawn does not depend on its own value (docs/guiding.md
-// tells what is conditioned on what, and where this is but approximately so in images of a few hundred
-// pixels).
+// samples; what a sample weighs and whether it is drawn does not depend on its own value
+// (docs/unbiasedness.md tells what is conditioned on what, and proves each decision).
 #pragma once
 
 #include <memory>
@@ -43,8 +41,9 @@ struct FrameOptions {
   // Samples per pixel of the pilot; 0.25 is one sample in each 2 x 2 pixels. 0: 0.25 where that is enough
   // to learn from (the image is large) and a whole sample would be dear (there are few), else 1.
   double pilotSamplesPerPixel = 0;
-  // Weight of a pilot sample relative to a guided one; negative: by predicted variance.
-  float pilotWeight = -1;
+  // Weight of a pilot sample relative to a guided one, from 0 on. A constant, because whatever the frame
+  // learns, it learns from the pilot: weights by what was learned would bias the image.
+  float pilotWeight = 0.6f;
   // Guided samples per pixel that the guide learns from as well: it is rebuilt after 1, 3, 7, ... if as
   // many are left.
   uint32_t refinementSamples = 3;
@@ -65,7 +64,9 @@ struct FramePass {
   PassKind kind = PassKind::guided;
   bool wantsVertices = false;
   bool partOfImage = true;
-  uint64_t seed = 0;  // of the random numbers; passes that are no part of the image have another one
+  // Of the random numbers. Passes that are no part of the image have another one, and in frames of less than
+  // 1024 pixels the passes of every guide (docs/unbiasedness.md#sobol-points).
+  uint64_t seed = 0;
   // Number of samples of all passes of this kind and all pixels, for progress; about, where pixels have
   // different numbers.
   uint64_t stageSamples = 0;
@@ -95,7 +96,7 @@ struct FrameStatistics {
   double pilotFraction = 0;    // of the pilot's samples in the mean of the image's weights
 };
 
-// Pixels are counted row by row. Memory: 112 bytes a pixel for sums, 24 for decisions; 188 bytes a pilot
+// Pixels are counted row by row. Memory: 112 bytes a pixel for sums, 12 for decisions; 188 bytes a pilot
 // vertex until the guide is built; the guide's own. All functions throw std::logic_error when they are
 // called out of order.
 class Frame {
@@ -126,7 +127,7 @@ class Frame {
   bool guideIsFinal() const;
 
   // Weight of a sample in the mean of its pixel's samples, in units of a guided sample's. To be asked for
-  // after the last pass.
+  // after the last pass. 1 for the pilot's, too, in a pixel that has no others.
   float sampleWeight(uint32_t pixel, uint32_t sample) const;
   // The weighted mean of the samples that a pixel has by now, and that mean's variance.
   PixelMean mean(uint32_t pixel) const;

@@ -40,12 +40,6 @@ struct GuideOptions {
   float fixedBsdfFraction = 0;
 };
 
-// What the pilot predicts of a sample of a pixel, relative to the pixel's value squared.
-struct PixelPrediction {
-  float variance = 0;  // without guiding
-  float saved = 0;     // part of it that guiding saves
-};
-
 // What a builder takes of some vertices, so that those need not be kept: about 70 bytes a vertex.
 class CellSamples {
  public:
@@ -74,9 +68,6 @@ class Guide {
   uint64_t bytes() const;
   // The variance of a guided sample that the pilot predicts, as a ratio to an unguided one; 1 before build().
   float predictedVarianceRatio() const;
-  // The same for each pixel that build() got the value of; zeros where it did not look. 8 bytes a pixel. They
-  // are made from single samples: Frame averages them.
-  ArrayView<const PixelPrediction> predictions() const;
 
  private:
   friend class GuideBuilder;
@@ -111,7 +102,7 @@ class GuideBuilder {
   Guide build(ArrayView<const PathVertex> vertices, ArrayView<const float> pixelValues = {}) const {
     return build(VertexParts(&vertices, 1), pixelValues);
   }
-  // Builds all but BSDF sampling fractions and predictions anew, from all that was added by now. Those are
+  // Builds all but BSDF sampling fractions and the prediction anew, from all that was added by now. Those are
   // taken from `previous`, which must come from this builder (else std::invalid_argument is thrown); cells
   // that are new have their parents' fractions.
   Guide rebuild(const Guide& previous) const;

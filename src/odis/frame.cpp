@@ -7,7 +7,6 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "odis/image/pilot_weights.h"
 #include "odis/image/sample_counts.h"
 #include "odis/image/schedule.h"
 #include "odis/image/tiles.h"
@@ -20,6 +19,13 @@ namespace {
 constexpr uint64_t kOracleSeed = 0x6f7261636c65ull;
 // The oracle's BSDF sampling fractions come from this many of its passes.
 constexpr uint32_t kOracleFractionPasses = 2;
+
+// A sampler that stratifies draws all samples of a pixel from one set of points. Given the first of them the
+// others are not uniform, and the guide is made from the first: it is not independent of the points that it
+// guides. One pixel's share in what a cell knows makes this too small to measure, but in images of fewer
+// pixels than these every guide has numbers of its own.
+constexpr size_t kFewPixels = 1024;
+constexpr uint64_t kGuideSeed = 0x9e3779b97f4a7c15ull;
 
 void requireOption(bool holds, const char* message) {
   if (!holds) throw std::invalid_argument(std::string("FrameOptions::") + message);
@@ -35,7 +41,8 @@ const FrameOptions& checked(const FrameOptions& o) {
   requireOption(o.samplesPerPixel > 0, "samplesPerPixel: expected at least 1");
   requireOption(o.pilotSamplesPerPixel >= 0 && std::isfinite(o.pilotSamplesPerPixel),
                 "pilotSamplesPerPixel: expected a finite number from 0 on");
-  requireOption(o.pilotWeight < 0 || std::isfinite(o.pilotWeight), "pilotWeight: expected a finite number");
+  requireOption(o.pilotWeight >= 0 && std::isfinite(o.pilotWeight),
+                "pilotWeight: expected a finite number from 0 on");
   return o;
 }
 
@@ -88,9 +95,9 @@ struct Frame::Data {
   std::vector<PixelSums> pilot, later;  // of the pilot's samples, and of those after it
   TileCollector tiles;
   std::vector<float> pixelValues;
-  std::vector<float> pilotWeights;  // [pixel]; empty before the guide is built: 1
   std::unique_ptr<GuideBuilder> builder;
   Guide guide;
+  uint64_t guidesBuilt = 0;
 
   FramePass pass;
   bool inPass = false, finished = false;
@@ -127,6 +134,7 @@ void Frame::Data::describePass() {
     end = schedule.passEnd(done);
     pass.stageSamples = pixels * schedule.mostRemaining();
     pass.wantsVertices = learns();
+    if (pixels < kFewPixels) pass.seed ^= guidesBuilt * kGuideSeed;
     cellSamples.clear();
     if (learns()) cellSamples.resize(tiles.tileCount());
     return;
@@ -169,17 +177,11 @@ void Frame::Data::endOraclePass() {
 }
 
 // Builds the first guide from all that the builder was taught, with BSDF sampling fractions from the
-// vertices `judged`, and settles what a pilot sample weighs: by the inverse of variances as the pilot
-// predicts them. These weights are not made anew when the guide has learned from the samples that are
-// weighed.
+// vertices `judged`.
 void Frame::Data::buildGuide(const Tiles& taught, const Tiles& judged) {
   builder->add(partsOf(taught));
   guide = builder->build(partsOf(judged), pixelValues);
-  const ArrayView<const PixelPrediction> predictions = guide.predictions();
-  if (options.pilotWeight >= 0 || predictions.empty())
-    pilotWeights.assign(pilot.size(), options.pilotWeight >= 0 ? options.pilotWeight : 1);
-  else
-    pilotWeights = odis::pilotWeights(predictions, options.width);
+  ++guidesBuilt;
   takeStock(pilotVertexCount * sizeof(PathVertex));
   if (!options.keepPilotVertices) pilotVertices = {};
 }
@@ -192,9 +194,7 @@ void Frame::Data::takeStock(uint64_t vertices) {
   if (!learns()) builder.reset();
 }
 
-// Settles how many samples each pixel has. Guided samples are told apart from those that they are counted
-// by, the pilot's can't be, since all that comes after them depends on them: so their share in the image
-// stays what it would have been.
+// Settles how many samples each pixel has.
 void Frame::Data::spreadSamples() {
   std::vector<PixelNoise> noise;
   noise.reserve(pilot.size());
@@ -204,15 +204,16 @@ void Frame::Data::spreadSamples() {
     noise.push_back(noiseOf(sums));
   }
   schedule.spread(sampleCounts(noise, int(options.width), options.samplesPerPixel));
-  for (uint32_t pixel = 0; pixel < pilotWeights.size(); ++pixel)
-    pilotWeights[pixel] *= schedule.remainingRatio(pixel);
 }
 
 // Learns from the vertices of a guided pass, and rebuilds the guide where it is time.
 void Frame::Data::refineGuide() {
   builder->add(cellSamples);
   cellSamples.clear();
-  if (std::has_single_bit(end + 1)) guide = builder->rebuild(guide);
+  if (std::has_single_bit(end + 1)) {
+    guide = builder->rebuild(guide);
+    ++guidesBuilt;
+  }
   done = end;
   takeStock(0);
 }
@@ -279,9 +280,12 @@ bool Frame::guideIsFinal() const {
   return m_data->next == PassKind::guided && !m_data->learns();
 }
 
+// All that comes after the pilot depends on it, how many samples a pixel has included. The pilot's share in
+// its pixel must not: it stays what it would be if all pixels had as many samples.
 float Frame::sampleWeight(uint32_t pixel, uint32_t sample) const {
-  const bool ofPilot = sample < m_data->schedule.pilotCount(pixel);
-  return ofPilot && !m_data->pilotWeights.empty() ? m_data->pilotWeights[pixel] : 1;
+  const Data& d = *m_data;
+  const bool weighed = sample < d.schedule.pilotCount(pixel) && d.later[pixel].count > 0;
+  return weighed ? d.options.pilotWeight * d.schedule.remainingRatio(pixel) : 1;
 }
 
 PixelMean Frame::mean(uint32_t pixel) const {

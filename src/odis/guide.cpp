@@ -99,10 +99,6 @@ uint64_t Guide::bytes() const {
 float Guide::predictedVarianceRatio() const {
   return m_data ? m_data->prediction.varianceRatio : 1;
 }
-ArrayView<const PixelPrediction> Guide::predictions() const {
-  if (!m_data) return {};
-  return m_data->prediction.pixels;
-}
 
 struct CellSamples::Data {
   BatchSamples samples;
@@ -205,7 +201,6 @@ Guide GuideBuilder::build(VertexParts parts, ArrayView<const float> pixelValues)
   if (const float fixed = m_data->options.fixedBsdfFraction; fixed > 0) {
     for (CellDecisions& cell : result.decisions) std::fill_n(cell.bsdfFraction, kRoughnessClasses, fixed);
     result.prediction.varianceRatio = 1;
-    result.prediction.pixels.clear();
   }
   m_data->addRouletteAndLights(result, cells);
   return guide;

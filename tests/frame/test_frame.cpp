@@ -3,6 +3,7 @@
 #include <cstring>
 #include <map>
 #include <random>
+#include <set>
 #include <thread>
 
 #include "frame/run_frame.h"
@@ -119,6 +120,52 @@ TEST(Frame, TheMeanIsThatOfTheWeightedSamples) {
     }
     EXPECT_NEAR(frame.mean(pixel).color.y, sum / weights, 1e-5 * (1 + sum / weights)) << pixel;
     EXPECT_EQ(samples.size(), frame.sampleCount(pixel));
+  }
+}
+
+// A share that depended on how many samples a pixel gets would depend on the pilot's values.
+TEST(Frame, ThePilotHasTheSameShareInEveryPixel) {
+  const FrameOptions options = toyOptions(40, 40, 8);
+  Frame frame(options);
+  runFrame(frame, options, {});
+  for (uint32_t pixel = 0; pixel < 40 * 40; ++pixel) {
+    const float weight = frame.sampleWeight(pixel, 0);
+    EXPECT_NEAR(weight / (weight + float(frame.sampleCount(pixel) - 1)), 0.6 / (0.6 + 7), 1e-5);
+    EXPECT_EQ(frame.sampleWeight(pixel, 1), 1);
+  }
+}
+
+TEST(Frame, PilotSamplesCountWhereThereAreNoOthers) {
+  FrameOptions options = toyOptions(8, 8, 1);
+  options.pilotWeight = 0;
+  Frame frame(options);
+  runFrame(frame, options, {});
+  EXPECT_EQ(frame.sampleWeight(5, 0), 1);
+  float sum = 0;
+  for (const float value : luminances(frame, options)) sum += value;
+  EXPECT_GT(sum, 0);
+}
+
+// docs/unbiasedness.md#sobol-points
+TEST(Frame, EachGuideOfASmallFrameHasNumbersOfItsOwn) {
+  for (const uint32_t side : {8u, 40u}) {
+    FrameOptions options = toyOptions(side, side, 8);
+    options.seed = 5;
+    Frame frame(options);
+    const ToyHost host({}, side, side);
+    std::vector<uint64_t> seeds;
+    while (const FramePass* pass = frame.beginPass()) {
+      seeds.push_back(pass->seed);
+      runPass(frame, *pass, host, side * side);
+      frame.endPass();
+    }
+    // The pilot; one sample; two; what is left.
+    ASSERT_EQ(seeds.size(), 5u);
+    EXPECT_EQ(seeds[2], seeds[3]) << "the guide is rebuilt after one and after three samples";
+    seeds.erase(seeds.begin() + 2);
+    const std::set<uint64_t> different(seeds.begin(), seeds.end());
+    EXPECT_EQ(different.size(), side == 8 ? 4u : 1u);
+    EXPECT_EQ(seeds[0], 5u);
   }
 }
 

@@ -1,4 +1,4 @@
-// What cells decide: roulette, lights, the pilot's weight, the BSDF sampling fraction.
+// What cells decide: roulette, lights, the BSDF sampling fraction.
 #include <gtest/gtest.h>
 #include <odis/guide.h>
 
@@ -6,21 +6,12 @@
 
 #include "odis/cells/statistics.h"
 #include "odis/floor_under_patch.h"
-#include "odis/image/pilot_weights.h"
 #include "odis/models/lights.h"
 #include "odis/models/returned_light.h"
 #include "odis/models/second_moments.h"
 
 namespace odis {
 namespace {
-
-// An image of 64 x 64 pixels whose left half guiding helps (a tenth of the variance is left) and whose right
-// half it does not.
-std::vector<PixelPrediction> halfHelped() {
-  std::vector<PixelPrediction> predictions(64 * 64);
-  for (size_t i = 0; i < predictions.size(); ++i) predictions[i] = {2, i % 64 < 32 ? 1.8f : 0.0f};
-  return predictions;
-}
 
 // So many cells of the coarsest level, each of which has seen 100 samples for 500 rays.
 std::vector<CellStatistics> coarsestCells(size_t count) {
@@ -214,33 +205,6 @@ TEST(Lights, VerticesThatSomeGroupMayNotLightAreLeftOut) {
   const std::vector<float> cdf = learnedOfTwoLights(vertices);
   ASSERT_EQ(cdf.size(), 3u);
   EXPECT_NEAR(cdf[1], 0.5, 0.04);
-}
-
-TEST(PilotWeights, FollowWhatIsPredictedNearby) {
-  const std::vector<float> weights = pilotWeights(halfHelped(), 64);
-  ASSERT_EQ(weights.size(), 64u * 64u);
-  EXPECT_NEAR(weights[32 * 64 + 4], 0.1f, 0.02f);
-  EXPECT_NEAR(weights[32 * 64 + 60], 1.0f, 0.02f);
-}
-
-TEST(PilotWeights, DoNotLookAtTheirOwnBlock) {
-  const std::vector<PixelPrediction> before = halfHelped();
-  std::vector<PixelPrediction> after = before;
-  const size_t pixel = 20 * 64 + 20;
-  after[pixel] = {1e6f, 9e5f};
-  const std::vector<float> a = pilotWeights(before, 64), b = pilotWeights(after, 64);
-  EXPECT_EQ(a[pixel], b[pixel]);
-  EXPECT_EQ(a[16 * 64 + 23], b[16 * 64 + 23]);  // the block's corner
-  EXPECT_NE(a[15 * 64 + 23], b[15 * 64 + 23]);  // across its edge
-}
-
-TEST(PilotWeights, FallBackOnTheImageWhereNothingIsKnown) {
-  std::vector<PixelPrediction> predictions = halfHelped();
-  for (size_t i = 0; i < predictions.size(); ++i)
-    if (i / 64 >= 24) predictions[i] = {};
-  EXPECT_NEAR(pilotWeights(predictions, 64)[60 * 64 + 30], 0.55f, 1e-3f);
-  // An image smaller than a block has nothing but itself to look at.
-  EXPECT_EQ(pilotWeights(std::vector<PixelPrediction>(12, {2, 1}), 4), std::vector<float>(12, 1.0f));
 }
 
 TEST(BsdfFraction, WhatIsNoNumberCountsAsTheLimit) {

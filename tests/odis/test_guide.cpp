@@ -282,24 +282,5 @@ TEST(Guide, FindsManyAsItFindsEach) {
   EXPECT_EQ(cells[2], kNoCell);
 }
 
-TEST(Guide, PredictionsOfPixelsAddUpToThatOfTheImage) {
-  std::vector<PathVertex> vertices = floorUnderPatch(kBright, 20000, 3);
-  for (size_t i = 0; i < vertices.size(); ++i) {
-    vertices[i].pixel = uint32_t(i % 1000);
-    if (i % 2 == 0) vertices[i].guidableProbability = vertices[i].guidablePdf = 0;
-  }
-  GuideBuilder builder(byFormula());
-  builder.add(vertices);
-  EXPECT_TRUE(builder.build(vertices).predictions().empty());
-  const Guide guide = builder.build(vertices, std::vector<float>(1000, 1.0f));
-  ASSERT_EQ(guide.predictions().size(), 1000u);
-  double variance = 0, saved = 0;
-  for (const PixelPrediction& p : guide.predictions()) {
-    variance += p.variance;
-    saved += p.saved;
-  }
-  EXPECT_NEAR(1 - saved / variance, guide.predictedVarianceRatio(), 1e-3);
-}
-
 }  // namespace
 }  // namespace odis

@@ -2,6 +2,7 @@
 
 #include <tbb/parallel_for.h>
 
+#include <numeric>
 #include <stdexcept>
 #include <string>
 
@@ -41,19 +42,17 @@ struct ChosenVertices {
   std::vector<const PathVertex*> vertices;
   std::vector<uint32_t> cellOf, cells;  // as in BatchCells
   ImageMoments image;
-  std::vector<std::pair<uint32_t, float>> variances;  // pixels and theirs
 };
 
 // The image's variance and rays are those of the first vertices.
-void addToImage(ChosenVertices& batch, const PathVertex& v, float scale) {
+void addToImage(ImageMoments& image, const PathVertex& v, float scale) {
   const float emission = v.emission * (v.discrete ? 1.0f : powerHeuristic(v.pdf, v.emissionLightPdf));
   const float light = v.lightPdf > 0 ? v.light * powerHeuristic(v.lightPdf, v.lightBsdfPdf) : v.light;
   const double value = (v.indirect + emission + light) * scale;
   const double variance = std::isfinite(value) ? std::min((value - 1) * (value - 1), 2500.0) : 0;
-  ++batch.image.count;
-  batch.image.variance += variance;
-  batch.image.rays += v.raysAfter;
-  batch.variances.emplace_back(v.pixel, float(variance));
+  ++image.count;
+  image.variance += variance;
+  image.rays += v.raysAfter;
 }
 
 ChosenVertices choose(const VertexBatch& batch, uint32_t stride, const PixelScale& scale,
@@ -64,7 +63,7 @@ ChosenVertices choose(const VertexBatch& batch, uint32_t stride, const PixelScal
     for (const PathVertex& v : piece) {
       if (!isChosen(v, stride) || !knowsContributions(v)) continue;
       scale.check(v);
-      if (v.depth == 1) addToImage(result, v, scale(v));
+      if (v.depth == 1) addToImage(result.image, v, scale(v));
       if (!v.discrete && !isUsable(v)) continue;
       const uint64_t key = store.grid().key(v.position, v.normal, 0);
       const uint32_t cell = index.insert(key);
@@ -162,15 +161,12 @@ AllMoments predictMoments(const SortedVertices& sorted, const FractionInputs& in
   return moments;
 }
 
-// Pixels, and what guiding saves of their variance, in the order of SortedVertices.
-using Savings = std::vector<std::pair<uint32_t, float>>;
-
 // Chooses by sums that are shrunk towards the parent's, those towards the parent's parent's, and so on up
-// to the whole image; the cell's own vertices tell what that saves each pixel.
-Savings chooseByMoments(std::vector<CellDecisions>& result, const SortedVertices& sorted,
-                        const AllMoments& moments, const FractionInputs& inputs) {
+// to the whole image. Returns what that saves of each vertex's second moment, in the order of SortedVertices.
+std::vector<float> chooseByMoments(std::vector<CellDecisions>& result, const SortedVertices& sorted,
+                                   const AllMoments& moments, const FractionInputs& inputs) {
   std::vector<CellMoments> shrunk(inputs.cells.size());
-  Savings savings(sorted.order.items.size());
+  std::vector<float> savings(sorted.order.items.size());
   forEachFromCoarse(inputs.cells, [&](size_t c) {
     const uint32_t parent = inputs.cells[c].parent;
     const CellMoments& coarser = parent == kNoCell ? moments.image : shrunk[parent];
@@ -183,7 +179,7 @@ Savings chooseByMoments(std::vector<CellDecisions>& result, const SortedVertices
     for (uint32_t i = sorted.order.begin[c]; i < sorted.order.begin[c + 1]; ++i) {
       const PathVertex& v = *sorted.order.items[i];
       const size_t choice = choices[roughnessClass(inputs.rules, v.roughness)];
-      savings[i] = {v.pixel, moments.vertices[i][0] - moments.vertices[i][choice]};
+      savings[i] = moments.vertices[i][0] - moments.vertices[i][choice];
     }
   });
   return savings;
@@ -202,17 +198,8 @@ GuidingPrediction chooseFractions(std::vector<CellDecisions>& result, const Frac
     return prediction;
   }
   const AllMoments moments = predictMoments(sorted, inputs, scale);
-  const Savings savings = chooseByMoments(result, sorted, moments, inputs);
-
-  prediction.pixels.resize(inputs.pixelValues.size());
-  double saved = 0;
-  for (const auto& [pixel, saving] : savings) {
-    saved += saving;
-    if (!prediction.pixels.empty()) prediction.pixels[pixel].saved += saving;
-  }
-  if (!prediction.pixels.empty())
-    for (const ChosenVertices& batch : sorted.batches)
-      for (const auto& [pixel, variance] : batch.variances) prediction.pixels[pixel].variance += variance;
+  const std::vector<float> savings = chooseByMoments(result, sorted, moments, inputs);
+  const double saved = std::accumulate(savings.begin(), savings.end(), 0.0);
   if (sorted.image.variance > 0)
     prediction.varianceRatio = std::clamp(float(1 - saved / sorted.image.variance), 0.1f, 1.5f);
   return prediction;

@@ -14,8 +14,7 @@ namespace odis {
 // What the pilot predicts of guided samples.
 struct GuidingPrediction {
   ImageMoments image;
-  float varianceRatio = 1;              // of a guided sample to an unguided one, over the whole image
-  std::vector<PixelPrediction> pixels;  // one for each pixel value
+  float varianceRatio = 1;  // of a guided sample to an unguided one, over the whole image
 };
 
 // What the choice is made from. `parts` are (a part of) the vertices that the maps were made from; their

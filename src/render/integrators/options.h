@@ -50,8 +50,8 @@ struct RenderOptions {
   double pilotSpp = 0;
   int oracleSpp = 64;  // samples per pixel that the oracle's maps are made from
   GuideOptions guideOptions;
-  double pilotWeight = -1;  // of a pilot sample relative to a guided one; -1: by predicted variance
-  bool records = false;     // keep the pilot's vertices in the result, for those who want to learn from them
+  double pilotWeight = 0.6;  // of a pilot sample relative to a guided one
+  bool records = false;      // keep the pilot's vertices in the result, for those who want to learn from them
   bool guideFeatures = false;  // with `features`, also what the guide decided
 };
 
