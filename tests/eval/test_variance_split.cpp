@@ -180,7 +180,7 @@ TEST_P(VarianceSplitRoom, AddsUp) {
       variance += samples * frame.variance[i][c] * weights[i][c] / double(weights.size());
 
   Progress quiet;
-  const VarianceSplit result = splitVariance(*scene, o, reference, 256, quiet);
+  const VarianceSplit result = splitVariance(*scene, o, reference, 320, quiet);
   EXPECT_LT(result.variance.error, 0.05 * variance);
   // Another seed learned another guide, whose variance differs by some per cent.
   const double guides = GetParam() == IntegratorKind::odis ? 0.05 * variance : 0;
