@@ -22,11 +22,11 @@ std::string film(int size, bool crop) {
     return "<integer name=\"" + name + "\" value=\"" + std::to_string(value) + "\"/>";
   };
   const int full = crop ? 2 * size : size;
-  std::string text = "<film type=\"hdrfilm\"><rfilter type=\"box\"/>" + integer("width", full) +
-                     integer("height", full);
+  std::string text =
+      "<film type=\"hdrfilm\"><rfilter type=\"box\"/>" + integer("width", full) + integer("height", full);
   if (crop)
-    text += integer("crop_width", size) + integer("crop_height", size) +
-            integer("crop_offset_x", size / 2) + integer("crop_offset_y", size / 2);
+    text += integer("crop_width", size) + integer("crop_height", size) + integer("crop_offset_x", size / 2) +
+            integer("crop_offset_y", size / 2);
   return text + "</film>";
 }
 
