@@ -12,6 +12,7 @@
 #include <iomanip>
 
 #include "integrator/test_scenes.h"
+#include "support/sanitizers.h"
 
 namespace odis::render {
 namespace {
@@ -107,17 +108,13 @@ double meanOf(const RenderResult& result) {
 
 class Paired : public ::testing::TestWithParam<PairedCase> {};
 
-// The sanitizers have no use for many seeds.
 double seedFactor() {
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-  return 0.02;
-#else
   const char* factor = std::getenv("ODIS_PAIRED_SEEDS");
   return factor ? std::atof(factor) : 1;
-#endif
 }
 
 TEST_P(Paired, DecisionAndItsConstantFormHaveTheSameMean) {
+  if (test::kSanitized) GTEST_SKIP() << "takes many seeds, which tell the sanitizers nothing";
   const PairedCase& c = GetParam();
   const auto scene = test::loadScene(rarePatch(c.size, c.crop, c.decision.lamps));
   std::vector<double> with(size_t(c.seeds() * seedFactor())), without(with.size());
