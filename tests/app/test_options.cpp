@@ -54,7 +54,7 @@ std::string argumentsUpTo(const CLI::App* command) {
 std::string complaintAboutOption(const CLI::App* command, const std::string& option,
                                  const std::string& value) {
   CLI::App app("odis", "odis");
-  odis::app::addCommands(app, "");
+  const auto known = odis::app::addCommands(app, "");  // hold what options are stored in
   std::istringstream words(argumentsUpTo(command));
   std::vector<std::string> arguments = {option + "=" + value};  // CLI11 wants them backwards
   for (std::string word; words >> word;) arguments.insert(arguments.begin() + 1, word);
@@ -70,7 +70,7 @@ std::string complaintAboutOption(const CLI::App* command, const std::string& opt
 
 TEST(Options, ThatTakeNumbersHaveRanges) {
   CLI::App app("odis", "odis");
-  odis::app::addCommands(app, "");
+  const auto known = odis::app::addCommands(app, "");  // hold what options are stored in
   std::vector<CLI::App*> commands;
   collectCommands(app, commands);
   int count = 0;
