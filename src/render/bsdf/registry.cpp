@@ -1,7 +1,6 @@
 // Names of the BSDF plugins.
-#include <utility>
-
 #include "render/bsdf/factories.h"
+#include "render/scene/factory_table.h"
 
 namespace odis::render {
 
@@ -30,15 +29,10 @@ constexpr std::pair<const char*, BsdfFactory> kFactories[] = {
 }  // namespace
 
 BsdfFactory findBsdfFactory(const std::string& type) {
-  for (const auto& [name, factory] : kFactories)
-    if (type == name) return factory;
-  return nullptr;
+  return findFactory(kFactories, type);
 }
-
 std::vector<std::string> bsdfTypes() {
-  std::vector<std::string> types;
-  for (const auto& entry : kFactories) types.emplace_back(entry.first);
-  return types;
+  return typesIn(kFactories);
 }
 
 }  // namespace odis::render

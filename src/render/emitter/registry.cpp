@@ -1,7 +1,6 @@
 // The emitters that a scene file can name. Area lights belong to shapes: see makeSurfaceEmitter.
-#include <utility>
-
 #include "render/emitter/factories.h"
+#include "render/scene/factory_table.h"
 
 namespace odis::render {
 
@@ -21,15 +20,10 @@ constexpr std::pair<const char*, EmitterFactory> kFactories[] = {
 }  // namespace
 
 EmitterFactory findEmitterFactory(const std::string& type) {
-  for (const auto& [name, factory] : kFactories)
-    if (type == name) return factory;
-  return nullptr;
+  return findFactory(kFactories, type);
 }
-
 std::vector<std::string> emitterTypes() {
-  std::vector<std::string> types;
-  for (const auto& entry : kFactories) types.emplace_back(entry.first);
-  return types;
+  return typesIn(kFactories);
 }
 
 }  // namespace odis::render

@@ -1,17 +1,15 @@
 // The names of shapes in scene files.
 #include <fmt/format.h>
 
+#include "render/scene/factory_table.h"
 #include "render/shape/factories.h"
 
 namespace odis::render {
 
 namespace {
 
-struct Entry {
-  const char* type;
-  ShapePtr (*factory)(const Properties&, Builder&);
-};
-constexpr Entry kEntries[] = {
+using ShapeFactory = ShapePtr (*)(const Properties&, Builder&);
+constexpr std::pair<const char*, ShapeFactory> kFactories[] = {
     {"cube", makeCube},
     {"cylinder", makeCylinder},
     {"disk", makeDisk},
@@ -59,18 +57,13 @@ std::shared_ptr<Mesh> MeshFile::makeMesh(MeshData data, Builder& builder) const 
 }
 
 ShapePtr makeShape(const Properties& node, Builder& builder) {
-  std::string known;
-  for (const Entry& entry : kEntries) {
-    if (node.type == entry.type) return entry.factory(node, builder);
-    known += (known.empty() ? "" : ", ") + std::string(entry.type);
-  }
-  throw SceneError(node.location, fmt::format("unknown shape \"{}\", expected one of: {}", node.type, known));
+  if (const ShapeFactory factory = findFactory(kFactories, node.type)) return factory(node, builder);
+  throw SceneError(node.location, fmt::format("unknown shape \"{}\", expected one of: {}", node.type,
+                                              fmt::join(shapeTypes(), ", ")));
 }
 
 std::vector<std::string> shapeTypes() {
-  std::vector<std::string> types;
-  for (const Entry& entry : kEntries) types.emplace_back(entry.type);
-  return types;
+  return typesIn(kFactories);
 }
 
 }  // namespace odis::render

@@ -1,7 +1,6 @@
 // The textures that scenes may name.
-#include <utility>
-
 #include "render/scene/builder.h"
+#include "render/scene/factory_table.h"
 
 namespace odis::render {
 
@@ -20,15 +19,10 @@ constexpr std::pair<const char*, TextureFactory> kFactories[] = {
 }  // namespace
 
 TextureFactory findTextureFactory(const std::string& type) {
-  for (const auto& [name, factory] : kFactories)
-    if (type == name) return factory;
-  return nullptr;
+  return findFactory(kFactories, type);
 }
-
 std::vector<std::string> textureTypes() {
-  std::vector<std::string> types;
-  for (const auto& entry : kFactories) types.emplace_back(entry.first);
-  return types;
+  return typesIn(kFactories);
 }
 
 }  // namespace odis::render
