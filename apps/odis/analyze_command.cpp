@@ -87,7 +87,7 @@ Command addAnalyzeCommand(CLI::App& parent) {
       ->check(within(kSamplesPerPixel))
       ->capture_default_str();
   app->add_option("--pixels", a->pixels,
-                  "Make the images about so many pixels large, if --resolution and --crop say nothing")
+                  "Render images of about this many pixels, if --resolution and --crop say nothing")
       ->check(within(kPixelCount))
       ->capture_default_str();
   app->add_option("--max-depth", settings.maxDepth, "In place of the scenes'")->check(within(kMaxDepth));

@@ -100,7 +100,7 @@ Command addBenchCommand(CLI::App& parent) {
   app->add_option("--rounds", a->settings.rounds, "How often each renders")
       ->check(within(1, 1 << 24))
       ->capture_default_str();
-  app->add_option("--pixels", a->pixels, "Make the images about so many pixels large")
+  app->add_option("--pixels", a->pixels, "Render images of about this many pixels")
       ->check(within(kPixelCount))
       ->capture_default_str();
   app->add_option("--sampler", a->sampler, "Where random numbers come from")

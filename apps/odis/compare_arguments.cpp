@@ -30,8 +30,7 @@ void CompareArguments::addTo(CLI::App& app) {
       ->check(within(kSamplesPerPixel))
       ->capture_default_str();
   app.add_option("--reference", settings.reference, "EXR file to use as the reference");
-  app.add_option("--pixels", pixels, "Make the images about so many pixels large")
-      ->check(within(kPixelCount));
+  app.add_option("--pixels", pixels, "Render images of about this many pixels")->check(within(kPixelCount));
   app.add_option("--max-depth", settings.maxDepth, "In place of the scenes'")->check(within(kMaxDepth));
   app.add_option("--rr-depth", settings.rrDepth, "In place of the scenes'")->check(within(kRouletteDepth));
   app.add_option("-o,--output", settings.folder, "Folder for report, results, references and images")

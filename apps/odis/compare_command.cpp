@@ -19,6 +19,7 @@
 #include "eval/report.h"
 #include "eval/summary.h"
 #include "output.h"
+#include "render/files/replace_file.h"
 
 namespace odis::app {
 
@@ -68,11 +69,8 @@ static void checkNames(const eval::CompareSettings& settings) {
         "--reference: {} is in the folder that images are written to, expected another", settings.reference));
 }
 
-static void makeFolder(const eval::CompareSettings& settings) {
-  std::error_code failed;
-  std::filesystem::create_directories(settings.folder, failed);
-  if (failed)
-    throw WriteError(fmt::format("cannot make the folder \"{}\": {}", settings.folder, failed.message()));
+static void prepareFolder(const eval::CompareSettings& settings) {
+  render::makeFolder(settings.folder);
   Outputs outputs;
   for (const char* name : {"results.jsonl", "comparison.md", "comparison.json", "report.html"})
     outputs.add(settings.folder + "/" + name, {});
@@ -86,7 +84,7 @@ static int runCompare(CompareArguments& a) {
   // Before time is spent.
   checkNames(settings);
   if (!settings.reference.empty()) eval::readColor(settings.reference);
-  makeFolder(settings);
+  prepareFolder(settings);
 
   const InterruptScope interruptible;
   ConsoleObserver observer(a.quiet);

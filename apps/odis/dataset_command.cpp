@@ -14,6 +14,7 @@
 #include "learn/data/dataset.h"
 #include "learn/data/dataset_info.h"
 #include "render/files/read_json.h"
+#include "render/files/replace_file.h"
 #include "validators.h"
 
 namespace odis::app {
@@ -32,9 +33,7 @@ int merge(const DatasetArguments& a) {
     if (a.folders.size() > 1) throw UsageError("several folders are merged into another one: expected -o");
     folder = a.folders.front();
   } else {
-    std::error_code error;
-    std::filesystem::create_directories(folder, error);
-    if (error) throw WriteError(fmt::format("cannot make the folder \"{}\": {}", folder, error.message()));
+    render::makeFolder(folder);
     learn::gatherShards(a.folders, folder, countingOn(a.quiet));
   }
   if (a.seeds.empty()) return collectManifest(folder, {}, a.quiet);

@@ -11,6 +11,7 @@
 #include "counter.h"
 #include "dataset_manifest.h"
 #include "dataset_range.h"
+#include "render/files/replace_file.h"
 #include "validators.h"
 
 namespace odis::app {
@@ -65,9 +66,7 @@ int generate(const GenerateArguments& a) {
                                                    : learn::DataSettings();
   const learn::Assets assets(a.hdri, a.textures, a.furniture);
   const std::vector<learn::ShardSource> sources = sourcesOf(a);
-  std::error_code error;
-  std::filesystem::create_directories(a.output, error);
-  if (error) throw WriteError(fmt::format("cannot make the folder \"{}\": {}", a.output, error.message()));
+  render::makeFolder(a.output);
   const int jobs = a.jobs > 0 ? a.jobs : int(std::max(1u, std::thread::hardware_concurrency()));
 
   const InterruptScope interruptible;

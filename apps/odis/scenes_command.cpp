@@ -11,6 +11,7 @@
 #include "learn/scenes/generate.h"
 #include "learn/scenes/sheet.h"
 #include "output.h"
+#include "render/files/replace_file.h"
 #include "render/image/write.h"
 #include "suggest.h"
 #include "validators.h"
@@ -47,9 +48,7 @@ int generate(const ScenesArguments& a) {
   if (a.seed > kSeed.most - uint64_t(a.count - 1))
     throw UsageError(fmt::format("--count: found {}, expected seeds that end before 2^64", a.count));
   const learn::Assets assets(a.hdri, a.textures, a.furniture);
-  std::error_code error;
-  std::filesystem::create_directories(a.output, error);
-  if (error) throw WriteError(fmt::format("cannot make the folder \"{}\": {}", a.output, error.message()));
+  render::makeFolder(a.output);
   const InterruptScope interruptible;
   Counter counter(size_t(a.count), a.quiet);
   for (int i = 0; i < a.count && !InterruptScope::interrupted(); ++i) {

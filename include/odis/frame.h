@@ -64,8 +64,8 @@ struct FramePass {
   PassKind kind = PassKind::guided;
   bool wantsVertices = false;
   bool partOfImage = true;
-  // Of the random numbers. Passes that are no part of the image have another one, and in frames of less than
-  // 1024 pixels the passes of every guide (docs/unbiasedness.md#sobol-points).
+  // The seed of the random numbers. Passes that are no part of the image have another one, and in frames of
+  // fewer than 1024 pixels each guide has one of its own (docs/unbiasedness.md#sobol-points).
   uint64_t seed = 0;
   // Number of samples of all passes of this kind and all pixels, for progress; about, where pixels have
   // different numbers.

@@ -76,10 +76,7 @@ class Training {
 
   // The folder is this training's, or nobody's yet.
   void claimFolder() {
-    std::error_code error;
-    fs::create_directories(m_folder, error);
-    if (error)
-      throw render::WriteError(fmt::format("cannot make the folder \"{}\": {}", m_folder, error.message()));
+    render::makeFolder(m_folder);
     for (const char* name : {"losses.csv", "validation.csv", "events.out.tfevents.odis", "curves.png",
                              "odis.weights", "checkpoint"})
       render::checkOutput(m_folder + "/" + name);

@@ -33,9 +33,9 @@ struct FileIdentity {
   std::string name;  // within the folder that the numbers mean, of a file that isn't there yet
   auto operator<=>(const FileIdentity&) const = default;
 };
-// Of an output. Throws std::runtime_error with the reason.
+// The file that an output goes to. Throws std::runtime_error with the reason.
 FileIdentity identityOf(const OutputPath& output);
-// Of a file that is there; nothing of one that isn't.
+// The file of this name; nothing if there is none.
 std::optional<FileIdentity> identityOfFile(const std::string& path);
 
 }  // namespace odis::render

@@ -29,7 +29,7 @@ Json parseJson(std::string_view text) {
   }
 }
 
-// Of a file. Throws ReadError.
+// What parseJson makes of a file. Throws ReadError.
 template <class Json>
 Json readJson(const std::string& path) {
   return parseJson<Json>(readFile(path));

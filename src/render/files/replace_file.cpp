@@ -75,6 +75,12 @@ void writeFile(const std::string& path, std::string_view bytes) {
   replaceFile(path, [&](CheckedStream& stream) { stream.write(bytes.data(), bytes.size()); });
 }
 
+void makeFolder(const std::string& path) {
+  std::error_code error;
+  fs::create_directories(path, error);
+  if (error) throw WriteError("cannot make the folder \"" + path + "\": " + error.message());
+}
+
 OutputPath checkOutput(const std::string& path) {
   try {
     OutputPath output = followOutput(path);

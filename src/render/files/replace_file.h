@@ -20,6 +20,9 @@ void replaceFile(const std::string& path, const std::function<void(CheckedStream
 // The same of bytes.
 void writeFile(const std::string& path, std::string_view bytes);
 
+// Makes a folder and those above it, where they aren't there yet. Throws WriteError with path and reason.
+void makeFolder(const std::string& path);
+
 // Throws WriteError, as far as can be told before anything is written, if replaceFile would.
 OutputPath checkOutput(const std::string& path);
 

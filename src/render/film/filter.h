@@ -29,7 +29,7 @@ class Filter {
 
 // In pixels: narrower filters have no place in single precision, wider ones blur everything.
 inline constexpr NumberRange kFilterRadius = between(0.001, 100);
-// Of b and c: beyond, the lobes cancel each other and only noise is left.
+// The range of b and c: beyond it the filter's lobes cancel each other and only noise is left.
 inline constexpr NumberRange kMitchellRange = between(0, 1);
 
 // Parameters and defaults as in Mitsuba; throw std::invalid_argument. Separable.
