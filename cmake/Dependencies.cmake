@@ -1,5 +1,11 @@
 # What is built upon: Debian's and Ubuntu's packages, installed by scripts/setup.
-find_package(TBB REQUIRED)
+find_package(Threads REQUIRED)
+if(ODIS_TBB OR ODIS_RENDERER)
+  find_package(TBB REQUIRED)
+endif()
+if(NOT ODIS_RENDERER)
+  return()
+endif()
 find_package(Imath REQUIRED)
 find_package(OpenEXR REQUIRED)
 find_package(pugixml REQUIRED)

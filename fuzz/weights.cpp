@@ -11,12 +11,12 @@ using namespace odis;
 
 void readAll(std::string_view bytes) {
   try {
-    const Weights weights = Weights::parse("fuzz.weights", bytes);
-    const DirectionNetwork network(weights);
-    const CellStatistics cell;
+    const core::Weights weights = core::Weights::parse("fuzz.weights", bytes);
+    const core::DirectionNetwork network(weights);
+    const core::CellStatistics cell;
     network.predict({&cell}, nullptr);
-    LightNetwork(weights).predict({&cell}, nullptr, kMaxLightGroups);
-  } catch (const WeightsError&) {
+    core::LightNetwork(weights).predict({&cell}, nullptr, kMaxLightGroups);
+  } catch (const core::WeightsError&) {
   }
 }
 

@@ -108,8 +108,8 @@ int runCommandLine(int argc, char** argv) {
     return fail(kSceneError, error.what());
   } catch (const learn::ShardError& error) {
     return fail(kSceneError, error.what());
-  } catch (const WeightsError& error) {
-    return fail(kSceneError, error.what());
+  } catch (const Error& error) {
+    return fail(error.code() == ODIS_ERROR_FILE ? kSceneError : kInternalError, error.what());
   } catch (const eval::ImageError& error) {
     return fail(kSceneError, error.what());
   } catch (const WriteError& error) {

@@ -2,20 +2,24 @@
 // normal. A cell is named by a key of 64 bits: three coordinates of 19 bits, the axis, the level.
 #pragma once
 
-#include "odis/types.h"
+#include "odis/number.h"
+#include "odis/view.h"
 
 namespace odis {
 
-inline constexpr uint32_t kNoCell = 0xffffffffu;
+using CellSlot = OdisCellSlot;
 
-// Nested cells have the edges e, 2e, 4e, 8e.
-inline constexpr int kCellLevels = 4;
+inline constexpr uint32_t kNoCell = ODIS_NO_CELL;
+inline constexpr int kCellLevels = ODIS_CELL_LEVELS;
 
 // Where the cells lie: turns a vertex into the key of its cell at a level.
 class CellGrid {
  public:
   CellGrid() = default;
   CellGrid(const Float3& origin, float finestEdge) : m_origin(origin), m_inverseEdge(1 / finestEdge) {}
+  ODIS_HOST_DEVICE explicit CellGrid(const OdisCellGrid& grid)
+      : m_origin(grid.origin), m_inverseEdge(grid.inverseEdge) {}
+  OdisCellGrid flat() const { return {m_origin, m_inverseEdge}; }
   Float3 origin() const { return m_origin; }
   float finestEdge() const { return 1 / m_inverseEdge; }
 
@@ -75,12 +79,6 @@ class CellGrid {
 
   Float3 m_origin;
   float m_inverseEdge = 1;
-};
-
-// A slot of the hash table from keys to cells; kNoCell marks a free one.
-struct CellSlot {
-  uint64_t key = 0;
-  uint32_t cell = kNoCell;
 };
 
 // The slot at which the search for a key begins, before the mask: the finalizer of MurmurHash3.

@@ -1,6 +1,5 @@
-// A read-only view of a guide as flat arrays: what a host looks up at every vertex, on any processor. Cells
-// are known by their index. Every constant of a rule is a field here, so that a host that was compiled
-// earlier follows the library's rules.
+// What a host looks up at every vertex in a guide (odis/view.h), inline, on the CPU or in CUDA. Cells are known
+// by their index.
 //
 //   const uint32_t cell = odis::findCell(view, {position, normal, pixel, sample});
 //   if (cell != odis::kNoCell) {
@@ -16,71 +15,20 @@
 
 namespace odis {
 
-// Version of the layout of GuideView: counts up when a field changes its meaning.
-inline constexpr uint32_t kGuideViewVersion = 1;
+using Place = OdisPlace;
+using CellDecisions = OdisCellDecisions;
+using GuideRules = OdisGuideRules;
+using GuideView = OdisGuideView;
 
-// Vertices of a cell fall into classes by their roughness; each has a BSDF sampling fraction of its own.
-inline constexpr int kRoughnessClasses = 3;
-
-// A host may tell apart this many groups of lights for next-event estimation, at most.
-inline constexpr uint32_t kMaxLightGroups = 32;
-
-// Where a look-up is made: position and unit shading normal, on the side of the outgoing direction, in
-// world space, and for which sample of which pixel, counted as in the frame. The guides of today answer all
-// samples alike.
-struct Place {
-  Float3 position, normal;
-  uint32_t pixel = 0, sample = 0;
-};
-
-// What a cell decides beside directions. 32 bytes.
-struct CellDecisions {
-  // BSDF sampling fraction of each roughness class, in (0, 1]: the probability that a draw that may be
-  // guided stays with the BSDF; 1 where directions are not guided.
-  float bsdfFraction[kRoughnessClasses] = {1, 1, 1};
-  // What throughput over the pixel's value is multiplied by to give the probability that a path goes on;
-  // infinity: always.
-  float survivalFactor = INFINITY;
-  // Mean radiance that a vertex here scatters back, next-event estimation included, or nothing: what a path
-  // adds that ends before it knows. A path that survives with probability p adds (1 - 1/p) times as much,
-  // so that the mean remains right whatever this value is; pixels may become negative.
-  Float3 outgoingRadiance;
-  // Fraction of the choices of a light that follow the cell's table, in [0, 1); 0: nothing is known and
-  // there is no table.
-  float learnedLightFraction = 0;
-};
-
-// The constants of the rules below.
-struct GuideRules {
-  // Lower bounds of the roughness (alpha of a microfacet distribution, 1 for diffuse) of the classes:
-  // diffuse, rough, glossy.
-  float roughnessBounds[kRoughnessClasses] = {0.5f, 0.2f, 0};
-  // The least probability of survival, so that no path weighs more than its inverse for it.
-  float leastSurvival = 0.3f;
-  // Light that adds less than this fraction of the pixel's value is worth a shadow ray only sometimes, and
-  // at least with this probability.
-  float fullShadowRayContribution = 0.05f, leastShadowRayProbability = 0.2f;
-};
-
-struct GuideView {
-  uint32_t version = kGuideViewVersion;
-  uint32_t cellCount = 0;
-  uint32_t lightGroups = 0;  // 0: nothing was learned about lights
-  CellGrid grid;
-  const CellSlot* slots = nullptr;  // hash table from keys to cells of all levels, slotMask + 1 entries
-  uint64_t slotMask = 0;
-  const uint64_t* keys = nullptr;  // [cell]
-  MapArrays maps;
-  const CellDecisions* decisions = nullptr;  // [cell]
-  const float* lightTables = nullptr;        // [cell][lightGroups + 1]: cumulative probabilities from 0 to 1
-  GuideRules rules;
-};
+inline constexpr int kRoughnessClasses = ODIS_ROUGHNESS_CLASSES;
+inline constexpr uint32_t kMaxLightGroups = ODIS_MAX_LIGHT_GROUPS;
 
 // The finest cell that there is for a vertex; kNoCell where the guide has seen nothing at all.
 ODIS_HOST_DEVICE inline uint32_t findCell(const GuideView& view, const Place& place) {
+  const CellGrid grid(view.grid);
   uint32_t cell = kNoCell;
   for (int level = 0; level < kCellLevels && cell == kNoCell; ++level)
-    cell = findSlot(view.slots, view.slotMask, view.grid.key(place.position, place.normal, level));
+    cell = findSlot(view.slots, view.slotMask, grid.key(place.position, place.normal, level));
   return cell;
 }
 
@@ -88,11 +36,12 @@ ODIS_HOST_DEVICE inline uint32_t findCell(const GuideView& view, const Place& pl
 // for the memory of another one. `cells` has room for `count` indices.
 inline void findCells(const GuideView& view, const Place* places, size_t count, uint32_t* cells) {
   constexpr size_t kChunk = 128;
+  const CellGrid grid(view.grid);
   uint64_t keys[kChunk];
   for (size_t begin = 0; begin < count; begin += kChunk) {
     const size_t end = begin + kChunk < count ? begin + kChunk : count;
     for (size_t i = begin; i < end; ++i) {
-      keys[i - begin] = view.grid.key(places[i].position, places[i].normal, 0);
+      keys[i - begin] = grid.key(places[i].position, places[i].normal, 0);
       if (view.slots) __builtin_prefetch(&view.slots[cellHash(keys[i - begin]) & view.slotMask]);
     }
     for (size_t i = begin; i < end; ++i) {

@@ -1,40 +1,40 @@
 // Sums over the samples of a pixel, and the images that are made of them.
 #pragma once
 
+#include <algorithm>
 #include <vector>
 
-#include "odis/types.h"
+#include "odis/structs.h"
 
 namespace odis {
 
-// 56 bytes.
-struct PixelSums {
-  double sum[3] = {};         // of the samples' values: red, green, blue
-  double sumSquares[3] = {};  // of their squares
-  uint32_t count = 0;         // number of samples
-  uint32_t rays = 0;          // traced for all of them, shadow rays included
+using PixelSums = OdisPixelSums;
+using PixelMean = OdisPixelMean;
 
-  void add(const Float3& value, uint32_t raysOfSample) {
-    const double v[3] = {value.x, value.y, value.z};
-    for (int c = 0; c < 3; ++c) {
-      sum[c] += v[c];
-      sumSquares[c] += v[c] * v[c];
-    }
-    ++count;
-    rays += raysOfSample;
+inline void addSample(PixelSums& sums, const Float3& value, uint32_t rays) {
+  const double v[3] = {value.x, value.y, value.z};
+  for (int c = 0; c < 3; ++c) {
+    sums.sum[c] += v[c];
+    sums.sumSquares[c] += v[c] * v[c];
   }
-  void add(const PixelSums& other) {
-    for (int c = 0; c < 3; ++c) {
-      sum[c] += other.sum[c];
-      sumSquares[c] += other.sumSquares[c];
-    }
-    count += other.count;
-    rays += other.rays;
+  ++sums.count;
+  sums.rays += rays;
+}
+inline void addSums(PixelSums& sums, const PixelSums& other) {
+  for (int c = 0; c < 3; ++c) {
+    sums.sum[c] += other.sum[c];
+    sums.sumSquares[c] += other.sumSquares[c];
   }
-};
+  sums.count += other.count;
+  sums.rays += other.rays;
+}
 
 // The unbiased estimate of a sample's variance, a mean over channels; for at least two samples.
-double sampleVariance(const PixelSums& sums);
+inline double sampleVariance(const PixelSums& s) {
+  double deviations[3];
+  for (int c = 0; c < 3; ++c) deviations[c] = s.sumSquares[c] - s.sum[c] * s.sum[c] / double(s.count);
+  return (deviations[0] + deviations[1] + deviations[2]) / 3 / (s.count - 1);
+}
 
 // Some samples of a pixel and the weight of each.
 struct WeightedSums {
@@ -43,15 +43,63 @@ struct WeightedSums {
 };
 
 // The weighted mean of a pixel's samples, and an estimate of the variance of that mean.
-struct PixelMean {
-  Float3 color;     // black if there are no samples
-  Float3 variance;  // 0 where there are fewer than two samples
-};
-PixelMean weightedMean(ArrayView<const WeightedSums> samples);
+inline PixelMean weightedMean(ArrayView<const WeightedSums> parts) {
+  double sum[3] = {}, sumSquares[3] = {}, weight = 0;
+  uint32_t samples = 0;
+  for (const WeightedSums& part : parts) {
+    for (int c = 0; c < 3; ++c) {
+      sum[c] += part.sums->sum[c] * part.weight;
+      sumSquares[c] += part.sums->sumSquares[c] * part.weight;
+    }
+    weight += part.sums->count * part.weight;
+    if (part.weight > 0) samples += part.sums->count;
+  }
+  PixelMean result;
+  if (!(weight > 0)) return result;
+  // With v the variance of a sample of weight one, a sample of weight w has v / w and the mean v / (sum of
+  // weights). v is pooled from deviations within the parts and, weighted alike, between them.
+  float mean[3], variance[3] = {};
+  for (int c = 0; c < 3; ++c) {
+    const double exact = sum[c] / weight;
+    mean[c] = float(exact);
+    if (samples < 2) continue;
+    const double v = (sumSquares[c] - exact * exact * weight) / double(samples - 1) / weight;
+    variance[c] = float(std::max(v, 0.0));
+  }
+  result.color = {mean[0], mean[1], mean[2]};
+  result.variance = {variance[0], variance[1], variance[2]};
+  return result;
+}
 
 // Estimates each pixel's luminance, which contributions are measured by: the mean over a block of 8 x 8
 // pixels, with a little of the image's mean so that nothing is divided by almost nothing. `width` is that
 // of the image in pixels; the result has an entry for each pixel.
-std::vector<float> estimatePixelValues(ArrayView<const PixelSums> image, uint32_t width);
+inline std::vector<float> estimatePixelValues(ArrayView<const PixelSums> image, uint32_t width) {
+  constexpr uint32_t kValueBlock = 8;
+  const uint32_t height = width > 0 ? uint32_t(image.size() / width) : 0;
+  const size_t blocksX = (width + kValueBlock - 1) / kValueBlock,
+               blocksY = (height + kValueBlock - 1) / kValueBlock;
+  std::vector<double> sum(blocksX * blocksY, 0.0), count(sum.size(), 0.0);
+  double total = 0, samples = 0;
+  const auto blockOf = [&](size_t pixel) {
+    return (pixel / width / kValueBlock) * blocksX + pixel % width / kValueBlock;
+  };
+  for (size_t pixel = 0; pixel < image.size(); ++pixel) {
+    const double* s = image[pixel].sum;
+    const double value = luminance({float(s[0]), float(s[1]), float(s[2])});
+    sum[blockOf(pixel)] += value;
+    count[blockOf(pixel)] += image[pixel].count;
+    total += value;
+    samples += image[pixel].count;
+  }
+  const double mean = samples > 0 ? total / samples : 1;
+  std::vector<float> result(image.size());
+  for (size_t pixel = 0; pixel < image.size(); ++pixel) {
+    const size_t block = blockOf(pixel);
+    const double value = count[block] > 0 ? sum[block] / count[block] : mean;
+    result[pixel] = float(std::max(value + 0.1 * mean, 1e-20));
+  }
+  return result;
+}
 
 }  // namespace odis

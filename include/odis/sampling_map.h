@@ -4,6 +4,7 @@
 #pragma once
 
 #include "odis/octahedral.h"
+#include "odis/view.h"
 
 namespace odis {
 
@@ -44,19 +45,7 @@ inline Float3 texelDirection(int texel) {
   return squareToDirection(pointOfTexel<float>(texel, {0.5f, 0.5f}));
 }
 
-// The maps of all cells as flat arrays; pointers stay valid as long as the guide that they come from.
-struct MapArrays {
-  // [cell][texel]: relative incident radiance, at least 1, so that no direction is impossible.
-  const uint16_t* texels = nullptr;
-  // [cell][quantity][block]: the sums over the block's texels of texel times direction (x, y, z), and of
-  // the texels.
-  const float* sums = nullptr;
-  // [axis][texel]: the directions of the texels' centres, x then y then z.
-  const float* directions = nullptr;
-  // What is added to every cosine: something, so that blocks wholly below the horizon have a density too,
-  // but so little that even the one bright texel of a dark map attracts next to nothing from below.
-  float rim = 1e-4f;
-};
+using MapArrays = OdisMapArrays;
 inline constexpr int kSumsPerMap = 4 * kMapBlocks;
 
 // A map times the cosine at one vertex: a density over directions, constant within each texel, with respect

@@ -1,7 +1,5 @@
 #include "odis/frame.h"
 
-#include <tbb/parallel_for.h>
-
 #include <atomic>
 #include <bit>
 #include <cmath>
@@ -11,7 +9,7 @@
 #include "odis/image/schedule.h"
 #include "odis/image/tiles.h"
 
-namespace odis {
+namespace odis::core {
 
 namespace {
 
@@ -67,18 +65,20 @@ uint64_t countVertices(const Tiles& tiles) {
 }  // namespace
 
 struct Frame::Data {
-  explicit Data(const FrameOptions& o)
+  Data(const FrameOptions& o, std::shared_ptr<const Tasks> tasks)
       : options(checked(o)),
         schedule(o),
         pilot(size_t(o.width) * o.height),
         later(pilot.size()),
         tiles(o.width, o.height),
-        builder(o.guided ? std::make_unique<GuideBuilder>(o.guide) : nullptr),
-        next(o.guided ? PassKind::pilot : PassKind::guided) {}
+        builder(o.guided
+                    ? std::make_unique<GuideBuilder>(o.guide ? *o.guide : GuideOptions(), std::move(tasks))
+                    : nullptr),
+        next(o.guided ? ODIS_PASS_PILOT : ODIS_PASS_GUIDED) {}
 
   // The stages, in their order.
   void describePass();
-  void take(uint32_t tile, ArrayView<const FrameSample> samples, std::vector<PathVertex> vertices);
+  void take(uint32_t tile, ArrayView<const FrameSample> samples, ArrayView<const PathVertex> vertices);
   void endPilot();
   void endOraclePass();
   void buildGuide(const Tiles& taught, const Tiles& judged);
@@ -100,25 +100,27 @@ struct Frame::Data {
   uint64_t guidesBuilt = 0;
 
   FramePass pass;
+  GuideView view;  // of the guide of the pass
   bool inPass = false, finished = false;
-  PassKind next;                         // of the pass under way, or of the next one
+  OdisPassKind next;                     // of the pass under way, or of the next one
   uint32_t oraclePasses = 0;             // passes of the oracle that are done
   uint32_t done = 0, end = 0;            // samples after the pilot: done before the pass, and by its end
   Tiles pilotVertices, passVertices;     // [tile]
   Tiles oracleVertices;                  // those that the oracle's BSDF sampling fractions are made from
   std::vector<CellSamples> cellSamples;  // [tile]
   std::atomic<uint64_t> notFinite{0};
+  std::atomic<uint64_t> keptBytes{0};  // of vertices, or of what was taken from them
   uint64_t outsideFrame = 0, buildingBytes = 0, pilotVertexCount = 0;
   VertexCounts vertexCounts;
 };
 
 SampleRange Frame::Data::samples(uint32_t pixel) const {
   switch (next) {
-    case PassKind::pilot:
+    case ODIS_PASS_PILOT:
       return {0, schedule.pilotCount(pixel)};
-    case PassKind::oracle:
+    case ODIS_PASS_ORACLE:
       return {oraclePasses, 1};
-    case PassKind::guided:
+    case ODIS_PASS_GUIDED:
       break;
   }
   return schedule.remaining(pixel, done, end);
@@ -129,8 +131,9 @@ void Frame::Data::describePass() {
   pass = {};
   pass.kind = next;
   pass.seed = options.seed;
-  pass.guide = guide.view();
-  if (next == PassKind::guided) {
+  view = guide.view();
+  pass.guide = &view;
+  if (next == ODIS_PASS_GUIDED) {
     end = schedule.passEnd(done);
     pass.stageSamples = pixels * schedule.mostRemaining();
     pass.wantsVertices = learns();
@@ -139,25 +142,28 @@ void Frame::Data::describePass() {
     if (learns()) cellSamples.resize(tiles.tileCount());
     return;
   }
-  pass.stageSamples = next == PassKind::pilot ? schedule.pilotSamples() : pixels * options.oracleSamples;
+  pass.stageSamples = next == ODIS_PASS_PILOT ? schedule.pilotSamples() : pixels * options.oracleSamples;
   pass.wantsVertices = true;
-  pass.partOfImage = next == PassKind::pilot;
-  if (next == PassKind::oracle) pass.seed ^= kOracleSeed;
+  pass.partOfImage = next == ODIS_PASS_PILOT;
+  if (next == ODIS_PASS_ORACLE) pass.seed ^= kOracleSeed;
   passVertices.assign(tiles.tileCount(), {});
 }
 
 // Takes a tile's samples and vertices.
 void Frame::Data::take(uint32_t tile, ArrayView<const FrameSample> samples,
-                       std::vector<PathVertex> vertices) {
+                       ArrayView<const PathVertex> vertices) {
   if (pass.partOfImage) {
-    std::vector<PixelSums>& sums = next == PassKind::pilot ? pilot : later;
-    for (const FrameSample& s : samples) sums[s.pixel].add(finiteOrBlack(s.value, notFinite), s.rays);
+    std::vector<PixelSums>& sums = next == ODIS_PASS_PILOT ? pilot : later;
+    for (const FrameSample& s : samples) addSample(sums[s.pixel], finiteOrBlack(s.value, notFinite), s.rays);
   }
   if (!pass.wantsVertices) return;
-  if (next == PassKind::guided)
+  if (next == ODIS_PASS_GUIDED) {
     cellSamples[tile] = builder->take(vertices);
-  else
-    passVertices[tile] = std::move(vertices);
+    keptBytes += cellSamples[tile].bytes();
+  } else {
+    passVertices[tile].assign(vertices.begin(), vertices.end());
+    keptBytes += vertices.size() * sizeof(PathVertex);
+  }
 }
 
 // Pixel values come from the pilot's image, and the guide from its vertices.
@@ -166,14 +172,14 @@ void Frame::Data::endPilot() {
   pilotVertices = std::move(passVertices);
   pilotVertexCount = countVertices(pilotVertices);
   buildingBytes = pilotVertexCount * sizeof(PathVertex);
-  next = options.oracleSamples > 0 ? PassKind::oracle : PassKind::guided;
+  next = options.oracleSamples > 0 ? ODIS_PASS_ORACLE : ODIS_PASS_GUIDED;
 }
 
 void Frame::Data::endOraclePass() {
   builder->add(partsOf(passVertices));
   if (oraclePasses < kOracleFractionPasses)
     std::move(passVertices.begin(), passVertices.end(), std::back_inserter(oracleVertices));
-  if (++oraclePasses == options.oracleSamples) next = PassKind::guided;
+  if (++oraclePasses == options.oracleSamples) next = ODIS_PASS_GUIDED;
 }
 
 // Builds the first guide from all that the builder was taught, with BSDF sampling fractions from the
@@ -183,6 +189,8 @@ void Frame::Data::buildGuide(const Tiles& taught, const Tiles& judged) {
   guide = builder->build(partsOf(judged), pixelValues);
   ++guidesBuilt;
   takeStock(pilotVertexCount * sizeof(PathVertex));
+  oracleVertices = {};
+  keptBytes = options.keepPilotVertices ? pilotVertexCount * sizeof(PathVertex) : 0;
   if (!options.keepPilotVertices) pilotVertices = {};
 }
 
@@ -200,7 +208,7 @@ void Frame::Data::spreadSamples() {
   noise.reserve(pilot.size());
   for (size_t pixel = 0; pixel < pilot.size(); ++pixel) {
     PixelSums sums = pilot[pixel];
-    sums.add(later[pixel]);
+    addSums(sums, later[pixel]);
     noise.push_back(noiseOf(sums));
   }
   schedule.spread(sampleCounts(noise, int(options.width), options.samplesPerPixel));
@@ -209,6 +217,7 @@ void Frame::Data::spreadSamples() {
 // Learns from the vertices of a guided pass, and rebuilds the guide where it is time.
 void Frame::Data::refineGuide() {
   builder->add(cellSamples);
+  for (const CellSamples& samples : cellSamples) keptBytes -= samples.bytes();
   cellSamples.clear();
   if (std::has_single_bit(end + 1)) {
     guide = builder->rebuild(guide);
@@ -226,7 +235,8 @@ void Frame::Data::endGuidedPass() {
     done = end;
 }
 
-Frame::Frame(const FrameOptions& options) : m_data(std::make_unique<Data>(options)) {}
+Frame::Frame(const FrameOptions& options, std::shared_ptr<const Tasks> tasks)
+    : m_data(std::make_unique<Data>(options, std::move(tasks))) {}
 Frame::~Frame() = default;
 Frame::Frame(Frame&&) noexcept = default;
 Frame& Frame::operator=(Frame&&) noexcept = default;
@@ -234,11 +244,11 @@ Frame& Frame::operator=(Frame&&) noexcept = default;
 const FramePass* Frame::beginPass() {
   Data& d = *m_data;
   requireOrder(!d.inPass, "Frame::beginPass: expected endPass() before the next pass");
-  if (d.finished || (d.next == PassKind::guided && d.done >= d.schedule.mostRemaining())) return nullptr;
+  if (d.finished || (d.next == ODIS_PASS_GUIDED && d.done >= d.schedule.mostRemaining())) return nullptr;
   d.describePass();
   d.tiles.beginPass([&d](uint32_t pixel) { return d.samples(pixel); },
                     [&d](uint32_t tile, ArrayView<const FrameSample> samples,
-                         std::vector<PathVertex> vertices) { d.take(tile, samples, std::move(vertices)); });
+                         ArrayView<const PathVertex> vertices) { d.take(tile, samples, vertices); });
   d.inPass = true;
   return &d.pass;
 }
@@ -253,10 +263,9 @@ ArrayView<const float> Frame::pixelValues() const {
   return m_data->pixelValues;
 }
 
-void Frame::add(ArrayView<const FrameSample> samples, std::vector<PathVertex> vertices) {
+void Frame::add(ArrayView<const FrameSample> samples, ArrayView<const PathVertex> vertices) {
   requireOrder(m_data->inPass, "Frame::add: expected a pass under way");
-  if (!m_data->pass.wantsVertices) vertices.clear();
-  m_data->tiles.add(samples, std::move(vertices));
+  m_data->tiles.add(samples, m_data->pass.wantsVertices ? vertices : ArrayView<const PathVertex>());
 }
 
 void Frame::endPass(bool interrupted) {
@@ -264,20 +273,28 @@ void Frame::endPass(bool interrupted) {
   requireOrder(d.inPass, "Frame::endPass: expected a pass under way");
   d.outsideFrame += d.tiles.endPass();
   d.inPass = false;
-  d.finished = interrupted;
-  const PassKind kind = d.next;
-  if (kind == PassKind::pilot) d.endPilot();
+  d.finished = true;  // unless what follows succeeds
+  const OdisPassKind kind = d.next;
+  if (kind == ODIS_PASS_PILOT) d.endPilot();
   if (interrupted) return;
-  if (kind == PassKind::oracle) d.endOraclePass();
-  if (kind == PassKind::guided)
+  if (kind == ODIS_PASS_ORACLE) d.endOraclePass();
+  if (kind == ODIS_PASS_GUIDED)
     d.endGuidedPass();
-  else if (d.next == PassKind::guided)
-    kind == PassKind::pilot ? d.buildGuide(d.pilotVertices, d.pilotVertices)
+  else if (d.next == ODIS_PASS_GUIDED)
+    kind == ODIS_PASS_PILOT ? d.buildGuide(d.pilotVertices, d.pilotVertices)
                             : d.buildGuide({}, d.oracleVertices);
+  d.finished = false;
+}
+
+uint64_t Frame::bytes() const {
+  const Data& d = *m_data;
+  constexpr uint64_t kPerPixel = 2 * sizeof(PixelSums) + sizeof(float) + 2 * sizeof(uint32_t);
+  return d.pilot.size() * kPerPixel + d.tiles.bytes() + d.keptBytes + d.guide.bytes() +
+         (d.builder ? d.builder->bytes() : 0);
 }
 
 bool Frame::guideIsFinal() const {
-  return m_data->next == PassKind::guided && !m_data->learns();
+  return m_data->next == ODIS_PASS_GUIDED && !m_data->learns();
 }
 
 // All that comes after the pilot depends on it, how many samples a pixel has included. The pilot's share in
@@ -331,12 +348,16 @@ ArrayView<const PixelSums> Frame::pilotImage() const {
   return m_data->pilot;
 }
 
+size_t Frame::pilotVertexCount() const {
+  return countVertices(m_data->pilotVertices);
+}
+
 std::vector<PathVertex> Frame::pilotVertices() const {
   std::vector<PathVertex> vertices;
-  vertices.reserve(m_data->pilotVertexCount);
+  vertices.reserve(pilotVertexCount());
   for (const std::vector<PathVertex>& tile : m_data->pilotVertices)
     vertices.insert(vertices.end(), tile.begin(), tile.end());
   return vertices;
 }
 
-}  // namespace odis
+}  // namespace odis::core

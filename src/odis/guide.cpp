@@ -10,10 +10,11 @@
 #include "odis/models/bsdf_fraction.h"
 #include "odis/models/direction_formula.h"
 #include "odis/models/lights.h"
-#include "odis/models/model_parts.h"
+#include "odis/models/model.h"
 #include "odis/models/returned_light.h"
+#include "odis/work/progress.h"
 
-namespace odis {
+namespace odis::core {
 
 // Memory that begins at a cache line and is not touched before it is filled in.
 template <class T>
@@ -44,6 +45,7 @@ void check(const GuideOptions& options) {
   require(options.cellsPerDiagonal >= 1, "cellsPerDiagonal: expected at least 1");
   for (const float samples : options.priorSamples)
     require(samples >= 0 && std::isfinite(samples), "priorSamples: expected finite numbers from 0 on");
+  require(options.lightPartCount == 0 || options.lightParts, "lightParts: expected an array");
   require(options.lightGroups <= kMaxLightGroups, "lightGroups: expected at most kMaxLightGroups");
   require(options.floor >= 0 && options.floor <= 1, "floor: expected a number from 0 to 1");
   require(options.clamp > 0, "clamp: expected a positive number");
@@ -72,15 +74,19 @@ struct Guide::Data {
 
 Guide::Guide() = default;
 Guide::~Guide() = default;
+Guide::Guide(const Guide&) = default;
 Guide::Guide(Guide&&) noexcept = default;
-Guide& Guide::operator=(Guide&&) noexcept = default;
+Guide& Guide::operator=(Guide other) noexcept {
+  m_data.swap(other.m_data);
+  return *this;
+}
 
 GuideView Guide::view() const {
   GuideView view;
   if (!m_data) return view;
   view.cellCount = uint32_t(m_data->decisions.size());
   view.lightGroups = m_data->lightGroups;
-  view.grid = m_data->grid;
+  view.grid = m_data->grid.flat();
   view.slots = m_data->index.slots();
   view.slotMask = m_data->index.mask();
   view.keys = m_data->keys.data();
@@ -109,12 +115,18 @@ CellSamples::~CellSamples() = default;
 CellSamples::CellSamples(CellSamples&&) noexcept = default;
 CellSamples& CellSamples::operator=(CellSamples&&) noexcept = default;
 
+uint64_t CellSamples::bytes() const {
+  return m_data ? m_data->samples.bytes() : 0;
+}
+
 struct GuideBuilder::Data {
-  explicit Data(const GuideOptions& o)
+  Data(const GuideOptions& o, Model model, std::shared_ptr<const Tasks> tasks)
       : options(o),
-        directions(o.model.parts().directions),
-        lights(o.model.parts().lights),
-        store(o.clamp, directions && directions->looksAround()) {
+        lightParts(o.lightParts, o.lightParts + o.lightPartCount),
+        progress(o.progressFunction, o.progressUser),
+        directions(std::move(model.directions)),
+        lights(std::move(model.lights)),
+        store(o.clamp, directions && directions->looksAround(), std::move(tasks)) {
     if (!directions) directions = std::make_shared<DirectionFormula>(o);
     if (!lights) lights = std::make_shared<LightFormula>();
   }
@@ -124,14 +136,16 @@ struct GuideBuilder::Data {
   void addRouletteAndLights(Guide::Data& guide, const std::vector<CellStatistics>& cells) const;
 
   GuideOptions options;
+  std::vector<LightParts> lightParts;
+  Progress progress;
   std::shared_ptr<const DirectionModel> directions;
   std::shared_ptr<const LightModel> lights;
   CellStore store;
 };
 
-GuideBuilder::GuideBuilder(const GuideOptions& options) {
+GuideBuilder::GuideBuilder(const GuideOptions& options, std::shared_ptr<const Tasks> tasks) {
   check(options);
-  m_data = std::make_unique<Data>(options);
+  m_data = std::make_unique<Data>(options, modelOf(options.model), std::move(tasks));
 }
 GuideBuilder::~GuideBuilder() = default;
 GuideBuilder::GuideBuilder(GuideBuilder&&) noexcept = default;
@@ -165,14 +179,14 @@ uint64_t GuideBuilder::bytes() const {
 Guide GuideBuilder::Data::buildMaps(const std::vector<CellStatistics>& cells,
                                     std::vector<DirectionDistribution>& distributions) const {
   Guide guide;
-  guide.m_data = std::make_unique<Guide::Data>(cells.size());
+  guide.m_data = std::make_shared<Guide::Data>(cells.size());
   Guide::Data& result = *guide.m_data;
   result.builder = this;
   result.grid = store.grid();
   result.index = store.index();
   result.keys = store.keys();
   distributions.resize(cells.size());
-  forEachFromCoarse(cells, [&](size_t c) {
+  forEachFromCoarse(store.tasks(), cells, [&](size_t c) {
     const uint32_t parent = cells[c].parent;
     distributions[c] =
         directions->predict(chainOf(cells, c), parent == kNoCell ? nullptr : &distributions[parent]);
@@ -184,17 +198,21 @@ Guide GuideBuilder::Data::buildMaps(const std::vector<CellStatistics>& cells,
 
 void GuideBuilder::Data::addRouletteAndLights(Guide::Data& guide,
                                               const std::vector<CellStatistics>& cells) const {
-  fillRoulette(guide.decisions, cells, guide.prediction.image, options.controlVariate);
+  fillRoulette(store.tasks(), guide.decisions, cells, guide.prediction.image, options.controlVariate);
   guide.lightGroups = options.lightGroups;
   if (guide.lightGroups > 0)
     guide.lightTables =
-        tabulateLights(guide.decisions, cells, *lights, guide.lightGroups, options.lightParts);
+        tabulateLights(store.tasks(), guide.decisions, cells, *lights, guide.lightGroups, lightParts);
 }
 
 Guide GuideBuilder::build(VertexParts parts, ArrayView<const float> pixelValues) const {
+  const Progress& progress = m_data->progress;
+  progress.report(0);
   const std::vector<CellStatistics>& cells = m_data->store.rollUp();
+  progress.report(0.3);
   std::vector<DirectionDistribution> distributions;
   Guide guide = m_data->buildMaps(cells, distributions);
+  progress.report(0.7);
   Guide::Data& result = *guide.m_data;
   result.prediction = chooseFractions(result.decisions, {m_data->store, cells, distributions, result.maps(),
                                                          guide.view().rules, parts, pixelValues});
@@ -203,20 +221,25 @@ Guide GuideBuilder::build(VertexParts parts, ArrayView<const float> pixelValues)
     result.prediction.varianceRatio = 1;
   }
   m_data->addRouletteAndLights(result, cells);
+  progress.report(1);
   return guide;
 }
 
 Guide GuideBuilder::rebuild(const Guide& previous) const {
   if (!previous.m_data || previous.m_data->builder != m_data.get())
     throw std::invalid_argument("GuideBuilder::rebuild: expected a guide that this builder built");
+  const Progress& progress = m_data->progress;
+  progress.report(0);
   const std::vector<CellStatistics>& cells = m_data->store.rollUp();
+  progress.report(0.3);
   std::vector<DirectionDistribution> distributions;
   Guide guide = m_data->buildMaps(cells, distributions);
+  progress.report(0.7);
   Guide::Data& result = *guide.m_data;
 
   // Old cells keep their indices, new ones follow.
   const std::vector<CellDecisions>& old = previous.m_data->decisions;
-  forEachFromCoarse(cells, [&](size_t c) {
+  forEachFromCoarse(m_data->store.tasks(), cells, [&](size_t c) {
     if (c < old.size())
       std::copy_n(old[c].bsdfFraction, kRoughnessClasses, result.decisions[c].bsdfFraction);
     else if (cells[c].parent != kNoCell)
@@ -225,7 +248,8 @@ Guide GuideBuilder::rebuild(const Guide& previous) const {
   });
   result.prediction = previous.m_data->prediction;
   m_data->addRouletteAndLights(result, cells);
+  progress.report(1);
   return guide;
 }
 
-}  // namespace odis
+}  // namespace odis::core

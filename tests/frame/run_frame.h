@@ -27,7 +27,8 @@ inline TracedPass tracePass(const Frame& frame, const FramePass& pass, const Toy
     const SampleRange range = frame.samples(pixel);
     for (uint32_t i = 0; i < range.count; ++i)
       traced.samples.push_back(host.trace(pass, frame.pixelValues(), pixel, range.first + i, recorder));
-    recorder.finish(traced.vertices);
+    const ArrayView<const PathVertex> vertices = recorder.finish();
+    traced.vertices.insert(traced.vertices.end(), vertices.begin(), vertices.end());
     if (!pass.wantsVertices) traced.vertices.clear();
   }
   return traced;
@@ -38,7 +39,7 @@ inline void runPass(Frame& frame, const FramePass& pass, const ToyHost& host, ui
                     const ChangeVertices& change = {}) {
   TracedPass traced = tracePass(frame, pass, host, pixels);
   if (change) change(traced.vertices);
-  frame.add(traced.samples, std::move(traced.vertices));
+  frame.add(traced.samples, traced.vertices);
 }
 
 inline void runFrame(Frame& frame, const FrameOptions& options, const ToyRoom& room,

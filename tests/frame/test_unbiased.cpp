@@ -3,7 +3,7 @@
 #include <random>
 
 #include "frame/run_frame.h"
-#include "odis/models/model_parts.h"
+#include "support/models.h"
 
 namespace odis::test {
 
@@ -12,14 +12,15 @@ namespace {
 constexpr uint32_t kSide = 64;
 
 // Maps that have nothing to do with the light.
-class WrongDirections : public DirectionModel {
+class WrongDirections : public core::DirectionModel {
  public:
   enum class Kind { random, oneTexel, zero, notANumber };
   explicit WrongDirections(Kind kind) : m_kind(kind) {}
-  DirectionDistribution predict(const CellChain& chain, const DirectionDistribution*) const override {
+  core::DirectionDistribution predict(const core::CellChain& chain,
+                                      const core::DirectionDistribution*) const override {
     std::mt19937 engine(uint32_t(chain[0]->count) * 7919u + uint32_t(chain[0]->level));
     const uint32_t bright = engine() % kMapTexels;
-    DirectionDistribution result;
+    core::DirectionDistribution result;
     for (uint32_t t = 0; t < kMapTexels; ++t) {
       result.inverseCosine[t] = 1;
       result.probability[t] = m_kind == Kind::random       ? float(engine() % 1000) / 1000
@@ -35,16 +36,17 @@ class WrongDirections : public DirectionModel {
 };
 
 // Tables that draw one lamp only, or numbers that make no table.
-class WrongLights : public LightModel {
+class WrongLights : public core::LightModel {
  public:
-  LightSquares predict(const CellChain& chain, const LightSquares*, uint32_t) const override {
+  core::LightSquares predict(const core::CellChain& chain, const core::LightSquares*,
+                             uint32_t) const override {
     std::mt19937 engine(uint32_t(chain[0]->count) * 104729u + uint32_t(chain[0]->level));
-    LightSquares result{};
+    core::LightSquares result{};
     const uint32_t kind = engine() % 3;
     result[engine() % 2] = kind == 0 ? 1 : kind == 1 ? NAN : -1;
     return result;
   }
-  double reliability(const CellStatistics&) const override { return 0.9; }
+  double reliability(const core::CellStatistics&) const override { return 0.9; }
 };
 
 class UnbiasedFrame : public ::testing::Test {
@@ -73,27 +75,27 @@ TEST_F(UnbiasedFrame, ByTheNetworks) {
 
 TEST_F(UnbiasedFrame, ByFormulas) {
   FrameOptions options = toyOptions(kSide, kSide, 4);
-  options.guide.model = Model::formulas();
+  options.guide.model = makeModel(nullptr, nullptr);
   expectUnbiased(options);
 }
 
 TEST_F(UnbiasedFrame, WithManySamplesThatRefineTheGuideAndAreSpread) {
   FrameOptions options = toyOptions(kSide, kSide, 12);
-  options.guide.model = Model::formulas();
+  options.guide.model = makeModel(nullptr, nullptr);
   options.refinementSamples = 7;
   expectUnbiased(options, 32);
 }
 
 TEST_F(UnbiasedFrame, FromAPilotOfAQuarterOfASample) {
   FrameOptions options = toyOptions(kSide, kSide, 3);
-  options.guide.model = Model::formulas();
+  options.guide.model = makeModel(nullptr, nullptr);
   options.pilotSamplesPerPixel = 0.25;
   expectUnbiased(options);
 }
 
 TEST_F(UnbiasedFrame, FromAnOracle) {
   FrameOptions options = toyOptions(kSide, kSide, 3);
-  options.guide.model = Model::formulas();
+  options.guide.model = makeModel(nullptr, nullptr);
   options.oracleSamples = 4;
   expectUnbiased(options);
 }
@@ -108,7 +110,7 @@ TEST_F(UnbiasedFrame, ByWrongMapsAndTables) {
 // about a path is known before the samples that it guides are drawn.
 TEST_F(UnbiasedFrame, FromLyingRecords) {
   FrameOptions options = toyOptions(kSide, kSide, 4);
-  options.guide.model = Model::formulas();
+  options.guide.model = makeModel(nullptr, nullptr);
   expectUnbiased(options, 64, [](uint64_t seed) -> ChangeVertices {
     return [engine = std::mt19937_64(seed)](std::vector<PathVertex>& vertices) mutable {
       std::uniform_real_distribution<float> uniform(0, 1);

@@ -2,11 +2,10 @@
 // sampling and everything that a guide decides.
 #pragma once
 
-#include <odis/frame.h>
-#include <odis/mixture.h>
-#include <odis/recorder.h>
+#include <odis/odis.hpp>
 
 #include "frame/toy_room.h"
+#include "support/events.h"
 
 namespace odis::test {
 
@@ -115,17 +114,17 @@ class ToyHost {
   bool extend(State& s) const {
     const ToyRoom::Hit hit = m_room.intersect(s.origin, s.direction);
     ++s.rays;
-    s.recorder.surface(s.path, {hit.position, hit.normal, s.direction * -1.0f, hit.distance});
+    s.recorder.surface(s.path, surfaceEvent(hit.position, hit.normal, s.direction * -1.0f, hit.distance));
     if (hit.emission.x > 0) {
       const float lightPdf = s.depth > 1 && hit.lamp >= 0
                                  ? lampPdf(hit.position - s.origin) * lampProbability(s.lights, hit.lamp)
                                  : 0;
       const float weight = s.depth > 1 ? powerHeuristic(s.pdf, lightPdf) : 1;
       s.radiance += s.throughput * hit.emission.x * weight;
-      s.recorder.emission(s.path, {hit.emission, weight, lightPdf});
+      s.recorder.emission(s.path, emissionEvent(hit.emission, weight, lightPdf));
     }
     if (s.depth == kMaxDepth) return false;
-    const GuideView& guide = s.pass.guide;
+    const GuideView& guide = *s.pass.guide;
     const uint32_t cell =
         guide.cellCount > 0 ? findCell(guide, {hit.position, hit.normal, s.pixel, s.sample}) : kNoCell;
     if (cell != kNoCell && s.depth > 1 && !playRoulette(s, guide.decisions[cell])) return false;
@@ -142,7 +141,10 @@ class ToyHost {
     const float u = s.numbers.next(), v = s.numbers.next();
     const ToyBsdf::Sample next = mixture.sample(map, u, v, bsdf);
     if (!(next.weight > 0)) return false;
-    s.recorder.bounce(s.path, {next.wi, gray(next.weight), next.pdf, bsdf.density(next.wi), 1});
+    BounceEvent bounce = bounceEvent(next.wi, gray(next.weight), next.pdf);
+    bounce.guidablePdf = bsdf.density(next.wi);
+    bounce.guidableProbability = 1;
+    s.recorder.bounce(s.path, bounce);
     s.throughput *= next.weight;
     s.pdf = next.pdf;
     s.origin = hit.position;
@@ -152,7 +154,7 @@ class ToyHost {
 
   bool playRoulette(State& s, const CellDecisions& cell) const {
     const float survival =
-        survivalProbability(s.pass.guide.rules, cell.survivalFactor, s.throughput / s.pixelValue);
+        survivalProbability(s.pass.guide->rules, cell.survivalFactor, s.throughput / s.pixelValue);
     const float standIn = s.throughput * cell.outgoingRadiance.x;
     if (s.numbers.next() >= survival) {
       s.radiance += standIn;
@@ -177,13 +179,14 @@ class ToyHost {
     const float mixed = mixture.guides() ? mixture.pdf(bsdfPdf, bsdfPdf, map.pdf(wi)) : bsdfPdf;
     const float weighted = unweighted * powerHeuristic(pdf, mixed);
     const float traced =
-        s.pass.guide.cellCount == 0
+        s.pass.guide->cellCount == 0
             ? 1
-            : shadowRayProbability(s.pass.guide.rules, s.throughput * weighted / s.pixelValue);
+            : shadowRayProbability(s.pass.guide->rules, s.throughput * weighted / s.pixelValue);
     if (!(uShadow < traced)) return;
     ++s.rays;
-    s.recorder.light(s.path, {gray(unweighted / traced), gray(weighted / traced), wi, pdf, bsdfPdf, bsdfPdf,
-                              uint32_t(lamp), traced * lampProbability(s.lights, lamp)});
+    s.recorder.light(s.path, lightEvent(gray(unweighted / traced), gray(weighted / traced), wi,
+                                        {pdf, bsdfPdf, bsdfPdf, uint32_t(lamp),
+                                         traced * lampProbability(s.lights, lamp)}));
     if (m_room.isHidden(hit.position, point))
       s.recorder.lightHidden(s.path);
     else

@@ -5,7 +5,7 @@
 
 #include "integrator/same_expectation.h"
 #include "integrator/test_scenes.h"
-#include "odis/models/model_parts.h"
+#include "support/models.h"
 
 namespace odis::render {
 namespace {
@@ -13,13 +13,14 @@ namespace {
 using test::PixelStatistics, test::renderSeeds;
 
 // Maps that a broken or malicious model might make.
-class AdversarialModel : public DirectionModel {
+class AdversarialModel : public core::DirectionModel {
  public:
   enum class Kind { random, oneHot, zero, notANumber, inverted };
   explicit AdversarialModel(Kind kind) : m_kind(kind) {}
-  DirectionDistribution predict(const CellChain& chain, const DirectionDistribution*) const override {
-    const CellStatistics& cell = *chain[0];
-    DirectionDistribution result;
+  core::DirectionDistribution predict(const core::CellChain& chain,
+                                      const core::DirectionDistribution*) const override {
+    const core::CellStatistics& cell = *chain[0];
+    core::DirectionDistribution result;
     std::mt19937 engine(uint32_t(cell.count) * 7919u + uint32_t(cell.level));
     const float most = *std::max_element(cell.histogram.begin(), cell.histogram.end());
     const uint32_t hot = engine() % kMapTexels;
@@ -86,7 +87,7 @@ TEST_F(UnbiasedTest, AdversarialMaps) {
   using Kind = AdversarialModel::Kind;
   for (const Kind kind : {Kind::random, Kind::oneHot, Kind::zero, Kind::notANumber, Kind::inverted}) {
     RenderOptions options = guidedOptions();
-    options.model = makeModel(std::make_shared<AdversarialModel>(kind), Model::builtIn().parts().lights);
+    options.model = test::makeModel(std::make_shared<AdversarialModel>(kind), core::Model::builtIn().lights);
     options.guideOptions.fixedBsdfFraction = 0.3f;
     options.refineSpp = 1;
     // Twice as many seeds as elsewhere: where a map hardly looks at the light, tails are heavy.

@@ -5,7 +5,7 @@
 
 #include "integrator/same_expectation.h"
 #include "integrator/test_scenes.h"
-#include "odis/models/model_parts.h"
+#include "support/models.h"
 
 namespace odis::render {
 namespace {
@@ -62,12 +62,15 @@ std::string openRoom(int size) {
 }
 
 // Tables for no reason, and values that are none.
-class AdversarialLights : public LightModel {
+class AdversarialLights : public core::LightModel {
  public:
-  double reliability(const CellStatistics& cell) const override { return cell.count / (cell.count + 20); }
-  LightSquares predict(const CellChain& chain, const LightSquares*, uint32_t) const override {
-    const CellStatistics& cell = *chain[0];
-    LightSquares result{};
+  double reliability(const core::CellStatistics& cell) const override {
+    return cell.count / (cell.count + 20);
+  }
+  core::LightSquares predict(const core::CellChain& chain, const core::LightSquares*,
+                             uint32_t) const override {
+    const core::CellStatistics& cell = *chain[0];
+    core::LightSquares result{};
     std::mt19937 engine(uint32_t(cell.count) * 7919u + uint32_t(cell.level));
     const uint32_t kind = engine() % 4;
     for (double& square : result)
@@ -81,10 +84,14 @@ class AdversarialLights : public LightModel {
 };
 
 // All the same: the first group and no other.
-class StubbornLights : public LightModel {
+class StubbornLights : public core::LightModel {
  public:
-  double reliability(const CellStatistics& cell) const override { return cell.count / (cell.count + 20); }
-  LightSquares predict(const CellChain&, const LightSquares*, uint32_t) const override { return {1}; }
+  double reliability(const core::CellStatistics& cell) const override {
+    return cell.count / (cell.count + 20);
+  }
+  core::LightSquares predict(const core::CellChain&, const core::LightSquares*, uint32_t) const override {
+    return {1};
+  }
 };
 
 struct LampRoom {
@@ -110,13 +117,13 @@ class UnbiasedLights : public test::AgainstPath<Scene> {
   }
   static void expectAdversarialUnbiased() {
     RenderOptions options = guidedOptions();
-    options.model = makeModel(Model::builtIn().parts().directions, std::make_shared<AdversarialLights>());
+    options.model = test::makeModel(core::Model::builtIn().directions, std::make_shared<AdversarialLights>());
     options.refineSpp = 1;
     test::AgainstPath<Scene>::expectUnbiased(options, 256, kTests);
   }
   static void expectStubbornUnbiased() {
     RenderOptions options = guidedOptions();
-    options.model = makeModel(Model::builtIn().parts().directions, std::make_shared<StubbornLights>());
+    options.model = test::makeModel(core::Model::builtIn().directions, std::make_shared<StubbornLights>());
     options.refineSpp = 1;
     options.pilotWeight = 0;
     test::AgainstPath<Scene>::expectUnbiased(options, 256, kTests);

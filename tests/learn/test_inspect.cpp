@@ -12,7 +12,7 @@
 #include "learn/inspect/place.h"
 #include "learn/inspect/vertex_integral.h"
 #include "odis/maps/texel_directions.h"
-#include "odis/models/model_parts.h"
+#include "support/models.h"
 
 namespace odis::learn {
 namespace {
@@ -179,11 +179,12 @@ TEST(Inspect, MomentsOfHalfASky) {
     Converged arriving;
     arriving.add(target);
     const VertexIntegral integral(place.start, arriving);
-    Histogram halfOfTheSky, allOfTheSky;
-    for (int t = 0; t < kMapTexels; ++t) halfOfTheSky[size_t(t)] = texelDirections().x[t] > 0 ? 1.0f : 0.0f;
+    core::Histogram halfOfTheSky, allOfTheSky;
+    for (int t = 0; t < kMapTexels; ++t)
+      halfOfTheSky[size_t(t)] = core::texelDirections().x[t] > 0 ? 1.0f : 0.0f;
     allOfTheSky.fill(1);
     // Without a floor, what is dark has the least value that there is.
-    const PackedMap half = packedMap(halfOfTheSky, 0), even = packedMap(allOfTheSky, 0);
+    const core::PackedMap half = core::packedMap(halfOfTheSky, 0), even = core::packedMap(allOfTheSky, 0);
     const VertexMap<float> map = integral.at(half);
     EXPECT_NEAR(integral.moment(map, 1), 2 * noise * noise, 0.005f * noise * noise);
     EXPECT_NEAR(integral.moment(map, 0.15f), 2 / 1.85f * noise * noise, 0.03f * noise * noise);
@@ -197,10 +198,11 @@ TEST(Inspect, MomentsOfHalfASky) {
 }
 
 // Light from one direction only.
-class OneTexel : public DirectionModel {
+class OneTexel : public core::DirectionModel {
  public:
-  DirectionDistribution predict(const CellChain&, const DirectionDistribution*) const override {
-    DirectionDistribution result;
+  core::DirectionDistribution predict(const core::CellChain&,
+                                      const core::DirectionDistribution*) const override {
+    core::DirectionDistribution result;
     result.probability.fill(0);
     result.inverseCosine.fill(1);
     result.probability[size_t(texelOf(Float3{0, 1, 0}))] = 1;
@@ -211,7 +213,7 @@ class OneTexel : public DirectionModel {
 TEST(Inspect, ShowsAnotherModelBesideTheFormula) {
   const auto scene = test::loadScene(test::indirectRoom());
   render::RenderOptions options;
-  options.model = makeModel(std::make_shared<OneTexel>(), Model::builtIn().parts().lights);
+  options.model = test::makeModel(std::make_shared<OneTexel>(), core::Model::builtIn().lights);
   const auto seen = look(*scene, atPixel(12, 22), options);
   ASSERT_TRUE(seen);
   ASSERT_EQ(seen->maps.size(), 2u);

@@ -192,8 +192,8 @@ TEST(Targets, AgreeWithPilots) {
     ++tests;
     Mean scattered, arriving, rays, depths;
     for (const PathVertex* v : members) {
-      scattered.add(luminance(returnedRadiance(*v)));
-      arriving.add(sampleValue(*v));
+      scattered.add(luminance(core::returnedRadiance(*v)));
+      arriving.add(core::sampleValue(*v));
       depths.add(v->depth);
       rays.add(v->raysAfter + float(v->lightGroup != kNoLightGroup));  // and a shadow ray
     }

@@ -100,7 +100,7 @@ TEST_F(Training, ExamplesHoldWhatCellsHave) {
     ASSERT_GT(view.count, 0u);
     for (size_t i = 0; i < view.count; ++i) {
       ViewExamples::Storage all, one;
-      const CellChain chain = view.chain(2, i, false, all), small = view.chain(0, i, false, one);
+      const core::CellChain chain = view.chain(2, i, false, all), small = view.chain(0, i, false, one);
       ASSERT_TRUE(chain[0] != nullptr);
       // All pilots have at least as many samples as one of them, and coarser cells at least as many as finer
       // ones.
@@ -118,7 +118,7 @@ TEST_F(Training, ExamplesHoldWhatCellsHave) {
       if (mass > 0) EXPECT_NEAR(mass, 1, 5e-3);
       bright += mass > 0;
       ViewExamples::Storage shifted;
-      const CellChain coarse = view.chain(2, i, true, shifted);
+      const core::CellChain coarse = view.chain(2, i, true, shifted);
       if (chain[1]) EXPECT_EQ(coarse[0]->count, chain[1]->count);
     }
   }
@@ -163,17 +163,18 @@ TEST_F(Training, RunTimeAgreesWithLibtorch) {
   learner->standardize(batch);
   for (int step = 0; step < 5; ++step) learner->step(batch, Loss::crossEntropy, 1e-2);
   const std::vector<float> expected = learner->predict(batch);
-  const DirectionNetwork network(Weights("{}", learner->tensors()));
+  const core::DirectionNetwork network(core::Weights("{}", learner->tensors()));
   double worst = 0;
   for (size_t i = 0; i < batch.count; ++i) {
-    CellFeatures features;
-    std::copy_n(&batch.scalars[i * kCellScalars], kCellScalars, features.scalars.begin());
-    for (size_t m = 0; m < kBasisMaps; ++m) features.there[m] = batch.there[i * kBasisMaps + m] > 0;
+    core::CellFeatures features;
+    std::copy_n(&batch.scalars[i * core::kCellScalars], core::kCellScalars, features.scalars.begin());
+    for (size_t m = 0; m < core::kBasisMaps; ++m)
+      features.there[m] = batch.there[i * core::kBasisMaps + m] > 0;
     const auto shares = network.blend(features);
     for (size_t t = 0; t < kMapTexels; ++t) {
       float p = 0;
-      for (size_t m = 0; m < kBasisMaps; ++m)
-        p += shares[m] * batch.basis[(i * kBasisMaps + m) * kMapTexels + t];
+      for (size_t m = 0; m < core::kBasisMaps; ++m)
+        p += shares[m] * batch.basis[(i * core::kBasisMaps + m) * kMapTexels + t];
       worst = std::max(worst, double(std::abs(p - expected[i * kMapTexels + t])));
     }
   }
@@ -184,15 +185,15 @@ TEST_F(Training, RunTimeAgreesWithLibtorch) {
   pool.draw(1, 0, 256, pairs);
   for (int step = 0; step < 5; ++step) learner->step(pairs, 1e-2);
   const std::vector<float> shares = learner->predict(pairs);
-  const LightNetwork lights(Weights("{}", learner->tensors()));
+  const core::LightNetwork lights(core::Weights("{}", learner->tensors()));
   for (size_t i = 0; i < pairs.count; ++i) {
     uint32_t groups = 0;
-    LightFeatures features;
+    core::LightFeatures features;
     for (size_t g = 0; g < kMaxLightGroups; ++g) {
       features.formula[g] = pairs.formula[i * kMaxLightGroups + g];
       groups += features.formula[g] > 0;
-      for (size_t f = 0; f < kPairFeatures; ++f)
-        features.pairs[f][g] = pairs.pairs[(i * kMaxLightGroups + g) * kPairFeatures + f];
+      for (size_t f = 0; f < core::kPairFeatures; ++f)
+        features.pairs[f][g] = pairs.pairs[(i * kMaxLightGroups + g) * core::kPairFeatures + f];
     }
     const auto result = lights.shares(features, groups);
     for (size_t g = 0; g < kMaxLightGroups; ++g)
@@ -267,9 +268,9 @@ TEST_F(Training, GoesOnAsIfNothingHadHappened) {
   // Held-out scenes were looked at: a line below the column names, the formula's figure beside the network's.
   const std::string validation = bytesOf(run("whole") + "/validation.csv");
   EXPECT_NE(validation.find("\n60,0."), std::string::npos) << validation;
-  const Weights weights = Weights::load(run("whole") + "/odis.weights");
+  const core::Weights weights = core::Weights::load(run("whole") + "/odis.weights");
   EXPECT_NE(weights.about().find("crc32"), std::string::npos);
-  EXPECT_NO_THROW(DirectionNetwork{weights});
+  EXPECT_NO_THROW(core::DirectionNetwork{weights});
 
   TrainConfig other = config();
   other.batch = 32;
@@ -283,7 +284,7 @@ TEST_F(Training, TwoProcessesLearnTheSame) {
   setenv("MASTER_PORT", std::to_string(20000 + getpid() % 20000).c_str(), 1);
   ExamplePool pool(config().examples);
   pool.add({shardFile(config().data, shardsIn(config().data).front())});
-  std::vector<Tensor> learned[2];
+  std::vector<core::Tensor> learned[2];
   double losses[2], lightLosses[2];
   std::vector<std::thread> processes;
   for (int rank = 0; rank < 2; ++rank)
@@ -336,7 +337,7 @@ TEST_F(Training, TwoProcessesLearnTheSame) {
     if (step == 2) EXPECT_NEAR(lightLoss, lightLosses[0], 1e-3);
   }
   for (size_t i = 0; i < learned[0].size(); ++i) {
-    const Tensor &two = learned[0][i], one = alone->tensors()[i];
+    const core::Tensor &two = learned[0][i], one = alone->tensors()[i];
     // What is added to all groups alike changes nothing, and its gradient is but rounding.
     if (two.name == "lights.2.bias") continue;
     // Adam makes much of little gradients, and their rounding, as lights have them: a step may be as long as
@@ -349,10 +350,11 @@ TEST_F(Training, TwoProcessesLearnTheSame) {
 
 TEST_F(Training, ValidationTellsGoodMapsFromBad) {
   // The worst: away from the light.
-  class Inverted : public DirectionModel {
+  class Inverted : public core::DirectionModel {
    public:
-    DirectionDistribution predict(const CellChain& chain, const DirectionDistribution*) const override {
-      DirectionDistribution result;
+    core::DirectionDistribution predict(const core::CellChain& chain,
+                                        const core::DirectionDistribution*) const override {
+      core::DirectionDistribution result;
       result.inverseCosine.fill(1);
       for (size_t t = 0; t < kMapTexels; ++t) result.probability[t] = chain[0]->histogram[t] > 0 ? 1e-4f : 1;
       return result;
@@ -360,7 +362,7 @@ TEST_F(Training, ValidationTellsGoodMapsFromBad) {
   };
   std::vector<std::string> files;
   for (const std::string& name : shardsIn(config().data)) files.push_back(shardFile(config().data, name));
-  const double formula = predictedVariance(files, std::make_shared<DirectionFormula>(GuideOptions()));
+  const double formula = predictedVariance(files, std::make_shared<core::DirectionFormula>(GuideOptions()));
   const double inverted = predictedVariance(files, std::make_shared<Inverted>());
   EXPECT_LT(formula, 1);
   EXPECT_LT(formula, inverted);

@@ -7,7 +7,7 @@
 #include <random>
 #include <vector>
 
-namespace odis {
+namespace odis::core {
 
 inline constexpr float kPi = 3.14159265f;
 
@@ -40,4 +40,4 @@ inline std::vector<PathVertex> floorUnderPatch(const Float3& bright, int count, 
 
 inline constexpr Float3 kBright = {0.6f, 0.0f, 0.8f};
 
-}  // namespace odis
+}  // namespace odis::core

@@ -1,6 +1,6 @@
 // What cells decide: roulette, lights, the BSDF sampling fraction.
 #include <gtest/gtest.h>
-#include <odis/guide.h>
+#include "odis/guide.h"
 
 #include <random>
 
@@ -9,8 +9,9 @@
 #include "odis/models/lights.h"
 #include "odis/models/returned_light.h"
 #include "odis/models/second_moments.h"
+#include "support/models.h"
 
-namespace odis {
+namespace odis::core {
 namespace {
 
 // So many cells of the coarsest level, each of which has seen 100 samples for 500 rays.
@@ -50,14 +51,14 @@ TEST(Roulette, SurvivalFollowsTheRootOfWhatComesBackOverItsRays) {
   cells[1].outgoingSquares = 1600;
   const ImageMoments totals{40, 180, 10};  // of 10 samples: variance 4 each, 20 rays each
   std::vector<CellDecisions> result(2);
-  fillRoulette(result, cells, totals, false);
+  fillRoulette(*libraryTasks(), result, cells, totals, false);
   EXPECT_NEAR(result[1].survivalFactor / result[0].survivalFactor, 4, 1e-5);
   const float ratio = result[0].survivalFactor / std::sqrt(1.0f / 5) / std::sqrt(20.0f / 4);
   EXPECT_GT(ratio, 0.5f);  // but for a constant, the formula
   EXPECT_LT(ratio, 10);
   // In an image of twice the variance roulette may be twice as noisy.
   std::vector<CellDecisions> noisier(2);
-  fillRoulette(noisier, cells, {80, 180, 10}, false);
+  fillRoulette(*libraryTasks(), noisier, cells, {80, 180, 10}, false);
   EXPECT_NEAR(noisier[0].survivalFactor / result[0].survivalFactor, std::sqrt(0.5f), 1e-5);
 }
 
@@ -69,8 +70,8 @@ TEST(Roulette, WhatTheMeanExplainsIsWorthNoRays) {
   cells[1].outgoingSquares = 400;
   cells[2].outgoingSquares = 4000;
   std::vector<CellDecisions> result(3), without(3);
-  fillRoulette(result, cells, {40, 180, 10}, true);
-  fillRoulette(without, cells, {40, 180, 10}, false);
+  fillRoulette(*libraryTasks(), result, cells, {40, 180, 10}, true);
+  fillRoulette(*libraryTasks(), without, cells, {40, 180, 10}, false);
   // 0.8 times the mean: E[(S - 1.6)^2] = 1.16 of E[S^2] = 5.
   EXPECT_NEAR(result[0].outgoingRadiance.x, 1.6f, 1e-5f);
   EXPECT_NEAR(result[0].survivalFactor / without[0].survivalFactor, std::sqrt(1.16f / 5), 1e-4f);
@@ -108,7 +109,7 @@ TEST(Roulette, IsUsableWhateverCellsHaveSeen) {
       cells[1].level = kCellLevels - 2;
       cells[1].parent = 0;
       std::vector<CellDecisions> result(2);
-      fillRoulette(result, cells, {40, 180, 10}, true);
+      fillRoulette(*libraryTasks(), result, cells, {40, 180, 10}, true);
       for (const CellDecisions& cell : result) {
         for (const float throughput : {0.0f, 0.5f, 1e30f}) {
           const float survival = survivalIn(cell, throughput);
@@ -127,7 +128,7 @@ TEST(Lights, TablesFollowTheRootOfWhatGroupsGive) {
   cells[0].lightCount = 1e6;
   cells[0].lightSquares = {9e6, 0, 1e6};
   std::vector<CellDecisions> result(2);
-  const std::vector<float> tables = tabulateLights(result, cells, LightFormula(), 3);
+  const std::vector<float> tables = tabulateLights(*libraryTasks(), result, cells, LightFormula(), 3);
   ASSERT_EQ(tables.size(), 8u);
   EXPECT_NEAR(tables[1], 0.75, 1e-6);
   EXPECT_NEAR(tables[2], 0.75, 1e-6);
@@ -148,7 +149,7 @@ TEST(Lights, PartsOfALightAreToldApartWhereThatGainsMuch) {
   cells[2].lightSquares = {1e6, 0, 0, 0, 0};          // the light gives nothing
   std::vector<CellDecisions> result(3);
   const LightParts parts[] = {{1, 4}};
-  const std::vector<float> tables = tabulateLights(result, cells, LightFormula(), 5, parts);
+  const std::vector<float> tables = tabulateLights(*libraryTasks(), result, cells, LightFormula(), 5, parts);
   const auto probability = [&](size_t cell, size_t group) {
     return tables[cell * 6 + group + 1] - tables[cell * 6 + group];
   };
@@ -164,7 +165,7 @@ TEST(Lights, PartsOfALightAreToldApartWhereThatGainsMuch) {
 // none where nothing is known.
 std::vector<float> learnedOfTwoLights(const std::vector<PathVertex>& vertices) {
   GuideOptions options;
-  options.model = Model::formulas();
+  options.model = test::formulas();
   options.lightGroups = 2;
   GuideBuilder builder(options);
   builder.add(vertices);
@@ -259,4 +260,4 @@ TEST(BsdfFraction, SecondMomentOfTheMixtureIsPredicted) {
 }
 
 }  // namespace
-}  // namespace odis
+}  // namespace odis::core

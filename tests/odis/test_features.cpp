@@ -6,7 +6,7 @@
 #include "odis/models/direction_features.h"
 #include "odis/weights/weights.h"
 
-namespace odis {
+namespace odis::core {
 namespace {
 
 constexpr double kGoldenSum = 52.86605, kGoldenWeighted = 384.62088, kGoldenMaps = 5929.7631;
@@ -134,4 +134,4 @@ TEST(CellFeatures, StayWhatWeightsWereTrainedFor) {
 }
 
 }  // namespace
-}  // namespace odis
+}  // namespace odis::core

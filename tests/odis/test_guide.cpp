@@ -1,7 +1,7 @@
 // Cells and guides built from made-up path vertices: no renderer is needed.
 #include <gtest/gtest.h>
-#include <odis/guide.h>
 #include <tbb/global_control.h>
+#include "odis/guide.h"
 
 #include <algorithm>
 
@@ -9,14 +9,15 @@
 #include "odis/cells/statistics.h"
 #include "odis/floor_under_patch.h"
 #include "odis/same_guide.h"
+#include "support/models.h"
 
-namespace odis {
+namespace odis::core {
 namespace {
 
 // The options of most tests here: formulas decide.
 GuideOptions byFormula() {
   GuideOptions options;
-  options.model = Model::formulas();
+  options.model = test::formulas();
   return options;
 }
 
@@ -66,8 +67,8 @@ TEST(SortByCell, KeepsTheOrderWithinACell) {
   const std::vector<BatchCells> cells = {
       {cellOf[0], {2, 0}}, {cellOf[1], {}}, {cellOf[2], {0, 3, kNoCell, 2}}};
   const std::vector<std::vector<int>> items = {{10, 11, 12}, {}, {20, 21, 22}};
-  const CellOrder<int> order =
-      sortByCell<int>(cells, 4, [&](size_t batch, size_t i) -> const int& { return items[batch][i]; });
+  const CellOrder<int> order = sortByCell<int>(
+      *libraryTasks(), cells, 4, [&](size_t batch, size_t i) -> const int& { return items[batch][i]; });
   std::vector<std::vector<int>> found(4);
   for (size_t c = 0; c < 4; ++c) forEachItem(order.of(c), [&](int item) { found[c].push_back(item); });
   EXPECT_EQ(found, (std::vector<std::vector<int>>{{11, 20}, {}, {10, 12, 22}, {21}}));
@@ -283,4 +284,4 @@ TEST(Guide, FindsManyAsItFindsEach) {
 }
 
 }  // namespace
-}  // namespace odis
+}  // namespace odis::core

@@ -8,7 +8,7 @@
 #include "odis/maps/pack.h"
 #include "support/chi2.h"
 
-namespace odis {
+namespace odis::core {
 namespace {
 
 // A map of sixteen bits of chance, or one that grows towards a direction.
@@ -268,4 +268,4 @@ TEST(PowerHeuristic, WeightsAddUpToOne) {
 }
 
 }  // namespace
-}  // namespace odis
+}  // namespace odis::core

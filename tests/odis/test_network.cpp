@@ -1,14 +1,14 @@
 // Weights as files, and what the networks make of them.
 #include <gtest/gtest.h>
-#include <odis/model.h>
+#include "odis/models/model.h"
 
 #include <fstream>
 
 #include "odis/models/direction_network.h"
 #include "odis/models/light_network.h"
-#include "odis/models/model_parts.h"
+#include "odis/models/model.h"
 
-namespace odis {
+namespace odis::core {
 namespace {
 
 // A network of two hidden units whose blend does not depend on the cell: these logits.
@@ -86,8 +86,8 @@ TEST(Weights, OfOtherShapesAreRefused) {
 }
 
 TEST(Weights, BuiltInOnesHoldANetwork) {
-  EXPECT_TRUE(Model::builtIn().parts().directions != nullptr);
-  EXPECT_TRUE(Model::builtIn().parts().lights != nullptr);
+  EXPECT_TRUE(Model::builtIn().directions != nullptr);
+  EXPECT_TRUE(Model::builtIn().lights != nullptr);
   EXPECT_NE(Weights::builtIn().about().find("\"config\""), std::string::npos);
   EXPECT_THROW(Model::load("no/such/file.weights"), std::runtime_error);
 }
@@ -184,4 +184,4 @@ TEST(DirectionNetwork, SensitivityIsWhatASampleAdds) {
 }
 
 }  // namespace
-}  // namespace odis
+}  // namespace odis::core

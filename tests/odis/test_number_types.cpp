@@ -1,15 +1,16 @@
 // The code of a vertex gives the same bits for every number type: what a lane computes is what a float
 // computes.
 #include <gtest/gtest.h>
-#include <odis/guide.h>
 #include <odis/mixture.h>
+#include "odis/guide.h"
 
 #include <random>
 
 #include "odis/floor_under_patch.h"
 #include "odis/lanes.h"
+#include "support/models.h"
 
-namespace odis {
+namespace odis::core {
 namespace {
 
 using test::kLaneCount, test::LaneInteger, test::LaneReal;
@@ -41,7 +42,7 @@ TEST(NumberTypes, OctahedralMap) {
 
 TEST(NumberTypes, MapsAndDecisions) {
   GuideOptions options;
-  options.model = Model::formulas();
+  options.model = test::formulas();
   GuideBuilder builder(options);
   const std::vector<PathVertex> vertices = floorUnderPatch(kBright, 20000, 7);
   builder.add(vertices);
@@ -108,4 +109,4 @@ TEST(NumberTypes, Mixture) {
 }
 
 }  // namespace
-}  // namespace odis
+}  // namespace odis::core

@@ -1,13 +1,15 @@
 // From the events of paths to path vertices.
 #include <gtest/gtest.h>
-#include <odis/recorder.h>
+#include "odis/record/recorder.h"
 
 #include <cmath>
 #include <cstring>
 #include <functional>
 #include <random>
 
-namespace odis {
+#include "support/events.h"
+
+namespace odis::core {
 namespace {
 
 Float3 grey(float value) {
@@ -20,10 +22,14 @@ void expectVector(const Float3& a, const Float3& b) {
   EXPECT_EQ(a.z, b.z);
 }
 
+void append(std::vector<PathVertex>& vertices, ArrayView<const PathVertex> more) {
+  vertices.insert(vertices.end(), more.begin(), more.end());
+}
+
 // Begins a path of one vertex under a sky of radiance 1, up to its bounce.
 uint32_t beginUnderSky(PathRecorder& recorder, const Float3& weight) {
   const uint32_t path = recorder.begin({});
-  recorder.surface(path, {{0, 0, 0}, {0, 0, 1}, {0, 0, 1}, 1});
+  recorder.surface(path, test::surfaceEvent({0, 0, 0}, {0, 0, 1}, {0, 0, 1}, 1));
   BounceEvent bounce;
   bounce.wi = {0, 0, 1};
   bounce.weight = weight;
@@ -40,12 +46,12 @@ TEST(PathRecorder, ReportsAPathWithItsContributionsAndRays) {
   EXPECT_EQ(path, 0u);
 
   // The first surface glows, which is not the light of any vertex.
-  SurfaceEvent surface{{1, 2, 3}, {0, 0, 1}, {0, 1, 0}, 9};
+  SurfaceEvent surface = test::surfaceEvent({1, 2, 3}, {0, 0, 1}, {0, 1, 0}, 9);
   surface.lightableGroups = 5;
   surface.time = 0.5f;
   recorder.surface(path, surface);
-  recorder.emission(path, {grey(100), 1, 0});
-  recorder.light(path, {grey(2), grey(1), {0.6f, 0, 0.8f}, 0.5f, 0.25f, 0.125f, 3, 0.75f});
+  recorder.emission(path, test::emissionEvent(grey(100), 1, 0));
+  recorder.light(path, test::lightEvent(grey(2), grey(1), {0.6f, 0, 0.8f}, {0.5f, 0.25f, 0.125f, 3, 0.75f}));
   BounceEvent bounce;
   bounce.wi = {0.8f, 0, 0.6f};
   bounce.weight = grey(0.5f);
@@ -59,10 +65,10 @@ TEST(PathRecorder, ReportsAPathWithItsContributionsAndRays) {
   recorder.bounce(path, bounce);
 
   // The second one glows, too; roulette is played, and the path goes on.
-  recorder.surface(path, {{4, 5, 6}, {1, 0, 0}, {0, 0, 1}, 2});
-  recorder.emission(path, {grey(4), 0.25f, 0.0625f});
+  recorder.surface(path, test::surfaceEvent({4, 5, 6}, {1, 0, 0}, {0, 0, 1}, 2));
+  recorder.emission(path, test::emissionEvent(grey(4), 0.25f, 0.0625f));
   recorder.survived(path, 0.5f);
-  recorder.light(path, {grey(8), grey(4), {1, 0, 0}, 0, 0, 0, 1, 0.5f});
+  recorder.light(path, test::lightEvent(grey(8), grey(4), {1, 0, 0}, {0, 0, 0, 1, 0.5f}));
   BounceEvent second;
   second.wi = {1, 0, 0};
   second.weight = grey(0.25f);
@@ -71,8 +77,8 @@ TEST(PathRecorder, ReportsAPathWithItsContributionsAndRays) {
   recorder.bounce(path, second);
 
   // At the third one something hides the light, which is found out after the bounce.
-  recorder.surface(path, {{7, 8, 9}, {0, 1, 0}, {-1, 0, 0}, 3});
-  recorder.light(path, {grey(5), grey(3), {0, 1, 0}, 0.5f, 0.5f, 0.5f, 2, 0.5f});
+  recorder.surface(path, test::surfaceEvent({7, 8, 9}, {0, 1, 0}, {-1, 0, 0}, 3));
+  recorder.light(path, test::lightEvent(grey(5), grey(3), {0, 1, 0}, {0.5f, 0.5f, 0.5f, 2, 0.5f}));
   BounceEvent third;
   third.wi = {0, 1, 0};
   third.weight = grey(2);
@@ -82,11 +88,11 @@ TEST(PathRecorder, ReportsAPathWithItsContributionsAndRays) {
 
   // Two environments are met at once.
   recorder.escape(path);
-  recorder.emission(path, {grey(3), 1, 0.3f});
-  recorder.emission(path, {grey(1), 0.5f, 0.7f});
+  recorder.emission(path, test::emissionEvent(grey(3), 1, 0.3f));
+  recorder.emission(path, test::emissionEvent(grey(1), 0.5f, 0.7f));
 
   std::vector<PathVertex> vertices;
-  recorder.finish(vertices);
+  append(vertices, recorder.finish());
   ASSERT_EQ(vertices.size(), 3u);
   for (size_t i = 0; i < 3; ++i) {
     EXPECT_EQ(vertices[i].pixel, 7u);
@@ -168,7 +174,7 @@ TEST(PathRecorder, AVertexWithoutALightEventHasGotNothingFromLights) {
   PathRecorder recorder;
   recorder.escape(beginUnderSky(recorder, grey(0.5f)));
   std::vector<PathVertex> vertices;
-  recorder.finish(vertices);
+  append(vertices, recorder.finish());
   ASSERT_EQ(vertices.size(), 1u);
   EXPECT_EQ(vertices[0].light, 0);
   EXPECT_EQ(vertices[0].lightPdf, 0);
@@ -184,15 +190,15 @@ TEST(PathRecorder, ALightThatIsHiddenBeforeTheBounceGivesNothingEither) {
   PathRecorder recorder;
   for (const bool before : {true, false}) {
     const uint32_t path = recorder.begin({});
-    recorder.surface(path, {{0, 0, 0}, {0, 0, 1}, {0, 0, 1}, 1});
-    recorder.light(path, {grey(5), grey(3), {0, 1, 0}, 0.5f, 0.5f, 0.5f, 2, 0.5f});
+    recorder.surface(path, test::surfaceEvent({0, 0, 0}, {0, 0, 1}, {0, 0, 1}, 1));
+    recorder.light(path, test::lightEvent(grey(5), grey(3), {0, 1, 0}, {0.5f, 0.5f, 0.5f, 2, 0.5f}));
     if (before) recorder.lightHidden(path);
-    recorder.bounce(path, {{0, 0, 1}, grey(1), 1});
+    recorder.bounce(path, test::bounceEvent({0, 0, 1}, grey(1), 1));
     if (!before) recorder.lightHidden(path);
     recorder.escape(path);
-    recorder.emission(path, {grey(1), 1, 0});
+    recorder.emission(path, test::emissionEvent(grey(1), 1, 0));
   }
-  recorder.finish(vertices);
+  append(vertices, recorder.finish());
   ASSERT_EQ(vertices.size(), 2u);
   EXPECT_EQ(std::memcmp(&vertices[0], &vertices[1], sizeof(PathVertex)), 0);
   EXPECT_EQ(vertices[0].light, 0);
@@ -202,13 +208,13 @@ TEST(PathRecorder, BlackEmissionIsAsGoodAsNone) {
   PathRecorder recorder;
   for (int path = 0; path < 2; ++path) {
     recorder.escape(beginUnderSky(recorder, grey(0.5f)));
-    if (path == 1) recorder.emission(1, {grey(0), 0.5f, 0.25f});
-    recorder.emission(uint32_t(path), {grey(2), 0.5f, 0.125f});
+    if (path == 1) recorder.emission(1, test::emissionEvent(grey(0), 0.5f, 0.25f));
+    recorder.emission(uint32_t(path), test::emissionEvent(grey(2), 0.5f, 0.125f));
   }
   recorder.escape(beginUnderSky(recorder, grey(0.5f)));
-  recorder.emission(2, {grey(0), 0.5f, 0.25f});
+  recorder.emission(2, test::emissionEvent(grey(0), 0.5f, 0.25f));
   std::vector<PathVertex> vertices;
-  recorder.finish(vertices);
+  append(vertices, recorder.finish());
   ASSERT_EQ(vertices.size(), 3u);
   for (const PathVertex& v : vertices) EXPECT_EQ(checkVertex(v), VertexState::usable);
   EXPECT_EQ(vertices[1].radiance.x, vertices[0].radiance.x);
@@ -220,16 +226,18 @@ TEST(PathRecorder, BlackEmissionIsAsGoodAsNone) {
 TEST(PathRecorder, ASurfaceWithoutBounceLeavesNoVertex) {
   PathRecorder recorder;
   const uint32_t first = recorder.begin({1, 0});
-  recorder.surface(first, {{0, 0, 0}, {0, 0, 1}, {0, 0, 1}, 1});  // the path ends by its depth
+  recorder.surface(first,
+                   test::surfaceEvent({0, 0, 0}, {0, 0, 1}, {0, 0, 1}, 1));  // the path ends by its depth
   const uint32_t second = recorder.begin({2, 0});
   recorder.escape(second);  // the camera ray meets nothing
-  recorder.emission(second, {grey(1), 1, 0});
+  recorder.emission(second, test::emissionEvent(grey(1), 1, 0));
   const uint32_t third = recorder.begin({3, 0});
-  recorder.surface(third, {{0, 0, 0}, {0, 0, 1}, {0, 0, 1}, 1});
-  recorder.bounce(third, {{0, 0, 1}, grey(0.5f), 1});
-  recorder.surface(third, {{0, 0, 4}, {0, 0, -1}, {0, 0, -1}, 4});  // it ends by roulette on arrival
+  recorder.surface(third, test::surfaceEvent({0, 0, 0}, {0, 0, 1}, {0, 0, 1}, 1));
+  recorder.bounce(third, test::bounceEvent({0, 0, 1}, grey(0.5f), 1));
+  recorder.surface(
+      third, test::surfaceEvent({0, 0, 4}, {0, 0, -1}, {0, 0, -1}, 4));  // it ends by roulette on arrival
   std::vector<PathVertex> vertices;
-  recorder.finish(vertices);
+  append(vertices, recorder.finish());
   ASSERT_EQ(vertices.size(), 1u);
   EXPECT_EQ(vertices[0].pixel, 3u);
   EXPECT_EQ(vertices[0].distance, 4);
@@ -241,7 +249,7 @@ TEST(PathRecorder, APathThatIsAbsorbedHasAVertexThatSeesNothing) {
   PathRecorder recorder;
   beginUnderSky(recorder, grey(0));
   std::vector<PathVertex> vertices;
-  recorder.finish(vertices);
+  append(vertices, recorder.finish());
   ASSERT_EQ(vertices.size(), 1u);
   EXPECT_EQ(vertices[0].raysAfter, 0);
   EXPECT_EQ(vertices[0].indirect, 0);
@@ -252,17 +260,17 @@ TEST(PathRecorder, APathThatIsAbsorbedHasAVertexThatSeesNothing) {
 TEST(PathRecorder, FinishForgetsAndAppends) {
   PathRecorder recorder;
   std::vector<PathVertex> vertices;
-  recorder.finish(vertices);
+  append(vertices, recorder.finish());
   EXPECT_TRUE(vertices.empty());
-  recorder.emission(beginUnderSky(recorder, grey(1)), {grey(3), 1, 0});
-  recorder.finish(vertices);
-  recorder.finish(vertices);
+  recorder.emission(beginUnderSky(recorder, grey(1)), test::emissionEvent(grey(3), 1, 0));
+  append(vertices, recorder.finish());
+  append(vertices, recorder.finish());
   EXPECT_EQ(vertices.size(), 1u);
   // Handles begin anew, and nothing of the first path is left in the next one.
   const uint32_t path = beginUnderSky(recorder, grey(0.5f));
   EXPECT_EQ(path, 0u);
-  recorder.emission(path, {grey(1), 1, 0});
-  recorder.finish(vertices);
+  recorder.emission(path, test::emissionEvent(grey(1), 1, 0));
+  append(vertices, recorder.finish());
   ASSERT_EQ(vertices.size(), 2u);
   EXPECT_EQ(vertices[0].radiance.x, 3);
   EXPECT_EQ(vertices[1].radiance.x, 1);
@@ -284,10 +292,11 @@ RecorderEvents randomPath(std::mt19937& engine) {
   const auto play = [&](auto&& event) { events.emplace_back(event); };
   const int surfaces = int(engine() % 6);
   for (int i = 0; i < surfaces; ++i) {
-    const SurfaceEvent surface{vector(), vector(), vector(), next(), uint32_t(engine()), next()};
+    const SurfaceEvent surface{sizeof surface, vector(),           vector(), vector(),
+                               next(),         uint32_t(engine()), next()};
     play([=](PathRecorder& r, uint32_t path) { r.surface(path, surface); });
     if (engine() % 4 == 0) {
-      const EmissionEvent emission{vector(), next(), next()};
+      const EmissionEvent emission{sizeof emission, vector(), next(), next()};
       play([=](PathRecorder& r, uint32_t path) { r.emission(path, emission); });
     }
     if (engine() % 2 == 0) {
@@ -296,19 +305,19 @@ RecorderEvents randomPath(std::mt19937& engine) {
     }
     const bool lit = engine() % 3 != 0, hidden = engine() % 3 == 0;
     if (lit) {
-      const LightEvent light{vector(), vector(), vector(), next(), next(), next(), uint32_t(engine() % 8),
-                             next()};
+      const LightEvent light{sizeof light,           vector(), vector(), vector(), next(), next(), next(),
+                             uint32_t(engine() % 8), next()};
       play([=](PathRecorder& r, uint32_t path) { r.light(path, light); });
     }
     if (i + 1 == surfaces && engine() % 2 == 0) return events;  // it ends there
-    BounceEvent bounce{vector(), vector(), next()};
+    BounceEvent bounce{sizeof bounce, vector(), vector(), next()};
     bounce.survival = next();
     bounce.discrete = engine() % 5 == 0;
     play([=](PathRecorder& r, uint32_t path) { r.bounce(path, bounce); });
     if (lit && hidden) play([](PathRecorder& r, uint32_t path) { r.lightHidden(path); });
   }
   play([](PathRecorder& r, uint32_t path) { r.escape(path); });
-  const EmissionEvent sky{vector(), next(), next()};
+  const EmissionEvent sky{sizeof sky, vector(), next(), next()};
   play([=](PathRecorder& r, uint32_t path) { r.emission(path, sky); });
   return events;
 }
@@ -326,13 +335,13 @@ TEST(PathRecorder, InterleavedPathsGiveTheVerticesOfPathsOneAfterTheOther) {
       PathRecorder own;
       const uint32_t path = own.begin({p, 1, 0.5f});
       for (const auto& event : paths[p]) event(own, path);
-      own.finish(alone);
+      append(alone, own.finish());
     }
     for (uint32_t p = 0; p < kPaths; ++p) {
       const uint32_t path = recorder.begin({p, 1, 0.5f});
       for (const auto& event : paths[p]) event(recorder, path);
     }
-    recorder.finish(apart);
+    append(apart, recorder.finish());
     size_t begun = 0, left = 0;
     for (const RecorderEvents& events : paths) left += events.size();
     std::vector<size_t> played(kPaths);
@@ -347,7 +356,7 @@ TEST(PathRecorder, InterleavedPathsGiveTheVerticesOfPathsOneAfterTheOther) {
       paths[p][played[p]++](recorder, p);
       --left;
     }
-    recorder.finish(together);
+    append(together, recorder.finish());
     ASSERT_EQ(together.size(), alone.size());
     ASSERT_EQ(apart.size(), alone.size());
     if (alone.empty()) continue;
@@ -357,4 +366,4 @@ TEST(PathRecorder, InterleavedPathsGiveTheVerticesOfPathsOneAfterTheOther) {
 }
 
 }  // namespace
-}  // namespace odis
+}  // namespace odis::core

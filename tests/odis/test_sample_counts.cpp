@@ -7,7 +7,7 @@
 #include <limits>
 #include <random>
 
-namespace odis {
+namespace odis::core {
 namespace {
 
 constexpr int kSize = 64;
@@ -132,4 +132,4 @@ TEST(SampleCounts, LeaveMeansUnbiased) {
 }
 
 }  // namespace
-}  // namespace odis
+}  // namespace odis::core

@@ -6,7 +6,7 @@
 #include "odis/maps/pack.h"
 #include "support/chi2.h"
 
-namespace odis {
+namespace odis::core {
 namespace {
 
 using render::Vec3;
@@ -216,4 +216,4 @@ TEST(VertexMap, NothingToSampleIsEmpty) {
 }
 
 }  // namespace
-}  // namespace odis
+}  // namespace odis::core

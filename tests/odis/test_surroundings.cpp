@@ -6,7 +6,7 @@
 #include <numeric>
 #include <random>
 
-namespace odis {
+namespace odis::core {
 namespace {
 
 constexpr float kFar = 1e9f;  // limits nothing
@@ -201,4 +201,4 @@ TEST(Surroundings, WhatIsRolledUpIsNoPartOfWhatIsAddedLater) {
 }
 
 }  // namespace
-}  // namespace odis
+}  // namespace odis::core

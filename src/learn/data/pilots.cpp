@@ -1,6 +1,6 @@
 #include "learn/data/pilots.h"
 
-#include <odis/guide.h>
+#include "odis/guide.h"
 
 #include <algorithm>
 #include <cmath>
@@ -63,8 +63,8 @@ ViewFrame frameOf(std::span<const Pilot> pilots) {
     for (const render::Rgb& c : pilot.image) sum += render::luminance(c);
     pixels += pilot.image.size();
   }
-  CellStore cells(INFINITY);
-  cells.add(parts, GuideOptions().cellsPerDiagonal);
+  core::CellStore cells(INFINITY);
+  cells.add(parts, OdisGuideOptions().cellsPerDiagonal);
   ViewFrame frame{cells.grid().origin(), cells.grid().finestEdge(), 1};
   const double mean = sum / double(std::max<size_t>(pixels, 1));
   if (mean > 0 && std::isfinite(mean)) frame.unit = float(mean);

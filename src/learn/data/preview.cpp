@@ -123,7 +123,7 @@ class Row {
     constexpr size_t kEach = kTargetSize / kBins;
     for (size_t y = 0; y < kEach; ++y)
       for (size_t x = 0; x < kEach; ++x)
-        histogram[(bin(at.y) * kEach + y) * kTargetSize + bin(at.x) * kEach + x] += sampleValue(v);
+        histogram[(bin(at.y) * kEach + y) * kTargetSize + bin(at.x) * kEach + x] += core::sampleValue(v);
   }
   void caption(int columns, const std::string& text) { m_canvas.write(m_left, m_top, columns, text, kInk); }
 

@@ -9,10 +9,10 @@
 
 #include "learn/inspect/place.h"
 #include "learn/inspect/vertex_integral.h"
+#include "odis/api/objects.h"
 #include "odis/cells/shrinkage.h"
 #include "odis/maps/pack.h"
 #include "odis/maps/texel_directions.h"
-#include "odis/models/model_parts.h"
 #include "render/integrators/pilot_pass.h"
 
 namespace odis::learn {
@@ -26,23 +26,23 @@ namespace {
 constexpr size_t kMostStarts = 256;
 
 // A cell's histogram alone, made into a map as the formula does it with what it blends.
-PackedMap mapOfHistogram(const CellStatistics& cell, float floor) {
-  const Histogram cosines = cosinesTo(meanNormal(cell));
-  Histogram radiance;
-  for (size_t t = 0; t < kMapTexels; ++t) radiance[t] = cell.histogram[t] * inverseCosine(cosines[t]);
-  return packedMap(radiance, floor);
+core::PackedMap mapOfHistogram(const core::CellStatistics& cell, float floor) {
+  const core::Histogram cosines = core::cosinesTo(core::meanNormal(cell));
+  core::Histogram radiance;
+  for (size_t t = 0; t < kMapTexels; ++t) radiance[t] = cell.histogram[t] * core::inverseCosine(cosines[t]);
+  return core::packedMap(radiance, floor);
 }
 
 // The map of a cell of a guide.
-PackedMap mapOfCell(const GuideView& view, uint32_t cell) {
-  PackedMap map;
+core::PackedMap mapOfCell(const GuideView& view, uint32_t cell) {
+  core::PackedMap map;
   std::copy_n(view.maps.sums + size_t(cell) * kSumsPerMap, kSumsPerMap, map.sums);
   std::copy_n(view.maps.texels + size_t(cell) * kMapTexels, kMapTexels, map.texels);
   return map;
 }
 
-Histogram texelsOf(const PackedMap& map) {
-  Histogram result;
+core::Histogram texelsOf(const core::PackedMap& map) {
+  core::Histogram result;
   std::copy_n(map.texels, kMapTexels, result.begin());
   return result;
 }
@@ -113,7 +113,7 @@ class Inspector {
     GuideOptions formula = m_pilot.guideOptions;
     formula.model = formula.model.withDirectionFormula();
     build("formula", formula);
-    if (m_pilot.guideOptions.model.parts().directions) build("network", m_pilot.guideOptions);
+    if (m_pilot.guideOptions.model.get()->model.directions) build("network", m_pilot.guideOptions);
     // The statistics that they were made from: the builder's own, with the same numbers.
     const ArrayView<const PathVertex> vertices = m_pilot.vertices;
     m_store.add(VertexParts(&vertices, 1), m_pilot.guideOptions.cellsPerDiagonal);
@@ -186,14 +186,14 @@ class Inspector {
   void describeLevels() {
     const VertexIntegral integral(m_place.start, m_truth);
     const float floor = m_pilot.guideOptions.floor;
-    const PackedMap converged = packedMap(integral.texels(), floor);
+    const core::PackedMap converged = core::packedMap(integral.texels(), floor);
     for (uint32_t c = m_cell; c != kNoCell; c = m_cells[c].parent) {
-      const CellStatistics& cell = m_cells[c];
+      const core::CellStatistics& cell = m_cells[c];
       LevelView& level = m_result.levels.emplace_back();
       level.cell = c;
       level.edge = m_store.grid().finestEdge() * float(1 << cell.level);
-      level.effective = effectiveSamples(cell.sum, cell.sumSquares);
-      level.own = ownWeight(level.effective, m_pilot.guideOptions.priorSamples[cell.level]);
+      level.effective = core::effectiveSamples(cell.sum, cell.sumSquares);
+      level.own = core::ownWeight(level.effective, m_pilot.guideOptions.priorSamples[cell.level]);
       level.statistics = cell;
       level.histogram = squareOf(cell.histogram);
       level.judgement = integral.judge(mapOfHistogram(cell, floor), converged, m_result.bsdfFraction);
@@ -202,22 +202,22 @@ class Inspector {
   }
 
   void describeSamples() {
-    const CellStatistics& cell = m_cells[m_cell];
+    const core::CellStatistics& cell = m_cells[m_cell];
     double sum = 0;
-    for (const size_t i : m_members) sum += sampleValue(m_vertices[i]);
+    for (const size_t i : m_members) sum += core::sampleValue(m_vertices[i]);
     const double scale = sum > 0 ? double(m_members.size()) / sum : 0;
     for (const size_t i : m_members) {
       const PathVertex& v = m_vertices[i];
-      m_result.samples.push_back({directionToSquare(reaim(v.position, v.wi, v.distance, cell.centroid)),
-                                  float(sampleValue(v) * scale)});
+      m_result.samples.push_back({directionToSquare(core::reaim(v.position, v.wi, v.distance, cell.centroid)),
+                                  float(core::sampleValue(v) * scale)});
     }
   }
 
   void describeMaps() {
     const float floor = m_pilot.guideOptions.floor, bsdfFraction = m_result.bsdfFraction;
     const VertexIntegral integral(m_place.start, m_truth);
-    const PackedMap truth = packedMap(integral.texels(), floor);
-    const auto fill = [&](MapView& view, const PackedMap& map) {
+    const core::PackedMap truth = core::packedMap(integral.texels(), floor);
+    const auto fill = [&](MapView& view, const core::PackedMap& map) {
       const VertexMap<float> here = integral.at(map);
       view.timesCosine = squareOf(here);
       view.mixture = integral.mixture(here, bsdfFraction);
@@ -225,7 +225,7 @@ class Inspector {
     };
     for (const NamedGuide& g : m_guides) {
       const uint32_t cell = cellOf(g.guide);
-      const PackedMap map = mapOfCell(g.guide.view(), cell);
+      const core::PackedMap map = mapOfCell(g.guide.view(), cell);
       MapView& view = m_result.maps.emplace_back();
       view.name = g.name;
       view.radiance = squareOf(texelsOf(map));
@@ -239,9 +239,9 @@ class Inspector {
     m_result.best = integral.best();
     m_result.bsdfAlone.moment = m_result.bsdfAlone.bestMoment = integral.moment(integral.at(truth), 1);
 
-    PackedMap halves[2];
+    core::PackedMap halves[2];
     for (size_t i = 0; i < 2; ++i)
-      halves[i] = packedMap(VertexIntegral(m_place.start, m_halves[i]).texels(), floor);
+      halves[i] = core::packedMap(VertexIntegral(m_place.start, m_halves[i]).texels(), floor);
     m_result.noise = divergence(integral.at(halves[0]), integral.at(halves[1]));
   }
 
@@ -268,8 +268,8 @@ class Inspector {
   PilotPass m_pilot;
   std::span<const PathVertex> m_vertices;  // the pilot's
   std::vector<NamedGuide> m_guides;
-  CellStore m_store;
-  std::vector<CellStatistics> m_cells;
+  core::CellStore m_store;
+  std::vector<core::CellStatistics> m_cells;
   InspectedPlace m_place;
   uint32_t m_cell = kNoCell;
   std::vector<size_t> m_members;  // of the cell

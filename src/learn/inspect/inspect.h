@@ -46,7 +46,7 @@ struct LevelView {
   double effective = 0;  // samples
   double own =
       0;  // its histogram's weight when the formula blends it with the next coarser level's distribution
-  CellStatistics statistics;
+  core::CellStatistics statistics;
   SquareMap histogram;  // of radiance x cosine
   Judgement judgement;  // of its histogram alone, made into a map as the formula's distribution is
 };

@@ -69,7 +69,7 @@ InspectedPlace placeOfPixel(const render::Scene& scene, const render::LightSampl
                   vertices.empty() ? "it scatters nowhere" : "its surfaces are too sharp, or absorb all"));
 }
 
-uint32_t finestCell(const CellStore& store, const Float3& position, const Float3& normal) {
+uint32_t finestCell(const core::CellStore& store, const Float3& position, const Float3& normal) {
   for (int level = 0; level < kCellLevels; ++level) {
     const uint32_t cell = store.index().find(store.grid().key(position, normal, level));
     if (cell != kNoCell) return cell;
@@ -87,7 +87,7 @@ std::vector<size_t> membersOf(std::span<const PathVertex> pilot, const CellGrid&
 }
 
 InspectedPlace placeAtPoint(const render::Scene& scene, std::span<const PathVertex> pilot,
-                            const CellStore& store, std::span<const CellStatistics> cells,
+                            const core::CellStore& store, std::span<const core::CellStatistics> cells,
                             const Float3& point, const std::optional<Float3>& normal) {
   // Cells are split by the axis that normals are nearest to: without a normal, all six are asked.
   std::vector<Float3> normals{{1, 0, 0}, {-1, 0, 0}, {0, 1, 0}, {0, -1, 0}, {0, 0, 1}, {0, 0, -1}};

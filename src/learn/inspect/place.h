@@ -21,11 +21,11 @@ InspectedPlace placeOfPixel(const render::Scene& scene, const render::LightSampl
 // The finest cell at a point that the pilot saw something in, and of its vertices the nearest to the point,
 // one that may be guided if there is any. Throws OptionError if there is none.
 InspectedPlace placeAtPoint(const render::Scene& scene, std::span<const PathVertex> pilot,
-                            const CellStore& store, std::span<const CellStatistics> cells,
+                            const core::CellStore& store, std::span<const core::CellStatistics> cells,
                             const Float3& point, const std::optional<Float3>& normal);
 
 // The number of the finest cell for a vertex there; kNoCell if no level has one.
-uint32_t finestCell(const CellStore& store, const Float3& position, const Float3& normal);
+uint32_t finestCell(const core::CellStore& store, const Float3& position, const Float3& normal);
 
 // The usable vertices in a cell of this level, by their indices.
 std::vector<size_t> membersOf(std::span<const PathVertex> pilot, const CellGrid& grid, uint64_t key,

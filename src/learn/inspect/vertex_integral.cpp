@@ -55,7 +55,7 @@ VertexIntegral::VertexIntegral(const Start& start, const Converged& arriving)
   }
 }
 
-VertexMap<float> VertexIntegral::at(const PackedMap& map) const {
+VertexMap<float> VertexIntegral::at(const core::PackedMap& map) const {
   VertexMap<float> result;
   result.prepare(map.arrays(), 0, m_normal, m_belowSign);
   return result;
@@ -91,13 +91,14 @@ float VertexIntegral::moment(const VertexMap<float>& map, float bsdfFraction) co
                   : kUnknown;
 }
 
-Judgement VertexIntegral::judge(const PackedMap& map, const PackedMap& converged, float bsdfFraction) const {
+Judgement VertexIntegral::judge(const core::PackedMap& map, const core::PackedMap& converged,
+                                float bsdfFraction) const {
   const VertexMap<float> here = at(map);
   Judgement result;
   result.entropy = render::entropy(map.texels);
   result.divergence = divergence(here, at(converged));
   result.moment = moment(here, bsdfFraction);
-  for (const float candidate : kBsdfFractions) {
+  for (const float candidate : core::kBsdfFractions) {
     const float moment = this->moment(here, candidate);
     if (std::isnan(moment) || result.bestMoment <= moment) continue;
     result.bestMoment = moment;
@@ -121,8 +122,8 @@ SquareMap VertexIntegral::radiance() const {
     return from.samples > 0 ? weighted(from, d.pdf) : double(kUnknown);
   });
 }
-Histogram VertexIntegral::texels() const {
-  Histogram result{};
+core::Histogram VertexIntegral::texels() const {
+  core::Histogram result{};
   for (const Direction& d : m_directions)
     result[size_t(d.texel)] += float(weighted(m_arriving[size_t(d.target)], d.pdf));
   return result;
@@ -140,7 +141,7 @@ SquareMap VertexIntegral::mixture(const VertexMap<float>& map, float bsdfFractio
   });
 }
 
-SquareMap squareOf(const Histogram& texels) {
+SquareMap squareOf(const core::Histogram& texels) {
   SquareMap result{kMapSize, {}};
   for (int y = 0; y < kMapSize; ++y)
     for (int x = 0; x < kMapSize; ++x) result.values.push_back(texels[size_t(texelAt(x, y))]);
@@ -149,12 +150,12 @@ SquareMap squareOf(const Histogram& texels) {
 }
 
 SquareMap squareOf(const VertexMap<float>& map) {
-  Histogram density;
+  core::Histogram density;
   for (int t = 0; t < kMapTexels; ++t) density[size_t(t)] = map.texelPdf(t);
   return squareOf(density);
 }
 
-float entropyOf(const Histogram& weights) {
+float entropyOf(const core::Histogram& weights) {
   double sum = 0, logs = 0;
   for (const float w : weights) {
     if (!(w > 0)) continue;

@@ -15,7 +15,7 @@ class VertexIntegral {
   VertexIntegral(const Start& start, const Converged& arriving);
 
   // A map as the vertex sees it. The map must outlive the result.
-  VertexMap<float> at(const PackedMap& map) const;
+  VertexMap<float> at(const core::PackedMap& map) const;
 
   // The second moment over the squared mean of what the vertex scatters: next-event estimation (of emitters
   // that can be met; without a choice among them that was learned) and one direction from `map` times the
@@ -23,12 +23,12 @@ class VertexIntegral {
   // the noise of single paths. kUnknown where nothing is scattered.
   float moment(const VertexMap<float>& map, float bsdfFraction) const;
   // All there is to say of a map: `converged` is the one that its divergence is measured from.
-  Judgement judge(const PackedMap& map, const PackedMap& converged, float bsdfFraction) const;
+  Judgement judge(const core::PackedMap& map, const core::PackedMap& converged, float bsdfFraction) const;
 
   // Radiance that arrives, emission weighted by MIS against the BSDF as the pilot's is; of radiance()
   // kUnknown where nothing was measured, 0 there of texels(), which has those of maps.
   SquareMap radiance() const;
-  Histogram texels() const;
+  core::Histogram texels() const;
   SquareMap bsdf() const;  // f |cos|, luminance
   SquareMap best() const;  // that times the radiance
   SquareMap mixture(const VertexMap<float>& map, float bsdfFraction) const;
@@ -50,12 +50,12 @@ class VertexIntegral {
 };
 
 // The map as texels row by row, over its mean.
-SquareMap squareOf(const Histogram& texels);
+SquareMap squareOf(const core::Histogram& texels);
 // The density of each texel, over the even one.
 SquareMap squareOf(const VertexMap<float>& map);
 
 // In bits, of densities over a map's texels that need not sum to one; 0 log 0 is 0.
-float entropyOf(const Histogram& weights);
+float entropyOf(const core::Histogram& weights);
 // Of the density of `other` from that of `map`.
 float divergence(const VertexMap<float>& map, const VertexMap<float>& other);
 

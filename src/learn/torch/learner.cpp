@@ -44,11 +44,11 @@ torch::Tensor through(const torch::nn::Linear& layer, const torch::Tensor& x, to
 struct DirectionModuleImpl : torch::nn::Module {
   DirectionModuleImpl(int64_t hidden, torch::Dtype dtype)
       : precision(dtype),
-        cell0(register_module("cell0", torch::nn::Linear(kCellScalars, hidden))),
+        cell0(register_module("cell0", torch::nn::Linear(core::kCellScalars, hidden))),
         cell1(register_module("cell1", torch::nn::Linear(hidden, hidden))),
-        blend(register_module("blend", torch::nn::Linear(hidden, kBasisMaps))),
-        mean(register_buffer("mean", torch::zeros({kCellScalars}))),
-        scale(register_buffer("scale", torch::ones({kCellScalars}))) {}
+        blend(register_module("blend", torch::nn::Linear(hidden, core::kBasisMaps))),
+        mean(register_buffer("mean", torch::zeros({core::kCellScalars}))),
+        scale(register_buffer("scale", torch::ones({core::kCellScalars}))) {}
 
   torch::Tensor forward(const torch::Tensor& scalars, const torch::Tensor& basis,
                         const torch::Tensor& there) {
@@ -68,7 +68,7 @@ TORCH_MODULE(DirectionModule);
 struct LightModuleImpl : torch::nn::Module {
   explicit LightModuleImpl(torch::Dtype dtype)
       : precision(dtype),
-        layer0(register_module("layer0", torch::nn::Linear(kPairFeatures, kPairWidth))),
+        layer0(register_module("layer0", torch::nn::Linear(core::kPairFeatures, kPairWidth))),
         layer1(register_module("layer1", torch::nn::Linear(kPairWidth, kPairWidth))),
         layer2(register_module("layer2", torch::nn::Linear(kPairWidth, 1))) {}
 
@@ -94,7 +94,7 @@ struct LightRows {
 
   LightRows(const LightBatch& b, const torch::Device& device) {
     const auto count = int64_t(b.count), groups = int64_t(kMaxLightGroups);
-    pairs = toDevice(b.pairs, {count, groups, kPairFeatures}, device);
+    pairs = toDevice(b.pairs, {count, groups, core::kPairFeatures}, device);
     formula = toDevice(b.formula, {count, groups}, device);
     rms = toDevice(b.rms, {count, groups}, device);
     probability = toDevice(b.probability, {count, groups}, device);
@@ -106,9 +106,9 @@ struct Rows {
 
   Rows(const DirectionBatch& b, const torch::Device& device) {
     const auto count = int64_t(b.count);
-    scalars = toDevice(b.scalars, {count, kCellScalars}, device);
-    basis = toDevice(b.basis, {count, kBasisMaps, kTexels}, device);
-    there = toDevice(b.there, {count, kBasisMaps}, device);
+    scalars = toDevice(b.scalars, {count, core::kCellScalars}, device);
+    basis = toDevice(b.basis, {count, core::kBasisMaps, kTexels}, device);
+    there = toDevice(b.there, {count, core::kBasisMaps}, device);
     inverseCosine = toDevice(b.inverseCosine, {count, kTexels}, device);
     diffuse = toDevice(b.diffuse, {count, kTexels}, device);
     mass = toDevice(b.mass, {count, kTexels}, device);
@@ -151,9 +151,9 @@ torch::Device chooseDevice(const std::string& name) {
   return {torch::kCUDA, torch::DeviceIndex(index % int(torch::cuda::device_count()))};
 }
 
-Tensor toTensor(const std::string& name, const torch::Tensor& tensor) {
+core::Tensor toTensor(const std::string& name, const torch::Tensor& tensor) {
   const torch::Tensor values = tensor.detach().to(torch::kCPU, torch::kFloat32).contiguous();
-  Tensor result{name, {}, {values.data_ptr<float>(), values.data_ptr<float>() + values.numel()}};
+  core::Tensor result{name, {}, {values.data_ptr<float>(), values.data_ptr<float>() + values.numel()}};
   for (const int64_t size : values.sizes()) result.shape.push_back(uint32_t(size));
   return result;
 }
@@ -224,8 +224,8 @@ class TorchLearner : public Learner {
     return toTensor("", m_modules.lights(rows.pairs, rows.formula)).values;
   }
 
-  std::vector<Tensor> tensors() const override {
-    std::vector<Tensor> result;
+  std::vector<core::Tensor> tensors() const override {
+    std::vector<core::Tensor> result;
     const auto add = [&](const std::string& name, const torch::nn::Linear& layer) {
       result.push_back(toTensor(name + ".weight", layer->weight));
       result.push_back(toTensor(name + ".bias", layer->bias));

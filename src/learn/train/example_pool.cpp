@@ -39,7 +39,7 @@ std::vector<ViewExamples> ExamplePool::load(const std::string& shardFile, std::s
     const ShardReader reader(kept.string());
     if (reader.header().value("origin", nlohmann::json()) == nlohmann::json(origin) &&
         reader.header().value("format", 1u) == kExampleFormat &&
-        reader.header().value("features", 0u) == kFeatureVersion) {
+        reader.header().value("features", 0u) == core::kFeatureVersion) {
       for (size_t v = 0; v < reader.header().at("views").get<size_t>(); ++v)
         views.push_back(readExamples(reader, viewPrefix(v)));
       return views;
@@ -50,7 +50,7 @@ std::vector<ViewExamples> ExamplePool::load(const std::string& shardFile, std::s
   for (size_t v = 0; v < views.size(); ++v) addColumns(writer, viewPrefix(v), views[v]);
   writer.write(kept.string(), {{"origin", origin},
                                {"format", kExampleFormat},
-                               {"features", kFeatureVersion},
+                               {"features", core::kFeatureVersion},
                                {"views", views.size()}});
   return views;
 }
@@ -82,9 +82,9 @@ void ExamplePool::add(const std::vector<std::string>& shardFiles) {
 void ExamplePool::draw(uint64_t seed, uint64_t step, size_t count, double shiftProbability,
                        DirectionBatch& batch) const {
   batch.count = count;
-  batch.scalars.resize(count * kCellScalars);
-  batch.basis.resize(count * kBasisMaps * kMapTexels);
-  batch.there.resize(count * kBasisMaps);
+  batch.scalars.resize(count * core::kCellScalars);
+  batch.basis.resize(count * core::kBasisMaps * kMapTexels);
+  batch.there.resize(count * core::kBasisMaps);
   for (std::vector<float>* maps : {&batch.inverseCosine, &batch.diffuse, &batch.mass, &batch.square})
     maps->resize(count * kMapTexels);
   const Random stream = Random(seed).fork(fmt::format("step {}", step));
@@ -95,19 +95,19 @@ void ExamplePool::draw(uint64_t seed, uint64_t step, size_t count, double shiftP
     const int variant = random.integer(0, kInputVariants - 1);
     const bool shift = random.chance(shiftProbability);
     ViewExamples::Storage storage;
-    CellFeatures features;
-    computeFeatures(view.chain(variant, example, shift, storage), features);
-    std::copy(features.scalars.begin(), features.scalars.end(), &batch.scalars[row * kCellScalars]);
-    for (size_t m = 0; m < kBasisMaps; ++m) {
-      const Histogram map = basisMap(features, int(m));
-      std::copy(map.begin(), map.end(), &batch.basis[(row * kBasisMaps + m) * kMapTexels]);
-      batch.there[row * kBasisMaps + m] = features.there[m];
+    core::CellFeatures features;
+    core::computeFeatures(view.chain(variant, example, shift, storage), features);
+    std::copy(features.scalars.begin(), features.scalars.end(), &batch.scalars[row * core::kCellScalars]);
+    for (size_t m = 0; m < core::kBasisMaps; ++m) {
+      const core::Histogram map = core::basisMap(features, int(m));
+      std::copy(map.begin(), map.end(), &batch.basis[(row * core::kBasisMaps + m) * kMapTexels]);
+      batch.there[row * core::kBasisMaps + m] = features.there[m];
     }
     float cosines = 0;
     for (const float cosine : features.cosines) cosines += std::max(cosine, 0.0f) + 1e-4f;
     for (size_t t = 0; t < kMapTexels; ++t) {
       const size_t at = row * kMapTexels + t;
-      batch.inverseCosine[at] = inverseCosine(features.cosines[t]);
+      batch.inverseCosine[at] = core::inverseCosine(features.cosines[t]);
       batch.diffuse[at] = (std::max(features.cosines[t], 0.0f) + 1e-4f) / cosines;
       batch.mass[at] = view.mass[example * kMapTexels + t];
       batch.square[at] = view.square[example * kMapTexels + t];
@@ -117,7 +117,7 @@ void ExamplePool::draw(uint64_t seed, uint64_t step, size_t count, double shiftP
 
 void ExamplePool::draw(uint64_t seed, uint64_t step, size_t count, LightBatch& batch) const {
   batch.count = count;
-  batch.pairs.assign(count * kMaxLightGroups * kPairFeatures, 0);
+  batch.pairs.assign(count * kMaxLightGroups * core::kPairFeatures, 0);
   for (std::vector<float>* values : {&batch.formula, &batch.rms, &batch.probability})
     values->assign(count * kMaxLightGroups, 0);
   const Random stream = Random(seed).fork(fmt::format("lights of step {}", step));
@@ -126,14 +126,15 @@ void ExamplePool::draw(uint64_t seed, uint64_t step, size_t count, LightBatch& b
     const auto [viewIndex, example] = random.pick(std::span(m_lit));
     const ViewExamples& view = m_views[viewIndex];
     ViewExamples::Storage storage;
-    LightFeatures features;
-    computeFeatures(view.chain(random.integer(0, kInputVariants - 1), example, false, storage),
-                    uint32_t(view.groups), features);
+    core::LightFeatures features;
+    core::computeFeatures(view.chain(random.integer(0, kInputVariants - 1), example, false, storage),
+                          uint32_t(view.groups), features);
     const float* rms = &view.lightRms[example * view.groups];
     const float sum = std::accumulate(rms, rms + view.groups, 0.0f);
     for (size_t g = 0; g < view.groups; ++g) {
       const size_t at = row * kMaxLightGroups + g;
-      for (size_t f = 0; f < kPairFeatures; ++f) batch.pairs[at * kPairFeatures + f] = features.pairs[f][g];
+      for (size_t f = 0; f < core::kPairFeatures; ++f)
+        batch.pairs[at * core::kPairFeatures + f] = features.pairs[f][g];
       batch.formula[at] = std::max(features.formula[g], 1e-6f);
       batch.rms[at] = rms[g] / sum;
       batch.probability[at] = view.lightProbability[example * view.groups + g];

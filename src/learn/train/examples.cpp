@@ -1,7 +1,7 @@
 #include "learn/train/examples.h"
 
-#include <odis/guide.h>
 #include <odis/mixture.h>
+#include "odis/guide.h"
 
 #include <cmath>
 
@@ -56,29 +56,29 @@ void addMaps(const Target& target, ViewExamples& examples) {
 }
 
 // Adds the chain of the cell that a vertex lies in.
-void addInput(const CellStore& store, std::span<const CellStatistics> cells, const PathVertex& vertex,
-              float unit, ViewExamples& examples) {
-  CellChain chain{};
+void addInput(const core::CellStore& store, std::span<const core::CellStatistics> cells,
+              const PathVertex& vertex, float unit, ViewExamples& examples) {
+  core::CellChain chain{};
   for (int level = 0; level < kCellLevels; ++level) {
     const uint32_t cell = store.index().find(store.grid().key(vertex.position, vertex.normal, level));
     if (cell == kNoCell) continue;
-    chain = chainOf(cells, cell);
+    chain = core::chainOf(cells, cell);
     break;
   }
   // What lies around the finest cell, and around its parent.
-  const auto addNormalized = [](const Histogram& histogram, std::vector<Half>& to) {
+  const auto addNormalized = [](const core::Histogram& histogram, std::vector<Half>& to) {
     float sum = 0;
     for (const float value : histogram) sum += value;
     for (const float value : histogram) to.push_back(toHalf(sum > 0 ? value / sum : 0));
   };
-  static constexpr Surroundings kNowhere{};
+  static constexpr core::Surroundings kNowhere{};
   for (size_t first = 0; first < 2; ++first)
-    for (const Histogram& map : chain[first] ? *chain[first]->around : kNowhere)
+    for (const core::Histogram& map : chain[first] ? *chain[first]->around : kNowhere)
       addNormalized(map, examples.around);
   const auto scaled = [&](double value, int power) { return float(value * std::pow(1.0 / unit, power)); };
-  for (const CellStatistics* cell : chain) {
-    static constexpr CellStatistics kNothing{};
-    const CellStatistics& s = cell ? *cell : kNothing;
+  for (const core::CellStatistics* cell : chain) {
+    static constexpr core::CellStatistics kNothing{};
+    const core::CellStatistics& s = cell ? *cell : kNothing;
     KeptStatistics kept;
     kept.level = float(s.level);
     kept.count = float(s.count);
@@ -117,13 +117,13 @@ ViewExamples examplesOf(const ShardReader& shard, size_t view, size_t pilotCount
     }
   }
   for (int variant = 0; variant < kInputVariants; ++variant) {
-    CellStore store(GuideOptions().clamp, true);
+    core::CellStore store(OdisGuideOptions().clamp, true);
     store.place(CellGrid(frame.origin, frame.edge));
     std::vector<ArrayView<const PathVertex>> parts;
     for (const size_t pilot : pilotsOf(variant, view, pilots.size()))
       parts.emplace_back(pilots[pilot].vertices);
     store.add(parts, 0);
-    const std::vector<CellStatistics>& cells = store.rollUp();
+    const std::vector<core::CellStatistics>& cells = store.rollUp();
     for (const PathVertex* vertex : vertices) addInput(store, cells, *vertex, frame.unit, examples);
   }
   return examples;
@@ -139,14 +139,14 @@ std::vector<ViewExamples> makeExamples(const ShardReader& shard) {
   return views;
 }
 
-CellChain ViewExamples::chain(int variant, size_t example, bool shift, Storage& storage) const {
-  CellChain chain{};
+core::CellChain ViewExamples::chain(int variant, size_t example, bool shift, Storage& storage) const {
+  core::CellChain chain{};
   size_t length = 0;
   for (size_t level = shift ? 1 : 0; level < kCellLevels; ++level) {
     const size_t at = (size_t(variant) * count + example) * kCellLevels + level;
     const KeptStatistics& kept = statistics[at];
     if (!(kept.count > 0)) break;
-    CellStatistics& cell = storage.cells[length];
+    core::CellStatistics& cell = storage.cells[length];
     cell.level = int(kept.level);
     cell.count = cell.lightCount = kept.count;
     cell.sum = kept.sum;
@@ -157,7 +157,7 @@ CellChain ViewExamples::chain(int variant, size_t example, bool shift, Storage& 
     chain[length++] = &cell;
   }
   size_t from = ((size_t(variant) * count + example) * 2 + shift) * storage.around.size() * kTexels;
-  for (Histogram& map : storage.around)
+  for (core::Histogram& map : storage.around)
     for (float& value : map) value = float(around[from++]);
   storage.cells[0].around = &storage.around;
   return chain;

@@ -40,10 +40,10 @@ struct ViewExamples {
 
   // The chain of an example, `storage` holding what it points to. With `shift` it begins at the parent.
   struct Storage {
-    std::array<CellStatistics, kCellLevels> cells;
-    Surroundings around;
+    std::array<core::CellStatistics, kCellLevels> cells;
+    core::Surroundings around;
   };
-  CellChain chain(int variant, size_t example, bool shift, Storage& storage) const;
+  core::CellChain chain(int variant, size_t example, bool shift, Storage& storage) const;
 };
 
 // The examples of each view of a shard. Throws ShardError.

@@ -43,7 +43,7 @@ class Learner {
   // The shares that the network gives the groups of lights: [count][group].
   virtual std::vector<float> predict(const LightBatch& batch) = 0;
   // What the run time needs.
-  virtual std::vector<Tensor> tensors() const = 0;
+  virtual std::vector<core::Tensor> tensors() const = 0;
   // Everything that the next step depends on, as bytes.
   virtual std::string state() const = 0;
   virtual void restore(const std::string& state) = 0;

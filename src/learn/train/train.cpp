@@ -194,10 +194,10 @@ class Training {
       if (int(files.size()) < m_config.validationScenes) files.push_back(shardFile(m_config.data, name));
     if (files.empty()) return;
     if (files != m_formulaOf) {
-      m_formula = predictedVariance(files, std::make_shared<DirectionFormula>(GuideOptions()));
+      m_formula = predictedVariance(files, std::make_shared<core::DirectionFormula>(GuideOptions()));
       m_formulaOf = files;
     }
-    const auto network = std::make_shared<DirectionNetwork>(Weights("", m_learner->tensors()));
+    const auto network = std::make_shared<core::DirectionNetwork>(core::Weights("", m_learner->tensors()));
     m_history.validations.push_back({m_step, predictedVariance(files, network), m_formula});
     m_observer.validated(m_history.validations.back());
   }
@@ -219,7 +219,8 @@ class Training {
   // First what others read, last the checkpoint: whatever is killed in between is made again.
   void save() {
     writeHistory(m_folder, m_history);
-    render::writeFile(m_folder + "/odis.weights", Weights(about().dump(), m_learner->tensors()).bytes());
+    render::writeFile(m_folder + "/odis.weights",
+                      core::Weights(about().dump(), m_learner->tensors()).bytes());
     nlohmann::ordered_json losses = nlohmann::ordered_json::array(),
                            validations = nlohmann::ordered_json::array();
     for (const LossRow& r : m_history.losses)

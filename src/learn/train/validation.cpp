@@ -1,32 +1,33 @@
 #include "learn/train/validation.h"
 
-#include <odis/guide.h>
 #include <odis/pixel_sums.h>
 #include <tbb/parallel_for.h>
+#include "odis/guide.h"
 
 #include <cmath>
 #include <mutex>
 
 #include "learn/data/make_shard.h"
-#include "odis/models/model_parts.h"
+#include "odis/models/model.h"
 
 namespace odis::learn {
 
 namespace {
 
 // Judged by vertices that it has not seen: none of its samples is to be taken out again.
-class Unseen : public DirectionModel {
+class Unseen : public core::DirectionModel {
  public:
-  explicit Unseen(std::shared_ptr<const DirectionModel> model) : m_model(std::move(model)) {}
-  DirectionDistribution predict(const CellChain& chain, const DirectionDistribution* parent) const override {
-    DirectionDistribution result = m_model->predict(chain, parent);
+  explicit Unseen(std::shared_ptr<const core::DirectionModel> model) : m_model(std::move(model)) {}
+  core::DirectionDistribution predict(const core::CellChain& chain,
+                                      const core::DirectionDistribution* parent) const override {
+    core::DirectionDistribution result = m_model->predict(chain, parent);
     result.sensitivity = 0;
     return result;
   }
   bool looksAround() const override { return m_model->looksAround(); }
 
  private:
-  std::shared_ptr<const DirectionModel> m_model;
+  std::shared_ptr<const core::DirectionModel> m_model;
 };
 
 // Each pixel's luminance, estimated from all pilots.
@@ -35,12 +36,13 @@ std::vector<float> pixelValues(const std::vector<Pilot>& pilots, uint32_t width)
   for (const Pilot& pilot : pilots)
     for (size_t i = 0; i < image.size(); ++i) {
       const render::Rgb& value = pilot.image[i];
-      image[i].add(Float3{value.x, value.y, value.z}, 0);
+      addSample(image[i], {value.x, value.y, value.z}, 0);
     }
   return estimatePixelValues(image, width);
 }
 
-double varianceOf(const ShardReader& shard, size_t view, const std::shared_ptr<const DirectionModel>& model) {
+double varianceOf(const ShardReader& shard, size_t view,
+                  const std::shared_ptr<const core::DirectionModel>& model) {
   const nlohmann::json& header = shard.header().at("views").at(view);
   const ViewFrame frame = viewFrame(shard, view);
   std::vector<Pilot> pilots;
@@ -48,9 +50,10 @@ double varianceOf(const ShardReader& shard, size_t view, const std::shared_ptr<c
     pilots.push_back(readColumns(shard, pilotPrefix(view, i), frame));
   if (pilots.size() < 2) return 1;
   const std::vector<float> values = pixelValues(pilots, header.at("width"));
-  GuideOptions options;
-  options.model = makeModel(model);
-  GuideBuilder builder(options);
+  OdisModelImpl handle({model, nullptr});
+  OdisGuideOptions options;
+  options.model = &handle;
+  core::GuideBuilder builder(options);
   std::vector<ArrayView<const PathVertex>> seen;
   for (size_t i = 0; i + 1 < pilots.size(); ++i) seen.emplace_back(pilots[i].vertices);
   builder.add(seen);
@@ -60,7 +63,7 @@ double varianceOf(const ShardReader& shard, size_t view, const std::shared_ptr<c
 }  // namespace
 
 double predictedVariance(const std::vector<std::string>& shardFiles,
-                         const std::shared_ptr<const DirectionModel>& model) {
+                         const std::shared_ptr<const core::DirectionModel>& model) {
   const auto unseen = std::make_shared<Unseen>(model);
   std::vector<std::pair<double, size_t>> sums(shardFiles.size());  // of logarithms, and of how many
   tbb::parallel_for(size_t(0), shardFiles.size(), [&](size_t i) {

@@ -15,6 +15,6 @@ namespace odis::learn {
 // selection probabilities that are best. Maps are made from all pilots of the view but the last, and judged
 // by the vertices of the last. Returns the geometric mean; 1 if there is no view. Throws ShardError.
 double predictedVariance(const std::vector<std::string>& shardFiles,
-                         const std::shared_ptr<const DirectionModel>& model);
+                         const std::shared_ptr<const core::DirectionModel>& model);
 
 }  // namespace odis::learn

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-namespace odis {
+namespace odis::core {
 
 size_t countVertices(VertexParts parts) {
   size_t count = 0;
@@ -30,4 +30,4 @@ std::vector<VertexBatch> makeBatches(VertexParts parts) {
   return batches;
 }
 
-}  // namespace odis
+}  // namespace odis::core

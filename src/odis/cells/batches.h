@@ -2,16 +2,15 @@
 // list is split does not depend on the number of threads, so sums made batch by batch don't either.
 #pragma once
 
-#include <tbb/parallel_for.h>
-
 #include <numeric>
 #include <span>
 #include <utility>
 #include <vector>
 
 #include "odis/path_vertex.h"
+#include "odis/work/tasks.h"
 
-namespace odis {
+namespace odis::core {
 
 // A run of vertices, in pieces as they lie in memory.
 using VertexBatch = std::vector<ArrayView<const PathVertex>>;
@@ -39,10 +38,11 @@ struct BatchCells {
 
 // A counting sort. All cells have numbers below `cellCount`; `itemAt(batch, i)` is an item.
 template <class Item, class ItemAt>
-CellOrder<Item> sortByCell(std::span<const BatchCells> batches, uint32_t cellCount, const ItemAt& itemAt) {
+CellOrder<Item> sortByCell(const Tasks& tasks, std::span<const BatchCells> batches, uint32_t cellCount,
+                           const ItemAt& itemAt) {
   // How many items each batch has for each of its cells, then where they begin, then the items.
   std::vector<std::vector<uint32_t>> next(batches.size());
-  tbb::parallel_for(size_t(0), batches.size(), [&](size_t b) {
+  tasks.forEach(batches.size(), [&](size_t b) {
     next[b].assign(batches[b].cells.size(), 0);
     for (const uint32_t cell : batches[b].cellOf) ++next[b][cell];
   });
@@ -60,7 +60,7 @@ CellOrder<Item> sortByCell(std::span<const BatchCells> batches, uint32_t cellCou
         begin += std::exchange(next[b][i], begin);
       }
   result.items.resize(result.begin.back());
-  tbb::parallel_for(size_t(0), batches.size(), [&](size_t b) {
+  tasks.forEach(batches.size(), [&](size_t b) {
     for (size_t i = 0; i < batches[b].cellOf.size(); ++i)
       result.items[next[b][batches[b].cellOf[i]]++] = &itemAt(b, i);
   });
@@ -79,4 +79,4 @@ void forEachItem(std::span<const Item* const> items, const Body& body) {
   }
 }
 
-}  // namespace odis
+}  // namespace odis::core

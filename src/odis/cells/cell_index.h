@@ -5,7 +5,7 @@
 
 #include "odis/cell_grid.h"
 
-namespace odis {
+namespace odis::core {
 
 // Cells get the numbers 0, 1, 2, ... in the order of insertion. Linear probing; the table is at most half
 // full.
@@ -46,4 +46,4 @@ class CellIndex {
   uint32_t m_size = 0;
 };
 
-}  // namespace odis
+}  // namespace odis::core

@@ -6,7 +6,7 @@
 #include "odis/cells/cell_index.h"
 #include "odis/record/vertex_check.h"
 
-namespace odis {
+namespace odis::core {
 
 namespace {
 
@@ -57,4 +57,4 @@ BatchSamples takeSamples(const VertexBatch& batch, const CellGrid& grid) {
   return result;
 }
 
-}  // namespace odis
+}  // namespace odis::core

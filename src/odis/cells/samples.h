@@ -5,9 +5,10 @@
 
 #include "odis/cell_grid.h"
 #include "odis/cells/batches.h"
+#include "odis/guide_view.h"
 #include "odis/path_vertex.h"
 
-namespace odis {
+namespace odis::core {
 
 // What the vertex adds to a histogram: the estimate of radiance * cos, as a luminance.
 float sampleValue(const PathVertex& vertex);
@@ -48,4 +49,4 @@ struct BatchSamples {
 };
 BatchSamples takeSamples(const VertexBatch& batch, const CellGrid& grid);
 
-}  // namespace odis
+}  // namespace odis::core

@@ -2,7 +2,7 @@
 // samples.
 #pragma once
 
-namespace odis {
+namespace odis::core {
 
 // The mean of samples whose sum and number are given, shrunk towards `prior` as if that were the mean of
 // `priorSamples` more.
@@ -21,4 +21,4 @@ inline double effectiveSamples(double sum, double squares) {
   return squares > 0 ? sum * sum / squares : 0;
 }
 
-}  // namespace odis
+}  // namespace odis::core

@@ -1,12 +1,12 @@
 #include "odis/cells/statistics.h"
 
-#include <algorithm>
 #include <cmath>
 #include <numeric>
 
 #include "odis/cells/surroundings.h"
+#include "odis/record/vertex_check.h"
 
-namespace odis {
+namespace odis::core {
 
 Float3 reaim(const Float3& position, const Float3& wi, float distance, const Float3& centroid) {
   if (!std::isfinite(distance)) return wi;
@@ -15,7 +15,8 @@ Float3 reaim(const Float3& position, const Float3& wi, float distance, const Flo
   return squared > 1e-20f && dot(direction, wi) > 0 ? direction * (1 / std::sqrt(squared)) : wi;
 }
 
-CellStore::CellStore(float clamp, bool looksAround) : m_clamp(clamp), m_looksAround(looksAround) {}
+CellStore::CellStore(float clamp, bool looksAround, std::shared_ptr<const Tasks> tasks)
+    : m_clamp(clamp), m_looksAround(looksAround), m_tasks(std::move(tasks)) {}
 CellStore::~CellStore() = default;
 
 uint64_t CellStore::bytes() const {
@@ -122,7 +123,7 @@ void CellStore::add(VertexParts parts, int cellsPerDiagonal) {
   if (!m_placed) place(parts, cellsPerDiagonal);
   const std::vector<VertexBatch> pilot = makeBatches(parts);
   std::vector<BatchSamples> samples(pilot.size());
-  tbb::parallel_for(size_t(0), pilot.size(), [&](size_t b) { samples[b] = take(pilot[b]); });
+  m_tasks->forEach(pilot.size(), [&](size_t b) { samples[b] = take(pilot[b]); });
   std::vector<const BatchSamples*> batches;
   for (const BatchSamples& batch : samples) batches.push_back(&batch);
   add(batches);
@@ -159,7 +160,7 @@ void CellStore::add(std::span<const BatchSamples* const> batches) {
     for (const BatchSamples::Cell& cell : batches[b]->cells) cells[b].cells.push_back(insert(cell.key));
     cells[b].cellOf = batches[b]->cellOf;
     m_transientBytes += batches[b]->bytes();
-    m_vertexCounts.add(batches[b]->counts);
+    addCounts(m_vertexCounts, batches[b]->counts);
   }
   addNewCells();
 
@@ -175,10 +176,10 @@ void CellStore::add(std::span<const BatchSamples* const> batches) {
 
   // Sort the samples by cell and add them up.
   const CellOrder<CellSample> order =
-      sortByCell<CellSample>(cells, uint32_t(m_cells.size()),
+      sortByCell<CellSample>(*m_tasks, cells, uint32_t(m_cells.size()),
                              [&](size_t b, size_t i) -> const CellSample& { return batches[b]->samples[i]; });
   m_transientBytes += order.bytes();
-  forEachCell(m_cells.size(), [&](size_t parent) {
+  forEachCell(*m_tasks, m_cells.size(), [&](size_t parent) {
     if (m_links[parent].level != 1) return;
     LightField* field = m_looksAround ? &m_fields[m_fieldOf[parent]] : nullptr;
     const float limit = m_clamp * float(parentSum[parent] / parentCount[parent]);
@@ -210,7 +211,7 @@ void addChild(CellStatistics& parent, const CellStatistics& child) {
 
 const std::vector<CellStatistics>& CellStore::rollUp() {
   for (int level = 1; level < kCellLevels; ++level)
-    forEachCell(m_cells.size(), [&](size_t c) {
+    forEachCell(*m_tasks, m_cells.size(), [&](size_t c) {
       if (m_links[c].level != level) return;
       CellStatistics& cell = m_cells[c];
       cell = {};
@@ -251,7 +252,7 @@ void CellStore::lookAround() {
 // together once, as from the parent's centroid, and each child looks at that.
 void CellStore::fillSurroundings(const LightPoints& points, std::span<const uint32_t> pointsOf) {
   const auto clear = [&](size_t cell, size_t map) { m_around[cell][map].fill(0); };
-  forEachCell(m_cells.size(), [&](size_t c) {
+  forEachCell(*m_tasks, m_cells.size(), [&](size_t c) {
     CellStatistics& cell = m_cells[c];
     cell.around = &m_around[c];
     if (cell.parent == kNoCell) clear(c, 0);
@@ -278,4 +279,4 @@ void CellStore::fillSurroundings(const LightPoints& points, std::span<const uint
   });
 }
 
-}  // namespace odis
+}  // namespace odis::core

@@ -2,9 +2,7 @@
 // sums over its samples.
 #pragma once
 
-#include <tbb/blocked_range.h>
-#include <tbb/parallel_for.h>
-
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <memory>
@@ -15,7 +13,7 @@
 #include "odis/cells/samples.h"
 #include "odis/maps/histogram.h"
 
-namespace odis {
+namespace odis::core {
 
 // What the cells around a cell have seen, re-aimed at its centroid: sums of values over the 27 cells around
 // its parent, and over those around its parent's parent; zeros beyond the coarsest level.
@@ -61,18 +59,20 @@ inline CellChain chainOf(std::span<const CellStatistics> cells, size_t cell) {
 
 // Calls `body` with the index of each cell, by many threads at once.
 template <class Body>
-void forEachCell(size_t count, const Body& body) {
-  tbb::parallel_for(tbb::blocked_range<size_t>(0, count, 16), [&](const tbb::blocked_range<size_t>& range) {
-    for (size_t cell = range.begin(); cell < range.end(); ++cell) body(cell);
+void forEachCell(const Tasks& tasks, size_t count, const Body& body) {
+  constexpr size_t kBlock = 16;
+  tasks.forEach((count + kBlock - 1) / kBlock, [&](size_t block) {
+    const size_t end = std::min((block + 1) * kBlock, count);
+    for (size_t cell = block * kBlock; cell < end; ++cell) body(cell);
   });
 }
 
 // Calls `body` with the index of each cell: parents before their children, those of a level by many threads
 // at once.
 template <class Body>
-void forEachFromCoarse(std::span<const CellStatistics> cells, const Body& body) {
+void forEachFromCoarse(const Tasks& tasks, std::span<const CellStatistics> cells, const Body& body) {
   for (int level = kCellLevels - 1; level >= 0; --level)
-    forEachCell(cells.size(), [&](size_t c) {
+    forEachCell(tasks, cells.size(), [&](size_t c) {
       if (cells[c].level == level) body(c);
     });
 }
@@ -81,7 +81,8 @@ void forEachFromCoarse(std::span<const CellStatistics> cells, const Body& body) 
 class CellStore {
  public:
   // `clamp` as in GuideOptions. What lies around the cells is gathered only if it is asked for.
-  explicit CellStore(float clamp, bool looksAround = false);
+  explicit CellStore(float clamp, bool looksAround = false,
+                     std::shared_ptr<const Tasks> tasks = libraryTasks());
   ~CellStore();
 
   // Places the grid; otherwise the first call of `add` does.
@@ -105,6 +106,7 @@ class CellStore {
   // What the last `add` needed on top of the cells.
   uint64_t transientBytes() const { return m_transientBytes; }
   float clamp() const { return m_clamp; }
+  const Tasks& tasks() const { return *m_tasks; }
 
  private:
   void place(VertexParts parts, int cellsPerDiagonal);
@@ -118,6 +120,7 @@ class CellStore {
 
   float m_clamp;
   bool m_looksAround;
+  std::shared_ptr<const Tasks> m_tasks;
   bool m_placed = false;
   CellGrid m_grid;
   CellIndex m_index;
@@ -141,4 +144,4 @@ class CellStore {
 // `wi`.
 Float3 reaim(const Float3& position, const Float3& wi, float distance, const Float3& centroid);
 
-}  // namespace odis
+}  // namespace odis::core

@@ -6,7 +6,7 @@
 #include "odis/maps/instruction_sets.h"
 #include "odis/maps/texel_directions.h"
 
-namespace odis {
+namespace odis::core {
 
 namespace {
 
@@ -93,4 +93,4 @@ void LightPoints::addTo(Histogram& histogram, uint32_t field, const Float3& midd
   forEachSeenFrom(field, middle, [&](size_t texel, float value, float) { histogram[texel] += value; });
 }
 
-}  // namespace odis
+}  // namespace odis::core

@@ -7,7 +7,7 @@
 
 #include "odis/cells/statistics.h"
 
-namespace odis {
+namespace odis::core {
 
 // The light that samples of a cell have seen, as from the middle of its cube: for each direction the sum of
 // the samples' values, and the sum of value / distance from there.
@@ -38,4 +38,4 @@ class LightPoints {
   std::vector<float> m_inverse, m_value;  // [point] 1 / distance and value
 };
 
-}  // namespace odis
+}  // namespace odis::core

@@ -5,7 +5,7 @@
 
 #include "odis/cells/shrinkage.h"
 
-namespace odis {
+namespace odis::core {
 
 namespace {
 
@@ -186,4 +186,4 @@ std::vector<uint32_t> sampleCounts(std::span<const PixelNoise> noise, int width,
   return counts;
 }
 
-}  // namespace odis
+}  // namespace odis::core

@@ -8,7 +8,7 @@
 
 #include "odis/pixel_sums.h"
 
-namespace odis {
+namespace odis::core {
 
 // What the first samples of a pixel tell of one more.
 struct PixelNoise {
@@ -28,4 +28,4 @@ PixelNoise noiseOf(const PixelSums& sums);
 // their number is random. 150 bytes a block.
 std::vector<uint32_t> sampleCounts(std::span<const PixelNoise> noise, int width, double mean);
 
-}  // namespace odis
+}  // namespace odis::core

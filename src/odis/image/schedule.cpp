@@ -5,7 +5,7 @@
 #include <cmath>
 #include <numeric>
 
-namespace odis {
+namespace odis::core {
 
 namespace {
 
@@ -96,4 +96,4 @@ float Schedule::remainingRatio(uint32_t pixel) const {
   return float(sampleCount(pixel) - pilot) / float(m_spp - pilot);
 }
 
-}  // namespace odis
+}  // namespace odis::core

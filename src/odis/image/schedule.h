@@ -6,7 +6,7 @@
 
 #include "odis/frame.h"
 
-namespace odis {
+namespace odis::core {
 
 // A pixel's first samples are the pilot's, where there is one; what remains is guided. The guide learns
 // from the first samples that remain, too, and after some of them it is settled how many each pixel has. 8
@@ -48,4 +48,4 @@ class Schedule {
   uint32_t m_mostRemaining, m_lastRefinement = 0, m_spreadAfter = 0;
 };
 
-}  // namespace odis
+}  // namespace odis::core

@@ -7,7 +7,7 @@
 #include <tuple>
 #include <utility>
 
-namespace odis {
+namespace odis::core {
 
 namespace {
 
@@ -70,7 +70,7 @@ bool TileCollector::allIn(uint32_t tile, ArrayView<const FrameSample> samples,
   return true;
 }
 
-void TileCollector::add(ArrayView<const FrameSample> samples, std::vector<PathVertex> vertices) {
+void TileCollector::add(ArrayView<const FrameSample> samples, ArrayView<const PathVertex> vertices) {
   for (const FrameSample& s : samples)
     if (!isDue(s.pixel, s.sample))
       throw std::out_of_range("Frame::add: sample " + std::to_string(s.sample) + " of pixel " +
@@ -79,7 +79,7 @@ void TileCollector::add(ArrayView<const FrameSample> samples, std::vector<PathVe
   // Whatever is of one tile needs no sorting by tile.
   if (!samples.empty())
     if (const uint32_t tile = tileOf(samples[0].pixel); allIn(tile, samples, vertices))
-      return addToTile(tile, samples, std::move(vertices));
+      return addToTile(tile, samples, vertices);
   std::map<uint32_t, std::pair<std::vector<FrameSample>, std::vector<PathVertex>>> tiles;
   uint64_t refused = 0;
   for (const FrameSample& s : samples) tiles[tileOf(s.pixel)].first.push_back(s);
@@ -88,14 +88,14 @@ void TileCollector::add(ArrayView<const FrameSample> samples, std::vector<PathVe
       tiles[tileOf(v.pixel)].second.push_back(v);
     else
       ++refused;
-  for (auto& [tile, part] : tiles) addToTile(tile, part.first, std::move(part.second));
+  for (auto& [tile, part] : tiles) addToTile(tile, part.first, part.second);
   if (refused == 0) return;
   const std::lock_guard lock(m_refusedMutex);
   m_refused += refused;
 }
 
 void TileCollector::addToTile(uint32_t index, ArrayView<const FrameSample> samples,
-                              std::vector<PathVertex> vertices) {
+                              ArrayView<const PathVertex> vertices) {
   Tile& tile = m_tiles[index];
   const std::lock_guard lock(tile.mutex);
   if (tile.done)
@@ -103,23 +103,31 @@ void TileCollector::addToTile(uint32_t index, ArrayView<const FrameSample> sampl
   if (tile.due == 0) tile.due = samplesDue(index);
   const bool nothingWaits = tile.samples.empty() && tile.vertices.empty();
   tile.done = tile.samples.size() + samples.size() == tile.due;
-  if (tile.done && nothingWaits) return handOn(index, samples, std::move(vertices));
+  if (tile.done && nothingWaits) return handOn(index, samples, vertices);
   tile.samples.insert(tile.samples.end(), samples.begin(), samples.end());
   tile.vertices.insert(tile.vertices.end(), vertices.begin(), vertices.end());
-  if (tile.done) handOn(index, std::exchange(tile.samples, {}), std::exchange(tile.vertices, {}));
+  m_waitingBytes += samples.size() * sizeof(FrameSample) + vertices.size() * sizeof(PathVertex);
+  if (tile.done) handOnWaiting(index);
+}
+
+void TileCollector::handOnWaiting(uint32_t index) {
+  const std::vector<FrameSample> samples = std::exchange(m_tiles[index].samples, {});
+  const std::vector<PathVertex> vertices = std::exchange(m_tiles[index].vertices, {});
+  m_waitingBytes -= samples.size() * sizeof(FrameSample) + vertices.size() * sizeof(PathVertex);
+  handOn(index, samples, vertices);
 }
 
 uint64_t TileCollector::endPass() {
   for (uint32_t t = 0; t < tileCount(); ++t) {
     Tile& tile = m_tiles[t];
     if (tile.samples.empty() && tile.vertices.empty()) continue;
-    handOn(t, std::exchange(tile.samples, {}), std::exchange(tile.vertices, {}));
+    handOnWaiting(t);
   }
   return m_refused;
 }
 
 void TileCollector::handOn(uint32_t tile, ArrayView<const FrameSample> samples,
-                           std::vector<PathVertex> vertices) {
+                           ArrayView<const PathVertex> vertices) {
   // Sums over a pixel depend on the order of its own samples alone.
   uint32_t next[kTileSize * kTileSize] = {};
   bool inOrder = true;
@@ -140,9 +148,13 @@ void TileCollector::handOn(uint32_t tile, ArrayView<const FrameSample> samples,
     if (a.pixel != b.pixel) return placeInTile(a.pixel) < placeInTile(b.pixel);
     return std::tie(a.sample, a.depth) < std::tie(b.sample, b.depth);
   };
-  if (!std::is_sorted(vertices.begin(), vertices.end(), precedes))
-    std::stable_sort(vertices.begin(), vertices.end(), precedes);
-  m_sink(tile, samples, std::move(vertices));
+  std::vector<PathVertex> orderedVertices;
+  if (!std::is_sorted(vertices.begin(), vertices.end(), precedes)) {
+    orderedVertices.assign(vertices.begin(), vertices.end());
+    std::stable_sort(orderedVertices.begin(), orderedVertices.end(), precedes);
+    vertices = orderedVertices;
+  }
+  m_sink(tile, samples, vertices);
 }
 
-}  // namespace odis
+}  // namespace odis::core

@@ -1,6 +1,7 @@
 // Brings what hosts deliver, in any order and in portions of any size, into one order: tile by tile.
 #pragma once
 
+#include <atomic>
 #include <functional>
 #include <memory>
 #include <mutex>
@@ -8,7 +9,7 @@
 
 #include "odis/frame.h"
 
-namespace odis {
+namespace odis::core {
 
 // Collects the samples of a pass. Tiles are squares of 16 x 16 pixels, cut off at the right and at the
 // bottom; within a tile pixels are ordered by blocks of 4 x 4, so that neighbours in the order are
@@ -17,7 +18,7 @@ class TileCollector {
  public:
   // Called once for each tile that has samples, by any thread: a pixel's samples in the order of their
   // numbers, vertices in the order of pixel, sample, depth.
-  using Sink = std::function<void(uint32_t tile, ArrayView<const FrameSample>, std::vector<PathVertex>)>;
+  using Sink = std::function<void(uint32_t tile, ArrayView<const FrameSample>, ArrayView<const PathVertex>)>;
   // The samples of a pixel that are due in the pass.
   using Due = std::function<SampleRange(uint32_t pixel)>;
 
@@ -27,9 +28,12 @@ class TileCollector {
   void beginPass(Due due, Sink sink);
   // Thread-safe. Throws std::out_of_range for samples that are not due, std::logic_error for samples of a
   // tile that is complete.
-  void add(ArrayView<const FrameSample> samples, std::vector<PathVertex> vertices);
+  void add(ArrayView<const FrameSample> samples, ArrayView<const PathVertex> vertices);
   // Hands on the tiles that lack samples. Returns how many vertices were refused because they were not due.
   uint64_t endPass();
+
+  // What waits for the rest of its tile.
+  uint64_t bytes() const { return m_waitingBytes; }
 
  private:
   // What waits for the rest of its tile.
@@ -45,8 +49,9 @@ class TileCollector {
   bool isDue(uint32_t pixel, uint32_t sample) const;
   uint64_t samplesDue(uint32_t tile) const;
   bool allIn(uint32_t tile, ArrayView<const FrameSample> samples, ArrayView<const PathVertex> vertices) const;
-  void addToTile(uint32_t tile, ArrayView<const FrameSample> samples, std::vector<PathVertex> vertices);
-  void handOn(uint32_t tile, ArrayView<const FrameSample> samples, std::vector<PathVertex> vertices);
+  void addToTile(uint32_t tile, ArrayView<const FrameSample> samples, ArrayView<const PathVertex> vertices);
+  void handOnWaiting(uint32_t tile);
+  void handOn(uint32_t tile, ArrayView<const FrameSample> samples, ArrayView<const PathVertex> vertices);
 
   uint32_t m_width, m_height, m_columns, m_rows;
   Due m_due;
@@ -54,6 +59,7 @@ class TileCollector {
   std::unique_ptr<Tile[]> m_tiles;
   std::mutex m_refusedMutex;
   uint64_t m_refused = 0;
+  std::atomic<uint64_t> m_waitingBytes{0};
 };
 
-}  // namespace odis
+}  // namespace odis::core

@@ -6,7 +6,7 @@
 
 #include "odis/maps/instruction_sets.h"
 
-namespace odis {
+namespace odis::core {
 
 int wrappedTexel(int x, int y) {
   if (x < 0 || x >= kMapSize) {
@@ -80,4 +80,4 @@ ODIS_WIDE Histogram blurred(const Histogram& map) {
   return result;
 }
 
-}  // namespace odis
+}  // namespace odis::core

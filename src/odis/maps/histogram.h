@@ -5,7 +5,7 @@
 
 #include "odis/sampling_map.h"
 
-namespace odis {
+namespace odis::core {
 
 using Histogram = std::array<float, kMapTexels>;
 
@@ -23,4 +23,4 @@ Splat splat(const Float3& wi);
 // Binomial blur over 3 x 3 texels, across the seams of the octahedral map; keeps the sum.
 Histogram blurred(const Histogram& map);
 
-}  // namespace odis
+}  // namespace odis::core

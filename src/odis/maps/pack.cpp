@@ -5,7 +5,7 @@
 #include "odis/maps/instruction_sets.h"
 #include "odis/maps/texel_directions.h"
 
-namespace odis {
+namespace odis::core {
 
 ODIS_WIDE void packMap(const Histogram& radiance, float floor, uint16_t* texels, float* sums) {
   float sum = 0;
@@ -48,4 +48,4 @@ ODIS_WIDE void sumBlocks(const uint16_t* texels, float* sums) {
   }
 }
 
-}  // namespace odis
+}  // namespace odis::core

@@ -3,7 +3,7 @@
 
 #include "odis/maps/histogram.h"
 
-namespace odis {
+namespace odis::core {
 
 // Writes the texels of a map and its sums (see MapArrays) from the relative radiance of each texel, which
 // need not be normalised and may be zero: sixteen bits a texel, scaled to the brightest; at least one, so
@@ -23,4 +23,4 @@ PackedMap packedMap(const Histogram& radiance, float floor);
 // Writes the sums over the blocks of a map's texels.
 void sumBlocks(const uint16_t* texels, float* sums);
 
-}  // namespace odis
+}  // namespace odis::core

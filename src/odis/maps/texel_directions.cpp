@@ -2,7 +2,7 @@
 
 #include "odis/maps/instruction_sets.h"
 
-namespace odis {
+namespace odis::core {
 
 const TexelDirections& texelDirections() {
   static const TexelDirections directions = [] {
@@ -26,4 +26,4 @@ ODIS_WIDE Histogram cosinesTo(const Float3& normal) {
   return cosines;
 }
 
-}  // namespace odis
+}  // namespace odis::core

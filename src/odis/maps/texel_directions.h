@@ -6,7 +6,7 @@
 
 #include "odis/maps/histogram.h"
 
-namespace odis {
+namespace odis::core {
 
 // Coordinates of the unit directions; the three arrays lie one after another, as MapArrays::directions has
 // them.
@@ -24,4 +24,4 @@ inline float inverseCosine(float cosine) {
 // The cosines between a unit normal and the texels' centres.
 Histogram cosinesTo(const Float3& normal);
 
-}  // namespace odis
+}  // namespace odis::core

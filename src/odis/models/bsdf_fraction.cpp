@@ -1,7 +1,5 @@
 #include "odis/models/bsdf_fraction.h"
 
-#include <tbb/parallel_for.h>
-
 #include <numeric>
 #include <stdexcept>
 #include <string>
@@ -9,7 +7,7 @@
 #include "odis/mixture.h"
 #include "odis/record/vertex_check.h"
 
-namespace odis {
+namespace odis::core {
 
 namespace {
 
@@ -112,12 +110,12 @@ struct SortedVertices {
     const std::vector<VertexBatch> all = makeBatches(inputs.parts);
     batches.resize(all.size());
     std::vector<BatchCells> batchCells(all.size());
-    tbb::parallel_for(size_t(0), all.size(), [&](size_t b) {
+    inputs.store.tasks().forEach(all.size(), [&](size_t b) {
       batches[b] = choose(all[b], stride, scale, inputs.store);
       batchCells[b] = {batches[b].cellOf, batches[b].cells};
     });
     order = sortByCell<PathVertex>(
-        batchCells, uint32_t(inputs.cells.size()),
+        inputs.store.tasks(), batchCells, uint32_t(inputs.cells.size()),
         [&](size_t batch, size_t i) -> const PathVertex& { return *batches[batch].vertices[i]; });
     for (const ChosenVertices& batch : batches) {
       image.count += batch.image.count;
@@ -143,7 +141,7 @@ AllMoments predictMoments(const SortedVertices& sorted, const FractionInputs& in
   const std::span<const CellStatistics> cells = inputs.cells;
   AllMoments moments{
       std::vector<CellMoments>(cells.size()), {}, std::vector<SecondMoments>(sorted.order.items.size())};
-  forEachCell(cells.size(), [&](size_t c) {
+  forEachCell(inputs.store.tasks(), cells.size(), [&](size_t c) {
     if (sorted.order.of(c).empty()) return;
     const CellStatistics& parent = cells[cells[c].parent];
     const float limit = parent.count > 0 ? inputs.store.clamp() * float(parent.sum / parent.count) : 0;
@@ -167,7 +165,7 @@ std::vector<float> chooseByMoments(std::vector<CellDecisions>& result, const Sor
                                    const AllMoments& moments, const FractionInputs& inputs) {
   std::vector<CellMoments> shrunk(inputs.cells.size());
   std::vector<float> savings(sorted.order.items.size());
-  forEachFromCoarse(inputs.cells, [&](size_t c) {
+  forEachFromCoarse(inputs.store.tasks(), inputs.cells, [&](size_t c) {
     const uint32_t parent = inputs.cells[c].parent;
     const CellMoments& coarser = parent == kNoCell ? moments.image : shrunk[parent];
     size_t choices[kRoughnessClasses];
@@ -205,4 +203,4 @@ GuidingPrediction chooseFractions(std::vector<CellDecisions>& result, const Frac
   return prediction;
 }
 
-}  // namespace odis
+}  // namespace odis::core

@@ -5,11 +5,10 @@
 #include <vector>
 
 #include "odis/cells/statistics.h"
-#include "odis/guide.h"
 #include "odis/models/direction_model.h"
 #include "odis/models/second_moments.h"
 
-namespace odis {
+namespace odis::core {
 
 // What the pilot predicts of guided samples.
 struct GuidingPrediction {
@@ -33,4 +32,4 @@ struct FractionInputs {
 // kFallbackBsdfFraction.
 GuidingPrediction chooseFractions(std::vector<CellDecisions>& result, const FractionInputs& inputs);
 
-}  // namespace odis
+}  // namespace odis::core

@@ -5,7 +5,7 @@
 
 #include "odis/maps/instruction_sets.h"
 
-namespace odis {
+namespace odis::core {
 
 namespace {
 
@@ -91,4 +91,4 @@ void Trunk::apply(std::span<const float> x, std::span<float> y) const {
   rectify(y.first(m_layers[1].outputs()));
 }
 
-}  // namespace odis
+}  // namespace odis::core

@@ -7,7 +7,7 @@
 
 #include "odis/weights/weights.h"
 
-namespace odis {
+namespace odis::core {
 
 // No layer is wider, so that intermediate results lie on the stack.
 inline constexpr uint32_t kWidestLayer = 256;
@@ -67,4 +67,4 @@ class Trunk {
   Dense m_layers[2];
 };
 
-}  // namespace odis
+}  // namespace odis::core

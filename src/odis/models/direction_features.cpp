@@ -7,7 +7,7 @@
 #include "odis/maps/texel_directions.h"
 #include "odis/models/fast_log2.h"
 
-namespace odis {
+namespace odis::core {
 
 namespace {
 
@@ -111,4 +111,4 @@ void computeFeatures(const CellChain& chain, CellFeatures& features) {
   }
 }
 
-}  // namespace odis
+}  // namespace odis::core

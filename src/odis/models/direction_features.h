@@ -5,7 +5,7 @@
 
 #include "odis/cells/statistics.h"
 
-namespace odis {
+namespace odis::core {
 
 // Maps that a cell's distribution is put together from: of each level its histogram; what lies around,
 // twice, blurred once; the finest level's histogram blurred twice, the next one's blurred once; a cosine
@@ -36,4 +36,4 @@ Histogram basisMap(const CellFeatures& features, int map);
 // The sum of all, each times its share: what basisMap() gives, at the cost of two blurs.
 Histogram blendMaps(const CellFeatures& features, const std::array<float, kBasisMaps>& shares);
 
-}  // namespace odis
+}  // namespace odis::core

@@ -3,9 +3,9 @@
 #include "odis/cells/shrinkage.h"
 #include "odis/maps/texel_directions.h"
 
-namespace odis {
+namespace odis::core {
 
-DirectionFormula::DirectionFormula(const GuideOptions& options) {
+DirectionFormula::DirectionFormula(const OdisGuideOptions& options) {
   std::copy_n(options.priorSamples, kCellLevels, m_priorSamples);
 }
 
@@ -36,4 +36,4 @@ DirectionDistribution DirectionFormula::predict(const CellChain& chain,
   return result;
 }
 
-}  // namespace odis
+}  // namespace odis::core

@@ -1,20 +1,19 @@
 // The map of a cell by formula: docs/guiding.md.
 #pragma once
 
-#include "odis/guide.h"
 #include "odis/models/direction_model.h"
 
-namespace odis {
+namespace odis::core {
 
 // The cell's histogram, shrunk towards its parent's map by how many samples the cell has, down to a cosine
 // lobe.
 class DirectionFormula : public DirectionModel {
  public:
-  explicit DirectionFormula(const GuideOptions& options);
+  explicit DirectionFormula(const OdisGuideOptions& options);
   DirectionDistribution predict(const CellChain& chain, const DirectionDistribution* parent) const override;
 
  private:
   float m_priorSamples[kCellLevels];
 };
 
-}  // namespace odis
+}  // namespace odis::core

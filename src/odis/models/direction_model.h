@@ -3,7 +3,7 @@
 
 #include "odis/cells/statistics.h"
 
-namespace odis {
+namespace odis::core {
 
 // A cell's map before it is packed, with what is needed to take a single sample out of it again.
 struct DirectionDistribution {
@@ -30,4 +30,4 @@ class DirectionModel {
   virtual bool looksAround() const { return false; }
 };
 
-}  // namespace odis
+}  // namespace odis::core

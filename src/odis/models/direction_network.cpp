@@ -5,7 +5,7 @@
 
 #include "odis/maps/texel_directions.h"
 
-namespace odis {
+namespace odis::core {
 
 namespace {
 
@@ -55,4 +55,4 @@ DirectionDistribution DirectionNetwork::predict(const CellChain& chain, const Di
   return result;
 }
 
-}  // namespace odis
+}  // namespace odis::core

@@ -5,7 +5,7 @@
 #include "odis/models/direction_features.h"
 #include "odis/models/direction_model.h"
 
-namespace odis {
+namespace odis::core {
 
 // A blend of the cell's own histogram, its ancestors', blurred ones and a cosine lobe, with weights that a
 // small network makes from what the cell knows of itself.
@@ -24,4 +24,4 @@ class DirectionNetwork : public DirectionModel {
   Dense m_blend;
 };
 
-}  // namespace odis
+}  // namespace odis::core

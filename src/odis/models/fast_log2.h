@@ -4,7 +4,7 @@
 #include <bit>
 #include <cstdint>
 
-namespace odis {
+namespace odis::core {
 
 // Base-2 logarithm of a positive, normal number, to 2e-5: the exponent, and of the mantissa a polynomial.
 inline float fastLog2(float x) {
@@ -16,4 +16,4 @@ inline float fastLog2(float x) {
   return exponent + series;
 }
 
-}  // namespace odis
+}  // namespace odis::core

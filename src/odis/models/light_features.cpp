@@ -5,7 +5,7 @@
 #include "odis/models/fast_log2.h"
 #include "odis/models/lights.h"
 
-namespace odis {
+namespace odis::core {
 
 namespace {
 
@@ -59,4 +59,4 @@ void computeFeatures(const CellChain& chain, uint32_t groups, LightFeatures& fea
   fill(2 * kCellLevels + 1, kShareScale * float(std::log2(double(groups))));
 }
 
-}  // namespace odis
+}  // namespace odis::core

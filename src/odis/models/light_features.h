@@ -5,7 +5,7 @@
 
 #include "odis/cells/statistics.h"
 
-namespace odis {
+namespace odis::core {
 
 // Of each level the group's share of what next-event estimation gave there, and how many samples saw that;
 // the share by formula; the number of groups.
@@ -20,4 +20,4 @@ struct LightFeatures {
 // Features of the first cell of a chain, where there are so many groups.
 void computeFeatures(const CellChain& chain, uint32_t groups, LightFeatures& features);
 
-}  // namespace odis
+}  // namespace odis::core

@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-namespace odis {
+namespace odis::core {
 
 namespace {
 
@@ -55,4 +55,4 @@ LightSquares LightNetwork::predict(const CellChain& chain, const LightSquares*, 
   return squares;
 }
 
-}  // namespace odis
+}  // namespace odis::core

@@ -5,7 +5,7 @@
 #include "odis/models/light_features.h"
 #include "odis/models/lights.h"
 
-namespace odis {
+namespace odis::core {
 
 // The same small network for every pair of cell and group, so that any number of groups works: what it
 // gives is added to the logarithm of the formula's share.
@@ -24,4 +24,4 @@ class LightNetwork : public LightModel {
   Dense m_layers[3];
 };
 
-}  // namespace odis
+}  // namespace odis::core

@@ -6,7 +6,7 @@
 
 #include "odis/cells/shrinkage.h"
 
-namespace odis {
+namespace odis::core {
 
 namespace {
 
@@ -58,12 +58,12 @@ double LightFormula::reliability(const CellStatistics& cell) const {
   return ownWeight(cell.lightCount, kHalfEnough);
 }
 
-std::vector<float> tabulateLights(std::vector<CellDecisions>& result, std::span<const CellStatistics> cells,
-                                  const LightModel& model, uint32_t groups,
-                                  std::span<const LightParts> parts) {
+std::vector<float> tabulateLights(const Tasks& tasks, std::vector<CellDecisions>& result,
+                                  std::span<const CellStatistics> cells, const LightModel& model,
+                                  uint32_t groups, std::span<const LightParts> parts) {
   std::vector<LightSquares> squares(cells.size());
   std::vector<float> table(cells.size() * (groups + 1));
-  forEachFromCoarse(cells, [&](size_t c) {
+  forEachFromCoarse(tasks, cells, [&](size_t c) {
     const uint32_t parent = cells[c].parent;
     squares[c] = model.predict(chainOf(cells, c), parent == kNoCell ? nullptr : &squares[parent], groups);
     std::array<double, kMaxLightGroups> weights{};
@@ -86,4 +86,4 @@ std::vector<float> tabulateLights(std::vector<CellDecisions>& result, std::span<
   return table;
 }
 
-}  // namespace odis
+}  // namespace odis::core

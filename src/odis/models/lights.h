@@ -6,9 +6,10 @@
 #include <vector>
 
 #include "odis/cells/statistics.h"
-#include "odis/guide.h"
 
-namespace odis {
+namespace odis::core {
+
+using LightParts = OdisLightParts;
 
 // For each group of lights the mean, over the cell's vertices, of the squared next-event estimate from that
 // group alone, visibility included.
@@ -36,8 +37,8 @@ class LightFormula : public LightModel {
 // Makes the light tables of all cells (GuideView::lightTables) and fills in their learned-light fractions.
 // The best probability of a group is in proportion to the root of its squared contribution. Groups that are
 // parts of one light follow it only where that gains much over drawing each part as often as the others.
-std::vector<float> tabulateLights(std::vector<CellDecisions>& result, std::span<const CellStatistics> cells,
-                                  const LightModel& model, uint32_t groups,
-                                  std::span<const LightParts> parts = {});
+std::vector<float> tabulateLights(const Tasks& tasks, std::vector<CellDecisions>& result,
+                                  std::span<const CellStatistics> cells, const LightModel& model,
+                                  uint32_t groups, std::span<const LightParts> parts = {});
 
-}  // namespace odis
+}  // namespace odis::core

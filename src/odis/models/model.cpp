@@ -1,20 +1,19 @@
-#include "odis/model.h"
+#include "odis/models/model.h"
 
 #include "odis/models/direction_network.h"
 #include "odis/models/light_network.h"
-#include "odis/models/model_parts.h"
 
-namespace odis {
+namespace odis::core {
 
 namespace {
 
 // The networks that there are weights for.
 Model fromWeights(const Weights& weights) {
-  std::shared_ptr<const DirectionModel> directions;
-  std::shared_ptr<const LightModel> lights;
-  if (weights.contains("directions.blend.weight")) directions = std::make_shared<DirectionNetwork>(weights);
-  if (weights.contains("lights.0.weight")) lights = std::make_shared<LightNetwork>(weights);
-  return makeModel(std::move(directions), std::move(lights));
+  Model model;
+  if (weights.contains("directions.blend.weight"))
+    model.directions = std::make_shared<DirectionNetwork>(weights);
+  if (weights.contains("lights.0.weight")) model.lights = std::make_shared<LightNetwork>(weights);
+  return model;
 }
 
 }  // namespace
@@ -24,21 +23,12 @@ Model Model::builtIn() {
   return model;
 }
 
-Model Model::formulas() {
-  static const Model model = makeModel(nullptr);
-  return model;
-}
-
 Model Model::load(const std::string& path) {
   return fromWeights(Weights::load(path));
 }
 
-Model Model::withDirectionFormula() const {
-  return makeModel(nullptr, m_parts->lights);
+Model Model::parse(const std::string& path, std::string_view bytes) {
+  return fromWeights(Weights::parse(path, bytes));
 }
 
-Model Model::withLightFormula() const {
-  return makeModel(m_parts->directions, nullptr);
-}
-
-}  // namespace odis
+}  // namespace odis::core

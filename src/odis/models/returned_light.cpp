@@ -5,7 +5,7 @@
 
 #include "odis/cells/shrinkage.h"
 
-namespace odis {
+namespace odis::core {
 
 namespace {
 
@@ -49,13 +49,13 @@ ReturnedLight returnedLight(const CellStatistics& cell, const ReturnedLight* par
   return result;
 }
 
-void fillRoulette(std::vector<CellDecisions>& result, std::span<const CellStatistics> cells,
-                  const ImageMoments& image, bool controlVariate) {
+void fillRoulette(const Tasks& tasks, std::vector<CellDecisions>& result,
+                  std::span<const CellStatistics> cells, const ImageMoments& image, bool controlVariate) {
   const double rays = image.rays + kFirstRays * image.count;
   const double exchange = image.variance > 0 ? std::sqrt(rays / image.variance) : 0;
   const double factor = kSurvivalScale * exchange;
   std::vector<ReturnedLight> returned(cells.size());
-  forEachFromCoarse(cells, [&](size_t c) {
+  forEachFromCoarse(tasks, cells, [&](size_t c) {
     const uint32_t parent = cells[c].parent;
     const ReturnedLight& light = returned[c] =
         returnedLight(cells[c], parent == kNoCell ? nullptr : &returned[parent]);
@@ -70,4 +70,4 @@ void fillRoulette(std::vector<CellDecisions>& result, std::span<const CellStatis
   });
 }
 
-}  // namespace odis
+}  // namespace odis::core

@@ -5,10 +5,9 @@
 #include <vector>
 
 #include "odis/cells/statistics.h"
-#include "odis/guide.h"
 #include "odis/models/second_moments.h"
 
-namespace odis {
+namespace odis::core {
 
 // What a vertex of a cell scatters back along its path, next-event estimation and all beyond included, and
 // what that costs.
@@ -28,7 +27,7 @@ ReturnedLight returnedLight(const CellStatistics& cell, const ReturnedLight* par
 // survival that makes (V + what roulette adds) times (C - what it saves) least is throughput / pixel *
 // sqrt(E[(S - m)^2] / c) * sqrt(C / V) (Bolin and Meyer 1997; Rath et al. 2022, EARS, without splitting).
 // The survival factor is what the throughput over the pixel's value is multiplied by.
-void fillRoulette(std::vector<CellDecisions>& result, std::span<const CellStatistics> cells,
-                  const ImageMoments& image, bool controlVariate);
+void fillRoulette(const Tasks& tasks, std::vector<CellDecisions>& result,
+                  std::span<const CellStatistics> cells, const ImageMoments& image, bool controlVariate);
 
-}  // namespace odis
+}  // namespace odis::core

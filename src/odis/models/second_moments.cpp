@@ -6,7 +6,7 @@
 #include "odis/mixture.h"
 #include "odis/record/vertex_check.h"
 
-namespace odis {
+namespace odis::core {
 
 namespace {
 
@@ -88,4 +88,4 @@ size_t chooseFraction(const MomentSums& sums, const ImageMoments& image) {
   return score[best] < (1 - kMargin) * score[0] ? best : 0;
 }
 
-}  // namespace odis
+}  // namespace odis::core

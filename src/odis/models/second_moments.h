@@ -7,7 +7,10 @@
 #include "odis/guide_view.h"
 #include "odis/path_vertex.h"
 
-namespace odis {
+namespace odis::core {
+
+// The BSDF sampling fraction where contributions or costs are unknown.
+inline constexpr float kFallbackBsdfFraction = 0.5f;
 
 // The candidates; 1 means not to guide.
 inline constexpr std::array<float, 6> kBsdfFractions = {1.0f, 0.8f, 0.6f, 0.4f, 0.25f, 0.15f};
@@ -45,4 +48,4 @@ MomentSums shrunkSums(const MomentSums& own, const MomentSums& coarser);
 // The index of the candidate with the least predicted variance + cost.
 size_t chooseFraction(const MomentSums& sums, const ImageMoments& image);
 
-}  // namespace odis
+}  // namespace odis::core

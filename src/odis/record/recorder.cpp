@@ -1,9 +1,36 @@
-#include "odis/recorder.h"
+#include "odis/record/recorder.h"
 
 #include <algorithm>
-#include <cassert>
+#include <stdexcept>
 
-namespace odis {
+namespace odis::core {
+
+namespace {
+
+// Events that come in an order that no path has.
+void requireOrder(bool holds, const char* message) {
+  if (!holds) throw std::logic_error(message);
+}
+
+}  // namespace
+
+PathRecorder::OpenPath& PathRecorder::open(uint32_t index) {
+  if (index >= m_paths.size())
+    throw std::out_of_range("a recorder has no path " + std::to_string(index) +
+                            ", expected one that was begun");
+  return m_paths[index];
+}
+
+void PathRecorder::escape(uint32_t index) {
+  OpenPath& path = open(index);
+  ++path.rays;
+  path.current = kNone;
+}
+
+uint64_t PathRecorder::bytes() const {
+  return m_paths.capacity() * sizeof(OpenPath) + m_pending.capacity() * sizeof(Pending) +
+         m_finished.capacity() * sizeof(PathVertex);
+}
 
 uint32_t PathRecorder::begin(const PathIdentity& identity) {
   m_paths.emplace_back().identity = identity;
@@ -11,7 +38,7 @@ uint32_t PathRecorder::begin(const PathIdentity& identity) {
 }
 
 void PathRecorder::surface(uint32_t index, const SurfaceEvent& event) {
-  OpenPath& path = m_paths[index];
+  OpenPath& path = open(index);
   ++path.rays;
   ++path.surfaces;
   if (path.last != kNone) m_pending[path.last].vertex.distance = event.distance;
@@ -31,7 +58,7 @@ void PathRecorder::surface(uint32_t index, const SurfaceEvent& event) {
 }
 
 void PathRecorder::emission(uint32_t index, const EmissionEvent& event) {
-  const OpenPath& path = m_paths[index];
+  const OpenPath& path = open(index);
   if (path.last == kNone) return;  // what the camera sees directly is no vertex's light
   Pending& p = m_pending[path.last];
   const float before = luminance(p.emission), now = luminance(event.radiance);
@@ -43,14 +70,14 @@ void PathRecorder::emission(uint32_t index, const EmissionEvent& event) {
 }
 
 void PathRecorder::survived(uint32_t index, float probability) {
-  OpenPath& path = m_paths[index];
+  OpenPath& path = open(index);
   path.survivalOnArrival = probability;
   path.throughput = path.throughput / probability;
 }
 
 void PathRecorder::light(uint32_t index, const LightEvent& event) {
-  OpenPath& path = m_paths[index];
-  assert(path.current != kNone);
+  OpenPath& path = open(index);
+  requireOrder(path.current != kNone, "a light event needs a surface before it");
   ++path.rays;
   path.lit = path.current;
   PathVertex& v = m_pending[path.current].vertex;
@@ -65,15 +92,16 @@ void PathRecorder::light(uint32_t index, const LightEvent& event) {
 }
 
 void PathRecorder::lightHidden(uint32_t index) {
-  assert(m_paths[index].lit != kNone);
-  PathVertex& v = m_pending[m_paths[index].lit].vertex;
+  const OpenPath& path = open(index);
+  requireOrder(path.lit != kNone, "a light that is hidden needs a light event before it");
+  PathVertex& v = m_pending[path.lit].vertex;
   v.direct = {};
   v.light = v.lightPdf = 0;
 }
 
 void PathRecorder::bounce(uint32_t index, const BounceEvent& event) {
-  OpenPath& path = m_paths[index];
-  assert(path.current != kNone);
+  OpenPath& path = open(index);
+  requireOrder(path.current != kNone, "a bounce needs a surface before it");
   Pending& p = m_pending[path.current];
   p.previous = path.last;
   p.throughput = path.throughput;
@@ -114,16 +142,17 @@ void PathRecorder::complete(const OpenPath& path, PathVertex* vertices) const {
   }
 }
 
-void PathRecorder::finish(std::vector<PathVertex>& vertices) {
-  size_t next = vertices.size(), count = 0;
+ArrayView<const PathVertex> PathRecorder::finish() {
+  size_t next = 0, count = 0;
   for (const OpenPath& path : m_paths) count += path.count;
-  vertices.resize(next + count);
+  m_finished.resize(count);
   for (const OpenPath& path : m_paths) {
-    complete(path, vertices.data() + next);
+    complete(path, m_finished.data() + next);
     next += path.count;
   }
   m_paths.clear();
   m_pending.clear();
+  return m_finished;
 }
 
-}  // namespace odis
+}  // namespace odis::core

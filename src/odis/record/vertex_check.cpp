@@ -2,34 +2,7 @@
 
 #include <cmath>
 
-namespace odis {
-
-namespace {
-
-// Zero if everything is finite, otherwise not a number.
-float nothing(const Float3& v) {
-  return 0 * v.x + 0 * v.y + 0 * v.z;
-}
-
-// Interpolated normals and directions from half floats are a little off.
-bool isUnit(const Float3& v) {
-  const float squared = dot(v, v);
-  return squared > 0.9f && squared < 1.1f;
-}
-
-}  // namespace
-
-VertexState checkVertex(const PathVertex& v) {
-  if (v.discrete) return VertexState::discrete;
-  const float cosine = std::isnan(v.cosine) ? 0 : v.cosine;
-  if (!(nothing(v.position) + nothing(v.normal) + nothing(v.wi) + nothing(v.radiance) + 0 * v.pdf +
-            0 * cosine ==
-        0))
-    return VertexState::notFinite;
-  if (!(v.pdf > 0 && v.survival > 0)) return VertexState::noDensity;
-  if (!isUnit(v.normal) || !isUnit(v.wi)) return VertexState::notUnit;
-  return v.depth > 0 ? VertexState::usable : VertexState::noDepth;
-}
+namespace odis::core {
 
 void countVertex(VertexCounts& counts, VertexState state) {
   switch (state) {
@@ -54,6 +27,16 @@ void countVertex(VertexCounts& counts, VertexState state) {
   }
 }
 
+void addCounts(VertexCounts& counts, const VertexCounts& other) {
+  counts.accepted += other.accepted;
+  counts.discrete += other.discrete;
+  counts.notFinite += other.notFinite;
+  counts.noDensity += other.noDensity;
+  counts.notUnit += other.notUnit;
+  counts.noDepth += other.noDepth;
+  counts.outsideFrame += other.outsideFrame;
+}
+
 float cosineOf(const PathVertex& v) {
   return std::isnan(v.cosine) ? std::abs(dot(v.wi, v.normal)) : v.cosine;
 }
@@ -67,4 +50,4 @@ bool knowsContributions(const PathVertex& v) {
   return std::isfinite(v.indirect + v.emission + v.light + v.raysAfter);
 }
 
-}  // namespace odis
+}  // namespace odis::core

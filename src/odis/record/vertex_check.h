@@ -4,9 +4,10 @@
 
 #include "odis/path_vertex.h"
 
-namespace odis {
+namespace odis::core {
 
 void countVertex(VertexCounts& counts, VertexState state);
+void addCounts(VertexCounts& counts, const VertexCounts& other);
 
 // |cos| between wi and the normal.
 float cosineOf(const PathVertex& vertex);
@@ -21,4 +22,4 @@ GuidablePart guidablePartOf(const PathVertex& vertex);
 // Whether it is known what the vertex adds to its pixel, and for how many rays.
 bool knowsContributions(const PathVertex& vertex);
 
-}  // namespace odis
+}  // namespace odis::core

@@ -4,7 +4,7 @@
 #include <filesystem>
 #include <fstream>
 
-namespace odis {
+namespace odis::core {
 
 // In a source that the build makes of weights/odis.weights.
 std::string_view builtInWeights();
@@ -179,4 +179,4 @@ uint32_t Weights::rows(std::string_view name, size_t dimensions) const {
   return tensor.shape[0];
 }
 
-}  // namespace odis
+}  // namespace odis::core

@@ -17,7 +17,7 @@
 #include <string_view>
 #include <vector>
 
-namespace odis {
+namespace odis::core {
 
 // Version of the features (src/odis/models). It counts up whenever a feature changes
 // its meaning: weights that were made for other features are refused.
@@ -67,4 +67,4 @@ class Weights {
   std::vector<Tensor> m_tensors;
 };
 
-}  // namespace odis
+}  // namespace odis::core

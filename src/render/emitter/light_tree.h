@@ -2,7 +2,7 @@
 // and Kulla 2018; the walk back to the root by a trail of bits as in pbrt-v4).
 #pragma once
 
-#include <odis/guide.h>
+#include <odis/odis.hpp>
 
 #include <cstdint>
 #include <span>

@@ -5,9 +5,9 @@ namespace odis::render {
 namespace {
 
 const char* stageName(const FramePass& pass) {
-  if (pass.kind == PassKind::pilot) return "pilot";
-  if (pass.kind == PassKind::oracle) return "oracle";
-  return pass.guide.cellCount > 0 ? "guided" : "path";
+  if (pass.kind == ODIS_PASS_PILOT) return "pilot";
+  if (pass.kind == ODIS_PASS_ORACLE) return "oracle";
+  return pass.guide->cellCount > 0 ? "guided" : "path";
 }
 
 // Lets paths use what the guide has learned, as far as the options allow.
@@ -43,17 +43,16 @@ void FrameIntegrator::beginStage(const FramePass& framePass) {
 Pass FrameIntegrator::passOf(const FramePass& framePass) {
   Pass pass = m_job.pass();
   pass.seed = framePass.seed;
-  if (framePass.guide.cellCount > 0) useGuide(pass.path, framePass.guide, m_job.options());
-  if (framePass.kind == PassKind::guided) pass.pixelValues = m_frame.pixelValues();
-  if (framePass.kind == PassKind::pilot && m_job.options().records) pass.emitted = &m_job.pilotEmitted;
+  if (framePass.guide->cellCount > 0) useGuide(pass.path, *framePass.guide, m_job.options());
+  if (framePass.kind == ODIS_PASS_GUIDED) pass.pixelValues = m_frame.pixelValues();
+  if (framePass.kind == ODIS_PASS_PILOT && m_job.options().records) pass.emitted = &m_job.pilotEmitted;
   if (!framePass.partOfImage) {
     pass.features = nullptr;
     pass.path.features = false;
   }
   pass.samples = [this](uint32_t pixel) { return m_frame.samples(pixel); };
-  pass.deliver = [this](uint32_t, ArrayView<const FrameSample> samples, std::vector<PathVertex> vertices) {
-    m_frame.add(samples, std::move(vertices));
-  };
+  pass.deliver = [this](uint32_t, ArrayView<const FrameSample> samples,
+                        ArrayView<const PathVertex> vertices) { m_frame.add(samples, vertices); };
   pass.wantsVertices = framePass.wantsVertices;
   return pass;
 }
@@ -67,13 +66,13 @@ double FrameIntegrator::trace(const FramePass& framePass) {
 
 void FrameIntegrator::run(const FramePass& framePass) {
   RenderStats& stats = m_job.stats;
-  const PassKind kind = framePass.kind;
-  (kind == PassKind::pilot    ? stats.secondsPilot
-   : kind == PassKind::oracle ? stats.secondsBuild
+  const OdisPassKind kind = framePass.kind;
+  (kind == ODIS_PASS_PILOT    ? stats.secondsPilot
+   : kind == ODIS_PASS_ORACLE ? stats.secondsBuild
                               : stats.secondsGuided) += trace(framePass);
   const Stopwatch building;
   m_frame.endPass(m_job.stop());
-  if (kind != PassKind::guided || framePass.wantsVertices) stats.secondsBuild += building.seconds();
+  if (kind != ODIS_PASS_GUIDED || framePass.wantsVertices) stats.secondsBuild += building.seconds();
 }
 
 void FrameIntegrator::render() {

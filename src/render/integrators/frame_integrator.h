@@ -1,7 +1,7 @@
 // Integrators whose images are the library's frames: the library says what to trace, this traces it.
 #pragma once
 
-#include <odis/frame.h>
+#include <odis/odis.hpp>
 
 #include "render/integrators/integrator.h"
 

@@ -1,7 +1,7 @@
 // What a rendering is asked for.
 #pragma once
 
-#include <odis/guide.h>
+#include <odis/odis.hpp>
 
 #include "render/rivals/ppg_options.h"
 #include "render/rivals/restir_options.h"

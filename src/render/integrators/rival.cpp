@@ -82,9 +82,9 @@ void RivalIntegrator::runPass(SampleRange samples, TileVertices* vertices) {
   Pass pass = guidedPass();
   pass.samples = [samples](uint32_t) { return samples; };
   pass.wantsVertices = vertices;
-  pass.deliver = [&](uint32_t tile, ArrayView<const FrameSample> taken, std::vector<PathVertex> met) {
-    for (const FrameSample& s : taken) m_iterations.back()[s.pixel].add(s.value, s.rays);
-    if (vertices) (*vertices)[tile] = std::move(met);
+  pass.deliver = [&](uint32_t tile, ArrayView<const FrameSample> taken, ArrayView<const PathVertex> met) {
+    for (const FrameSample& s : taken) addSample(m_iterations.back()[s.pixel], s.value, s.rays);
+    if (vertices) (*vertices)[tile].assign(met.begin(), met.end());
   };
   m_job.run(pass);
 }

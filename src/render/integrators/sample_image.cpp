@@ -24,7 +24,7 @@ SampleImage renderSampleImage(Pass pass, uint32_t sample, Purposes redrawn, Prog
   pass.features = nullptr;
   pass.path.features = false;
   pass.emitted = &image.emitted;
-  pass.deliver = [&](uint32_t, ArrayView<const FrameSample> samples, std::vector<PathVertex>) {
+  pass.deliver = [&](uint32_t, ArrayView<const FrameSample> samples, ArrayView<const PathVertex>) {
     for (const FrameSample& s : samples) image.value[s.pixel] = Rgb(s.value.x, s.value.y, s.value.z);
   };
   const RayCounts counts = runPass(pass, progress, stop);

@@ -18,7 +18,12 @@ void addEmission(const PathSettings& settings, Batch& batch, const Bounce& bounc
     path.emittedPdf = pdf;
     ++path.emissions;
   }
-  if (batch.recording) batch.recorder.emission(path.handle, {toOdis(met.radiance), weight, pdf});
+  if (!batch.recording) return;
+  EmissionEvent event;
+  event.radiance = toOdis(met.radiance);
+  event.misWeight = weight;
+  event.lightPdf = pdf;
+  batch.recorder.emission(path.handle, event);
 }
 
 // Follows the ray to the surface that it met.
@@ -27,9 +32,13 @@ void arriveAt(Batch& batch, const Bounce& bounce) {
   const auto& [at, wo] = *bounce.vertex;
   const float distance = length(at.p - path.ray.origin);
   path.distance += distance;
-  if (batch.recording)
-    batch.recorder.surface(path.handle, {toOdis(at.p), toOdis(facingNormal(at, wo)),
-                                         toOdis(-path.ray.direction), distance, ~0u, 0});
+  if (!batch.recording) return;
+  SurfaceEvent event;
+  event.position = toOdis(at.p);
+  event.normal = toOdis(facingNormal(at, wo));
+  event.wo = toOdis(-path.ray.direction);
+  event.distance = distance;
+  batch.recorder.surface(path.handle, event);
 }
 
 }  // namespace

@@ -114,7 +114,7 @@ RayCounts runPass(const Pass& pass, Progress& progress, const std::function<bool
           result.vertices.clear();
           result.counts = {};
           renderTile(pass, tile, result);
-          pass.deliver(tile, result.samples, std::move(result.vertices));
+          pass.deliver(tile, result.samples, result.vertices);
           counts[tile] = result.counts;
           progress.advance(result.samples.size());
         }

@@ -1,7 +1,7 @@
 // A pass over the image: some samples of every pixel, in parallel over tiles.
 #pragma once
 
-#include <odis/frame.h>
+#include <odis/odis.hpp>
 
 #include <functional>
 
@@ -25,7 +25,7 @@ struct Pass {
 
   // Takes what a tile brought: all its samples, and their vertices if they are wanted. Called by many
   // threads.
-  std::function<void(uint32_t tile, ArrayView<const FrameSample>, std::vector<PathVertex>)> deliver;
+  std::function<void(uint32_t tile, ArrayView<const FrameSample>, ArrayView<const PathVertex>)> deliver;
   bool wantsVertices = false;
   // Further sums, with one entry a pixel of the crop. Null: not wanted.
   std::vector<FeatureSums>* features = nullptr;

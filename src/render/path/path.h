@@ -1,7 +1,7 @@
 // Paths: the same tracer for the reference, the pilot and the guided passes.
 #pragma once
 
-#include <odis/recorder.h>
+#include <odis/odis.hpp>
 
 #include <cstdint>
 #include <span>

@@ -29,17 +29,27 @@ void describeFirstHits(const PathSettings& settings, Bounces bounces) {
   }
 }
 
+static LightEvent lightEventOf(const PathSettings& settings, const Bounce& bounce) {
+  const LightEstimate& light = bounce.light;
+  LightEvent event;
+  event.unweighted = toOdis(light.radiance);
+  event.weighted = toOdis(bounce.direct);
+  event.wi = toOdis(light.wi);
+  event.pdf = light.pdf;
+  event.bsdfPdf = light.bsdf.pdf;
+  event.guidablePdf = light.bsdf.guidablePdf;
+  event.group = light.group;
+  event.groupProbability =
+      bounce.shadowRayProbability * settings.lights->groupProbability(bounce.reference, light.group);
+  return event;
+}
+
 void recordBounces(const PathSettings& settings, Batch& batch, Bounces bounces) {
   if (!batch.recording) return;
   for (const Bounce& bounce : bounces) {
     const uint32_t path = bounce.path->handle;
     const auto& [at, wo] = *bounce.vertex;
-    const LightEstimate& light = bounce.light;
-    if (bounce.shadowRayProbability > 0)
-      batch.recorder.light(path, {toOdis(light.radiance), toOdis(bounce.direct), toOdis(light.wi), light.pdf,
-                                  light.bsdf.pdf, light.bsdf.guidablePdf, light.group,
-                                  bounce.shadowRayProbability *
-                                      settings.lights->groupProbability(bounce.reference, light.group)});
+    if (bounce.shadowRayProbability > 0) batch.recorder.light(path, lightEventOf(settings, bounce));
     const Bsdf& bsdf = at.shape->bsdf();
     const BsdfSample& next = bounce.next;
     BounceEvent event;

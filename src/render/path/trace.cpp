@@ -91,7 +91,9 @@ void tracePaths(const PathSettings& settings, std::span<Path> paths, std::vector
     bounceAll(settings, paths, depth, batch);
     traceShadowRays(*settings.scene, paths, batch);
   }
-  if (vertices) batch.recorder.finish(*vertices);
+  if (!vertices) return;
+  const ArrayView<const PathVertex> met = batch.recorder.finish();
+  vertices->insert(vertices->end(), met.begin(), met.end());
 }
 
 }  // namespace odis::render

@@ -49,7 +49,7 @@ std::vector<std::vector<float>> weighByVariance(std::span<const std::vector<Pixe
   if (images.empty()) return {};
   std::vector<PixelSums> all(images.front().size());
   for (const std::vector<PixelSums>& image : images)
-    for (size_t pixel = 0; pixel < all.size(); ++pixel) all[pixel].add(image[pixel]);
+    for (size_t pixel = 0; pixel < all.size(); ++pixel) addSums(all[pixel], image[pixel]);
   const std::vector<float> estimates = estimatePixelValues(all, uint32_t(width));
   std::vector<std::array<double, 2>> ofColour;
   for (size_t i = 0; i < images.size(); ++i) {

@@ -157,7 +157,7 @@ RayCounts renderRestirFrame(const RestirSetting& setting, uint32_t sample, Progr
     for (size_t i = range.begin(); i < range.end(); ++i) {
       counts[i] = frame.counts(i);
       const Rgb value = frame.gather(i, counts[i]);
-      setting.image[i].add(toOdis(value), uint32_t(counts[i].rays + counts[i].shadowRays));
+      addSample(setting.image[i], toOdis(value), uint32_t(counts[i].rays + counts[i].shadowRays));
     }
   });
   for (const RayCounts& pixel : counts) {

@@ -2,12 +2,12 @@
 // weighs in the end. The host traces paths; the frame decides everything else and keeps the rules that
 // leave the image unbiased.
 //
-//   odis::Frame frame(options);
-//   while (const odis::FramePass* pass = frame.beginPass()) {
+//   Frame frame(options);
+//   while (const FramePass* pass = frame.beginPass()) {
 //     for each pixel, in any order, on any number of threads:
 //       for each sample of frame.samples(pixel):
 //         trace a path, guided by pass->guide (odis/guide_view.h);
-//         record its vertices if pass->wantsVertices (odis/recorder.h)
+//         record its vertices if pass->wantsVertices (odis/record/recorder.h)
 //       frame.add(samples, vertices);  // of one path, of a tile, of everything
 //     frame.endPass();
 //   }
@@ -30,71 +30,13 @@
 #include "odis/guide.h"
 #include "odis/pixel_sums.h"
 
-namespace odis {
+namespace odis::core {
 
-struct FrameOptions {
-  uint32_t width = 0, height = 0;  // of the rectangle of pixels that is rendered: an image, a crop or a tile
-  uint32_t samplesPerPixel = 4;    // pilot included
-  // Chooses the pilot's pixels; the host draws its random numbers from FramePass::seed.
-  uint64_t seed = 0;
-  bool guided = true;  // false: plain path tracing, without a pilot
-  // Samples per pixel of the pilot; 0.25 is one sample in each 2 x 2 pixels. 0: 0.25 where that is enough
-  // to learn from (the image is large) and a whole sample would be dear (there are few), else 1.
-  double pilotSamplesPerPixel = 0;
-  // Weight of a pilot sample relative to a guided one, from 0 on. A constant, because whatever the frame
-  // learns, it learns from the pilot: weights by what was learned would bias the image.
-  float pilotWeight = 0.6f;
-  // Guided samples per pixel that the guide learns from as well: it is rebuilt after 1, 3, 7, ... if as
-  // many are left.
-  uint32_t refinementSamples = 3;
-  // Whether pixels whose first samples differ more get more samples, for about as many rays. Needs at least
-  // 4 samples per pixel.
-  bool adaptive = true;
-  // Further samples per pixel that the guide is made from instead of the pilot's, and that are no part of
-  // the image: for experiments that ask what a better guide would gain. The guide is not refined then.
-  uint32_t oracleSamples = 0;
-  bool keepPilotVertices = false;  // whether pilotVertices() stay after the guide is built
-  GuideOptions guide;
-};
-
-enum class PassKind : uint8_t { pilot, oracle, guided };
-
-// What the host is to trace.
-struct FramePass {
-  PassKind kind = PassKind::guided;
-  bool wantsVertices = false;
-  bool partOfImage = true;
-  // The seed of the random numbers. Passes that are no part of the image have another one, and in frames of
-  // fewer than 1024 pixels each guide has one of its own (docs/unbiasedness.md#sobol-points).
-  uint64_t seed = 0;
-  // Number of samples of all passes of this kind and all pixels, for progress; about, where pixels have
-  // different numbers.
-  uint64_t stageSamples = 0;
-  // Guides paths by what was learned; without cells where nothing was. Valid until endPass().
-  GuideView guide;
-};
-
-// The samples [first, first + count) of a pixel.
-struct SampleRange {
-  uint32_t first = 0, count = 0;
-};
-
-// What a path brought to its pixel.
-struct FrameSample {
-  uint32_t pixel = 0, sample = 0;
-  Float3 value;       // weighted by the reconstruction filter; what is not finite counts as black
-  uint32_t rays = 0;  // traced for it, camera ray and shadow rays included
-};
-
-struct FrameStatistics {
-  uint64_t samples = 0, pilotSamples = 0;
-  uint64_t notFinite = 0;  // samples that counted as black
-  uint64_t pilotVertices = 0;
-  uint64_t cells = 0;
-  uint64_t guideBytes = 0;
-  uint64_t buildingBytes = 0;  // held at most while guides were built: vertices and what is made of them
-  double pilotFraction = 0;    // of the pilot's samples in the mean of the image's weights
-};
+using FrameOptions = OdisFrameOptions;
+using FramePass = OdisFramePass;
+using SampleRange = OdisSampleRange;
+using FrameSample = OdisFrameSample;
+using FrameStatistics = OdisFrameStatistics;
 
 // Pixels are counted row by row. Memory: 112 bytes a pixel for sums, 12 for decisions; 188 bytes a pilot
 // vertex until the guide is built; the guide's own. All functions throw std::logic_error when they are
@@ -102,7 +44,7 @@ struct FrameStatistics {
 class Frame {
  public:
   // Throws std::invalid_argument where an option is out of its range.
-  explicit Frame(const FrameOptions& options);
+  explicit Frame(const FrameOptions& options, std::shared_ptr<const Tasks> tasks = libraryTasks());
   ~Frame();
   Frame(Frame&&) noexcept;
   Frame& operator=(Frame&&) noexcept;
@@ -119,7 +61,7 @@ class Frame {
   // std::out_of_range for a sample that the pass did not ask for, and std::logic_error for one that comes
   // twice, where that can be told. Vertices of samples that are not due are left out
   // and counted (VertexCounts::outsideFrame), those of a pass that wants none are ignored.
-  void add(ArrayView<const FrameSample> samples, std::vector<PathVertex> vertices = {});
+  void add(ArrayView<const FrameSample> samples, ArrayView<const PathVertex> vertices = {});
   // Ends the pass: learns, builds the guide, settles what there is to settle. An interrupted pass may lack
   // samples; nothing is learned from it, and it is the last one.
   void endPass(bool interrupted = false);
@@ -142,10 +84,13 @@ class Frame {
   // The pilot's vertices, tile after tile, within a tile ordered by pixel, sample, depth. Empty once the
   // guide is built, unless they are kept.
   std::vector<PathVertex> pilotVertices() const;
+  size_t pilotVertexCount() const;
+  // Held now. Thread-safe.
+  uint64_t bytes() const;
 
  private:
   struct Data;
   std::unique_ptr<Data> m_data;
 };
 
-}  // namespace odis
+}  // namespace odis::core

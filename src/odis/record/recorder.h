@@ -1,6 +1,6 @@
 // Turns the events of paths into path vertices: one call an event, and only complete vertices come out.
 //
-//   odis::PathRecorder recorder;                       // one for each thread or tile
+//   PathRecorder recorder;                       // one for each thread or tile
 //   const uint32_t path = recorder.begin({pixel, sample});
 //   for each ray of the path:
 //     recorder.surface(path, ...) or recorder.escape(path)
@@ -8,7 +8,7 @@
 //     recorder.survived(path, probability)             // if roulette was played on arrival
 //     recorder.light(path, ...), lightHidden(path)     // if a shadow ray was traced; if it was blocked
 //     recorder.bounce(path, ...)                       // if the path was scattered, even if it ends then
-//   recorder.finish(vertices);                         // hands over the vertices of all paths
+//   recorder.finish()                                  // the vertices of all paths
 //
 // Many paths may be open at once, their events in any order as long as each path's own are in order. A
 // surface without a bounce (the path ended there by its depth, or by roulette on arrival) leaves no vertex.
@@ -18,58 +18,16 @@
 
 #include "odis/path_vertex.h"
 
-namespace odis {
+namespace odis::core {
 
-// Which sample of which pixel a path belongs to, and its weight by the reconstruction filter.
-struct PathIdentity {
-  uint32_t pixel = 0, sample = 0;
-  float sampleWeight = 1;
-};
+using PathIdentity = OdisPathIdentity;
+using SurfaceEvent = OdisSurfaceEvent;
+using EmissionEvent = OdisEmissionEvent;
+using LightEvent = OdisLightEvent;
+using BounceEvent = OdisBounceEvent;
 
-// A ray met a surface. World space, unit directions.
-struct SurfaceEvent {
-  Float3 position;
-  Float3 normal;                   // shading normal, on the side of wo
-  Float3 wo;                       // towards where the ray came from
-  float distance = 0;              // length of the ray
-  uint32_t lightableGroups = ~0u;  // see PathVertex
-  float time = 0;
-};
-
-// A ray met emission. The MIS weight is that of the direction against next-event estimation.
-struct EmissionEvent {
-  Float3 radiance;
-  float misWeight = 1;
-  // Solid-angle density with which next-event estimation would have found it; 0 if it can't.
-  float lightPdf = 0;
-};
-
-// A shadow ray was traced for next-event estimation. Both radiances are outgoing, f |cos| Le / pdf, divided
-// by the probability of tracing the ray.
-struct LightEvent {
-  Float3 unweighted, weighted;  // without and with the MIS weight
-  Float3 wi;                    // unit, towards the light
-  float pdf = 0;                // solid-angle density of wi; 0 if MIS does not apply
-  // Densities of wi under the BSDF, and under its lobes that may be guided.
-  float bsdfPdf = 0, guidablePdf = 0;
-  uint32_t group = kNoLightGroup;  // of lights
-  float groupProbability = 0;      // of choosing the group and tracing the ray
-};
-
-// A direction was sampled.
-struct BounceEvent {
-  Float3 wi;                     // unit, world space
-  Float3 weight;                 // f |cos| / pdf / survival; black if the path ends
-  float pdf = 0;                 // solid-angle density of wi; probability for discrete lobes
-  float guidablePdf = kUnknown;  // see PathVertex for this and what follows
-  float guidableProbability = kUnknown;
-  float survival = 1;
-  float cosine = kUnknown;
-  float roughness = 1;
-  bool discrete = false, scattersBothSides = false;
-};
-
-// 250 bytes a vertex while paths are open; memory is kept for the next ones. Not thread-safe.
+// 250 bytes a vertex while paths are open; memory is kept for the next ones. Not thread-safe. Throws
+// std::out_of_range for a path that is not open, std::logic_error for events in an order that no path has.
 class PathRecorder {
  public:
   // Opens a path and returns its handle: 0, 1, 2, ... since the last finish().
@@ -77,7 +35,7 @@ class PathRecorder {
 
   void surface(uint32_t path, const SurfaceEvent& event);
   // The ray left the scene. Emission of the environment follows as an event of its own.
-  void escape(uint32_t path) { ++m_paths[path].rays; }
+  void escape(uint32_t path);
   void emission(uint32_t path, const EmissionEvent& event);
   // Roulette on arrival let the path go on with this probability.
   void survived(uint32_t path, float probability);
@@ -86,9 +44,11 @@ class PathRecorder {
   void lightHidden(uint32_t path);
   void bounce(uint32_t path, const BounceEvent& event);
 
-  // Closes all paths and appends their vertices, path after path, each with what only the complete path
-  // knows: the radiance that arrives, contributions to the pixel, rays.
-  void finish(std::vector<PathVertex>& vertices);
+  // Closes all paths and returns their vertices, path after path, each with what only the complete path
+  // knows: the radiance that arrives, contributions to the pixel, rays. They stay until the next begin().
+  ArrayView<const PathVertex> finish();
+
+  uint64_t bytes() const;
 
  private:
   static constexpr uint32_t kNone = ~0u;
@@ -111,10 +71,12 @@ class PathRecorder {
     uint32_t count = 0;  // of complete vertices
     uint32_t surfaces = 0, rays = 0;
   };
+  OpenPath& open(uint32_t index);
   void complete(const OpenPath& path, PathVertex* vertices) const;
 
   std::vector<OpenPath> m_paths;
   std::vector<Pending> m_pending;
+  std::vector<PathVertex> m_finished;
 };
 
-}  // namespace odis
+}  // namespace odis::core

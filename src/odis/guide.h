@@ -1,44 +1,23 @@
 // From path vertices to a guide: nested cells in world space, and in each a sampling map, BSDF sampling
-// fractions, what roulette needs, and which lights matter. odis::Frame builds guides by itself; a host that
+// fractions, what roulette needs, and which lights matter. Frame builds guides by itself; a host that
 // has no frame does this:
 //
-//   odis::GuideBuilder builder(options);
+//   GuideBuilder builder(options);
 //   builder.add(vertices);              // once, or as samples arrive
-//   odis::Guide guide = builder.build(vertices);
+//   Guide guide = builder.build(vertices);
 //   ... look-ups in guide.view(): odis/guide_view.h
 #pragma once
 
 #include <memory>
 #include <vector>
 
-#include "odis/model.h"
+#include "odis/guide_view.h"
 #include "odis/path_vertex.h"
+#include "odis/work/tasks.h"
 
-namespace odis {
+namespace odis::core {
 
-// Groups of lights that are equal parts of one light: where nothing was learned, each is as likely as the
-// others.
-struct LightParts {
-  uint32_t first = 0, count = 0;
-};
-
-struct GuideOptions {
-  Model model;
-  // >= 1: the finest cells have an edge of (diagonal of what the first vertices span) / this.
-  int cellsPerDiagonal = 32;
-  // Weight of the coarser level when the formula blends its map with a finer one's, in samples, for each
-  // level, finest first; the last one is for the uniform map.
-  float priorSamples[kCellLevels] = {250, 250, 120, 30};
-  // Whether the mean outgoing radiance stands in for paths that roulette ends.
-  bool controlVariate = true;
-  uint32_t lightGroups = 0;            // that the vertices tell apart; 0: learn nothing about lights
-  std::vector<LightParts> lightParts;  // groups that are parts of one light
-  float floor = 0.03f;                 // in [0, 1]: share of the uniform distribution in every map
-  // > 0: a sample counts at most this many times the mean of its neighbourhood (in maps only).
-  float clamp = 20;
-  // > 0: this BSDF sampling fraction everywhere instead of the one by variance and cost.
-  float fixedBsdfFraction = 0;
-};
+using GuideOptions = OdisGuideOptions;
 
 // What a builder takes of some vertices, so that those need not be kept: about 70 bytes a vertex.
 class CellSamples {
@@ -48,20 +27,23 @@ class CellSamples {
   CellSamples(CellSamples&&) noexcept;
   CellSamples& operator=(CellSamples&&) noexcept;
 
+  uint64_t bytes() const;
+
  private:
   friend class GuideBuilder;
   struct Data;
   std::unique_ptr<Data> m_data;
 };
 
-// A set of cells, fixed once built. Thread-safe. About 830 bytes a cell, and 4 bytes a cell and group of
+// A set of cells, fixed once built; copies share it. Thread-safe. About 830 bytes a cell, and 4 bytes a cell and group of
 // lights.
 class Guide {
  public:
   Guide();
   ~Guide();
+  Guide(const Guide&);
   Guide(Guide&&) noexcept;
-  Guide& operator=(Guide&&) noexcept;
+  Guide& operator=(Guide) noexcept;
 
   // The guide as flat arrays, valid until the guide ends or is assigned to; without cells before it is built.
   GuideView view() const;
@@ -72,7 +54,7 @@ class Guide {
  private:
   friend class GuideBuilder;
   struct Data;
-  std::unique_ptr<Data> m_data;
+  std::shared_ptr<Data> m_data;
 };
 
 // Gathers path vertices and builds guides from them. Results depend on the order of the vertices, not on
@@ -80,7 +62,8 @@ class Guide {
 class GuideBuilder {
  public:
   // Throws std::invalid_argument where an option is out of its range.
-  explicit GuideBuilder(const GuideOptions& options = {});
+  explicit GuideBuilder(const GuideOptions& options = {},
+                        std::shared_ptr<const Tasks> tasks = libraryTasks());
   ~GuideBuilder();
   GuideBuilder(GuideBuilder&&) noexcept;
   GuideBuilder& operator=(GuideBuilder&&) noexcept;
@@ -117,4 +100,4 @@ class GuideBuilder {
   std::unique_ptr<Data> m_data;
 };
 
-}  // namespace odis
+}  // namespace odis::core

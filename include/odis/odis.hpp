@@ -1,0 +1,286 @@
+// ODIS's interface in C++17: odis/odis.h with exceptions in the place of codes and objects that release
+// themselves, and, inline, what a host does at every vertex. Header-only; what the functions do is said in
+// odis/odis.h.
+//
+//   odis::FrameOptions options;
+//   options.width = 1280, options.height = 720;
+//   odis::Frame frame(options);
+//   while (const odis::FramePass* pass = frame.beginPass()) {
+//     for each pixel, in any order, on any number of threads:
+//       for each sample of frame.samples(pixel):
+//         trace a path, guided by *pass->guide (odis/guide_view.h, odis/mixture.h);
+//         record its vertices with a PathRecorder if pass->wantsVertices
+//       frame.add(samples, vertices);  // of one path, of a tile, of everything
+//     frame.endPass();
+//   }
+//   image[pixel] = frame.mean(pixel).color;
+#pragma once
+
+#include <memory>
+#include <stdexcept>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "odis/guide_view.h"
+#include "odis/mixture.h"
+#include "odis/odis.h"
+#include "odis/path_vertex.h"
+#include "odis/pixel_sums.h"
+
+namespace odis {
+
+using ContextOptions = OdisContextOptions;
+using LightParts = OdisLightParts;
+using FramePass = OdisFramePass;
+using SampleRange = OdisSampleRange;
+using FrameSample = OdisFrameSample;
+using FrameStatistics = OdisFrameStatistics;
+using PathIdentity = OdisPathIdentity;
+using SurfaceEvent = OdisSurfaceEvent;
+using EmissionEvent = OdisEmissionEvent;
+using LightEvent = OdisLightEvent;
+using BounceEvent = OdisBounceEvent;
+
+// What every function here throws when the library refuses.
+class Error : public std::runtime_error {
+ public:
+  Error(OdisError code, const std::string& message) : std::runtime_error(message), m_code(code) {}
+  OdisError code() const { return m_code; }
+
+ private:
+  OdisError m_code;
+};
+
+// Throws this thread's error, if there is one.
+inline void throwError() {
+  const char* message = nullptr;
+  const OdisError code = odisGetError(&message);
+  if (code != ODIS_ERROR_NONE) throw Error(code, message);
+}
+
+// A reference to an object of the library: copies share it.
+template <class Object, void (*retain)(Object), void (*release)(Object)>
+class Handle {
+ public:
+  Handle(const Handle& other) : m_object(other.m_object) { retain(m_object); }
+  Handle(Handle&& other) noexcept : m_object(std::exchange(other.m_object, nullptr)) {}
+  Handle& operator=(Handle other) noexcept {
+    std::swap(m_object, other.m_object);
+    return *this;
+  }
+  ~Handle() { release(m_object); }
+  Object get() const { return m_object; }
+
+ protected:
+  // Takes over a reference that a function of the library returned; throws its error where it returned none.
+  explicit Handle(Object object) : m_object(object) {
+    if (!object) throwError();
+  }
+
+ private:
+  Object m_object;
+};
+
+class Context : public Handle<OdisContext, odisRetainContext, odisReleaseContext> {
+ public:
+  explicit Context(const ContextOptions& options = {}) : Handle(odisNewContext(&options)) {}
+  // The one that objects are made in which are told of none, with the defaults.
+  static const Context& shared() {
+    static const Context context;
+    return context;
+  }
+  uint64_t memoryUse() const { return odisGetMemoryUse(get()); }
+};
+
+class Model : public Handle<OdisModel, odisRetainModel, odisReleaseModel> {
+ public:
+  explicit Model(OdisModel model) : Handle(model) {}
+  // The networks that come with the library.
+  Model() : Model(Context::shared()) {}
+  explicit Model(const Context& context) : Handle(odisNewModel(context.get())) {}
+  // The networks of a file of weights.
+  static Model load(const std::string& path, const Context& context = Context::shared()) {
+    return Model(odisNewModelFromFile(context.get(), path.c_str()));
+  }
+  // This model with a formula for directions, or for the choice of lights.
+  Model withDirectionFormula() const { return Model(odisNewModelWithFormulas(get(), true, false)); }
+  Model withLightFormula() const { return Model(odisNewModelWithFormulas(get(), false, true)); }
+};
+
+// `model` and `lightParts` take the place of the fields of the same names in C.
+struct GuideOptions : OdisGuideOptions {
+  Model model;
+  std::vector<LightParts> lightParts;
+
+  // Valid as long as this object stays as it is.
+  OdisGuideOptions flat() const {
+    OdisGuideOptions options = *this;
+    options.model = model.get();
+    options.OdisGuideOptions::lightParts = lightParts.data();
+    options.lightPartCount = lightParts.size();
+    return options;
+  }
+};
+
+// `guide` takes the place of the field of the same name in C.
+struct FrameOptions : OdisFrameOptions {
+  GuideOptions guide;
+};
+
+// Describes vertices that lie side by side.
+inline OdisPathVertices describe(ArrayView<const PathVertex> vertices) {
+  OdisPathVertices described;
+  if (!vertices.empty()) odisDescribeVertices(&described, vertices.data(), vertices.size());
+  return described;
+}
+
+class PathRecorder : public Handle<OdisRecorder, odisRetainRecorder, odisReleaseRecorder> {
+ public:
+  explicit PathRecorder(const Context& context = Context::shared())
+      : Handle(odisNewRecorder(context.get())) {}
+
+  uint32_t begin(const PathIdentity& identity) { return odisBeginPath(get(), &identity); }
+  void surface(uint32_t path, const SurfaceEvent& e) { require(odisRecordSurface(get(), path, &e)); }
+  void escape(uint32_t path) { require(odisRecordEscape(get(), path)); }
+  void emission(uint32_t path, const EmissionEvent& e) { require(odisRecordEmission(get(), path, &e)); }
+  void survived(uint32_t path, float probability) { require(odisRecordSurvival(get(), path, probability)); }
+  void light(uint32_t path, const LightEvent& e) { require(odisRecordLight(get(), path, &e)); }
+  void lightHidden(uint32_t path) { require(odisRecordLightHidden(get(), path)); }
+  void bounce(uint32_t path, const BounceEvent& e) { require(odisRecordBounce(get(), path, &e)); }
+  // Closes all paths; their vertices stay until the next begin().
+  ArrayView<const PathVertex> finish() {
+    size_t count = 0;
+    const PathVertex* vertices = odisFinishPaths(get(), &count);
+    require(vertices);
+    return {vertices, count};
+  }
+
+ private:
+  static void require(bool succeeded) {
+    if (!succeeded) throwError();
+  }
+};
+
+class Guide : public Handle<OdisGuide, odisRetainGuide, odisReleaseGuide> {
+ public:
+  explicit Guide(OdisGuide guide) : Handle(guide) {}
+
+  // Valid as long as a reference to the guide is held.
+  GuideView view() const {
+    GuideView view;
+    if (!odisGetGuideView(get(), &view)) throwError();
+    return view;
+  }
+  uint64_t bytes() const { return odisGetGuideBytes(get()); }
+  float predictedVarianceRatio() const { return odisGetPredictedVarianceRatio(get()); }
+};
+
+class GuideBuilder : public Handle<OdisGuideBuilder, odisRetainGuideBuilder, odisReleaseGuideBuilder> {
+ public:
+  explicit GuideBuilder(const GuideOptions& options = {}, const Context& context = Context::shared())
+      : Handle(make(options.flat(), context)) {}
+
+  void add(ArrayView<const PathVertex> vertices) { add(describe(vertices)); }
+  void add(const OdisPathVertices& vertices) {
+    if (!odisAddVertices(get(), &vertices)) throwError();
+  }
+  Guide build(ArrayView<const PathVertex> vertices, ArrayView<const float> pixelValues = {}) const {
+    return build(describe(vertices), pixelValues);
+  }
+  Guide build(const OdisPathVertices& vertices, ArrayView<const float> pixelValues = {}) const {
+    return Guide(odisBuildGuide(get(), &vertices, pixelValues.data(), pixelValues.size()));
+  }
+  Guide rebuild(const Guide& previous) const { return Guide(odisRebuildGuide(get(), previous.get())); }
+
+  VertexCounts vertexCounts() const {
+    VertexCounts counts;
+    if (!odisGetVertexCounts(get(), &counts)) throwError();
+    return counts;
+  }
+  uint64_t bytes() const { return odisGetGuideBuilderBytes(get()); }
+
+ private:
+  static OdisGuideBuilder make(const OdisGuideOptions& options, const Context& context) {
+    return odisNewGuideBuilder(context.get(), &options);
+  }
+};
+
+class Frame : public Handle<OdisFrame, odisRetainFrame, odisReleaseFrame> {
+ public:
+  explicit Frame(const FrameOptions& options, const Context& context = Context::shared())
+      : Handle(make(options, options.guide.flat(), context)),
+        m_pixels(size_t(options.width) * options.height),
+        m_pass(std::make_shared<FramePass>()) {}
+
+  // Null when the image is complete, or a pass was interrupted. Valid until the pass ends.
+  const FramePass* beginPass() {
+    if (odisBeginPass(get(), m_pass.get())) return m_pass.get();
+    throwError();
+    return nullptr;
+  }
+  SampleRange samples(uint32_t pixel) const {
+    const SampleRange range = odisGetSamples(get(), pixel);
+    if (range.count == 0) throwError();
+    return range;
+  }
+  ArrayView<const float> pixelValues() const {
+    const float* values = odisGetPixelValues(get());
+    return {values, values ? m_pixels : 0};
+  }
+  void add(ArrayView<const FrameSample> samples, ArrayView<const PathVertex> vertices = {}) {
+    add(samples, describe(vertices));
+  }
+  void add(ArrayView<const FrameSample> samples, const OdisPathVertices& vertices) {
+    if (!odisAddSamples(get(), samples.data(), samples.size(), &vertices)) throwError();
+  }
+  void endPass(bool interrupted = false) {
+    if (!odisEndPass(get(), interrupted)) throwError();
+  }
+  // endPass() in two steps, which leave the host's thread free in between.
+  void startEndPass(bool interrupted = false) {
+    if (!odisStartEndPass(get(), interrupted)) throwError();
+  }
+  void waitForPass() {
+    if (!odisWaitForPass(get())) throwError();
+  }
+  bool guideIsFinal() const { return odisGuideIsFinal(get()); }
+
+  float sampleWeight(uint32_t pixel, uint32_t sample) const {
+    return odisGetSampleWeight(get(), pixel, sample);
+  }
+  PixelMean mean(uint32_t pixel) const {
+    PixelMean mean;
+    if (!odisGetPixelMean(get(), pixel, &mean)) throwError();
+    return mean;
+  }
+  uint32_t sampleCount(uint32_t pixel) const { return odisGetSampleCount(get(), pixel); }
+  FrameStatistics statistics() const {
+    FrameStatistics statistics;
+    if (!odisGetFrameStatistics(get(), &statistics)) throwError();
+    return statistics;
+  }
+  VertexCounts vertexCounts() const {
+    VertexCounts counts;
+    if (!odisGetFrameVertexCounts(get(), &counts)) throwError();
+    return counts;
+  }
+  Guide guide() const { return Guide(odisGetFrameGuide(get())); }
+  ArrayView<const PixelSums> pilotImage() const { return {odisGetPilotImage(get()), m_pixels}; }
+  std::vector<PathVertex> pilotVertices() const {
+    std::vector<PathVertex> vertices(odisGetPilotVertices(get(), nullptr, 0));
+    odisGetPilotVertices(get(), vertices.data(), vertices.size());
+    return vertices;
+  }
+
+ private:
+  static OdisFrame make(OdisFrameOptions options, const OdisGuideOptions& guide, const Context& context) {
+    options.guide = &guide;
+    return odisNewFrame(context.get(), &options);
+  }
+
+  size_t m_pixels;
+  std::shared_ptr<FramePass> m_pass;
+};
+
+}  // namespace odis

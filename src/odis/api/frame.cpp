@@ -1,0 +1,195 @@
+#include "odis/api/guard.h"
+#include "odis/api/vertices.h"
+
+namespace odis::core {
+
+OdisGuideOptions adoptGuideOptions(const OdisGuideOptions& given);
+
+namespace {
+
+// The options of a frame, and those of its guide that they point to.
+struct AdoptedFrameOptions {
+  explicit AdoptedFrameOptions(const OdisFrameOptions& given) : frame(adopt(given, "OdisFrameOptions")) {
+    if (frame.guide) guide = adoptGuideOptions(*frame.guide);
+    frame.guide = &guide;
+  }
+
+  OdisFrameOptions frame;
+  OdisGuideOptions guide;
+};
+
+// A function of a frame that is not on its way between two passes.
+template <class Result, class Body>
+Result guardedForFrame(OdisFrame frame, const char* function, Result failed, const Body& body) noexcept {
+  return guardedFor(frame, function, failed, [&] {
+    frame->requireNotEnding(function);
+    return body(frame->frame);
+  });
+}
+
+// Likewise for one that writes to `result`.
+template <class Value, class Body>
+bool fillFromFrame(OdisFrame frame, const char* function, Value* result, const Body& body) noexcept {
+  return guardedForFrame(frame, function, false, [&](const Frame& f) {
+    requireArgument(result, function);
+    body(f);
+    return true;
+  });
+}
+
+}  // namespace
+
+}  // namespace odis::core
+
+using odis::core::Frame;
+using odis::core::guardedFor;
+using odis::core::guardedForFrame;
+
+OdisFrameImpl::OdisFrameImpl(OdisContext owner, const OdisFrameOptions& options)
+    : memory(owner), frame(options, owner->tasks) {
+  memory.set(frame.bytes());
+}
+
+OdisFrameImpl::~OdisFrameImpl() {
+  if (ending.joinable()) ending.join();
+}
+
+void OdisFrameImpl::endPass(bool interrupted) {
+  frame.endPass(interrupted);
+  memory.set(frame.bytes());
+}
+
+void OdisFrameImpl::requireNotEnding(const char* function) const {
+  if (ending.joinable())
+    throw std::logic_error(std::string(function) + ": expected odisWaitForPass after odisStartEndPass");
+}
+
+void odisInitFrameOptions(OdisFrameOptions* options, size_t size) {
+  odis::core::initialize(options, size, "OdisFrameOptions");
+}
+
+OdisFrame odisNewFrame(OdisContext context, const OdisFrameOptions* options) {
+  return odis::core::guarded(context, OdisFrame(nullptr), [&] {
+    odis::core::requireArgument(context, "odisNewFrame: context");
+    odis::core::requireArgument(options, "odisNewFrame: options");
+    return new OdisFrameImpl(context, odis::core::AdoptedFrameOptions(*options).frame);
+  });
+}
+void odisRetainFrame(OdisFrame frame) {
+  if (frame) frame->retain();
+}
+void odisReleaseFrame(OdisFrame frame) {
+  if (frame) frame->release();
+}
+
+bool odisBeginPass(OdisFrame frame, OdisFramePass* pass) {
+  return guardedForFrame(frame, "odisBeginPass", false, [&](Frame& f) {
+    odis::core::requireArgument(pass, "odisBeginPass: pass");
+    odis::core::fillIn(*pass, OdisFramePass(), "OdisFramePass");
+    const OdisFramePass* begun = f.beginPass();
+    if (begun) odis::core::fillIn(*pass, *begun, "OdisFramePass");
+    return begun != nullptr;
+  });
+}
+
+OdisSampleRange odisGetSamples(OdisFrame frame, uint32_t pixel) {
+  return guardedForFrame(frame, "odisGetSamples", OdisSampleRange(),
+                         [&](const Frame& f) { return f.samples(pixel); });
+}
+
+const float* odisGetPixelValues(OdisFrame frame) {
+  return guardedForFrame(
+      frame, "odisGetPixelValues", static_cast<const float*>(nullptr),
+      [&](const Frame& f) { return f.pixelValues().empty() ? nullptr : f.pixelValues().data(); });
+}
+
+bool odisAddSamples(OdisFrame frame, const OdisFrameSample* samples, size_t count,
+                    const OdisPathVertices* vertices) {
+  return guardedForFrame(frame, "odisAddSamples", false, [&](Frame& f) {
+    if (count > 0) odis::core::requireArgument(samples, "odisAddSamples: samples");
+    const odis::core::HostVertices given(vertices);
+    f.add({samples, count}, given.view());
+    frame->memory.set(f.bytes());
+    return true;
+  });
+}
+
+bool odisEndPass(OdisFrame frame, bool interrupted) {
+  return guardedForFrame(frame, "odisEndPass", false,
+                         [&](Frame&) { return frame->endPass(interrupted), true; });
+}
+
+bool odisStartEndPass(OdisFrame frame, bool interrupted) {
+  return guardedForFrame(frame, "odisStartEndPass", false, [&](Frame&) {
+    frame->ending = std::thread([frame, interrupted] {
+      try {
+        frame->endPass(interrupted);
+      } catch (...) {
+        frame->failure = std::current_exception();
+      }
+    });
+    return true;
+  });
+}
+
+bool odisWaitForPass(OdisFrame frame) {
+  return guardedFor(frame, "odisWaitForPass", false, [&] {
+    if (!frame->ending.joinable())
+      throw std::logic_error("odisWaitForPass: expected odisStartEndPass before");
+    frame->ending.join();
+    if (const std::exception_ptr failure = std::exchange(frame->failure, nullptr))
+      std::rethrow_exception(failure);
+    return true;
+  });
+}
+
+bool odisGuideIsFinal(OdisFrame frame) {
+  return guardedForFrame(frame, "odisGuideIsFinal", false, [&](const Frame& f) { return f.guideIsFinal(); });
+}
+
+float odisGetSampleWeight(OdisFrame frame, uint32_t pixel, uint32_t sample) {
+  return guardedForFrame(frame, "odisGetSampleWeight", 0.0f,
+                         [&](const Frame& f) { return f.sampleWeight(pixel, sample); });
+}
+
+bool odisGetPixelMean(OdisFrame frame, uint32_t pixel, OdisPixelMean* mean) {
+  return odis::core::fillFromFrame(frame, "odisGetPixelMean", mean,
+                                   [&](const Frame& f) { *mean = f.mean(pixel); });
+}
+
+uint32_t odisGetSampleCount(OdisFrame frame, uint32_t pixel) {
+  return guardedForFrame(frame, "odisGetSampleCount", 0u,
+                         [&](const Frame& f) { return f.sampleCount(pixel); });
+}
+
+bool odisGetFrameStatistics(OdisFrame frame, OdisFrameStatistics* statistics) {
+  return odis::core::fillFromFrame(frame, "odisGetFrameStatistics", statistics, [&](const Frame& f) {
+    odis::core::fillIn(*statistics, f.statistics(), "OdisFrameStatistics");
+  });
+}
+
+bool odisGetFrameVertexCounts(OdisFrame frame, OdisVertexCounts* counts) {
+  return odis::core::fillFromFrame(frame, "odisGetFrameVertexCounts", counts, [&](const Frame& f) {
+    odis::core::fillIn(*counts, f.vertexCounts(), "OdisVertexCounts");
+  });
+}
+
+OdisGuide odisGetFrameGuide(OdisFrame frame) {
+  return guardedForFrame(frame, "odisGetFrameGuide", OdisGuide(nullptr), [&](const Frame& f) {
+    return new OdisGuideImpl(&frame->memory.context(), f.guide());
+  });
+}
+
+const OdisPixelSums* odisGetPilotImage(OdisFrame frame) {
+  return guardedForFrame(frame, "odisGetPilotImage", static_cast<const OdisPixelSums*>(nullptr),
+                         [&](const Frame& f) { return f.pilotImage().data(); });
+}
+
+size_t odisGetPilotVertices(OdisFrame frame, OdisPathVertex* vertices, size_t capacity) {
+  return guardedForFrame(frame, "odisGetPilotVertices", size_t(0), [&](const Frame& f) {
+    if (!vertices) return f.pilotVertexCount();
+    const std::vector<OdisPathVertex> all = f.pilotVertices();
+    std::copy_n(all.begin(), std::min(all.size(), capacity), vertices);
+    return all.size();
+  });
+}

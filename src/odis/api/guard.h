@@ -1,0 +1,93 @@
+// The border between exceptions inside and codes outside.
+#pragma once
+
+#include "odis/api/objects.h"
+
+namespace odis::core {
+
+class FileError : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+// Leaves a code and a message for odisGetError on this thread, and tells the context's error function;
+// `context` may be null.
+void setError(OdisContext context, OdisError code, const char* message) noexcept;
+// The same for the exception that is being handled.
+void setErrorFromException(OdisContext context) noexcept;
+
+// What `body` returns, or `failed` where it throws.
+template <class Result, class Body>
+Result guarded(OdisContext context, Result failed, const Body& body) noexcept {
+  try {
+    return body();
+  } catch (...) {
+    setErrorFromException(context);
+    return failed;
+  }
+}
+
+inline OdisContext contextOf(OdisContext context) {
+  return context;
+}
+inline OdisContext contextOf(OdisModel model) {
+  return static_cast<ContextModel*>(model)->context.get();
+}
+template <class Handle>
+OdisContext contextOf(Handle handle) {
+  return &handle->memory.context();
+}
+
+// The same for a function of an object, which must not be NULL.
+template <class Handle, class Result, class Body>
+Result guardedFor(Handle object, const char* function, Result failed, const Body& body) noexcept {
+  if (!object) {
+    setError(nullptr, ODIS_ERROR_INVALID_ARGUMENT, (std::string(function) + ": found NULL").c_str());
+    return failed;
+  }
+  return guarded(contextOf(object), failed, body);
+}
+
+inline void requireArgument(const void* pointer, const char* name) {
+  if (!pointer) throw std::invalid_argument(std::string(name) + ": found NULL");
+}
+
+// Complains of a struct whose size is none that there ever was.
+[[noreturn]] void refuseSize(const char* name, size_t found, size_t expected);
+
+// A struct of the host's, which may have been compiled with fewer fields: those have their defaults.
+template <class Struct>
+Struct adopt(const Struct& given, const char* name) {
+  Struct result;
+  if (given.size < sizeof(size_t) || given.size > sizeof(Struct))
+    refuseSize(name, given.size, sizeof(Struct));
+  std::memcpy(static_cast<void*>(&result), &given, given.size);
+  result.size = sizeof(Struct);
+  return result;
+}
+
+// Fills in as many fields as the host knows.
+template <class Struct>
+void fillIn(Struct& host, Struct value, const char* name) {
+  if (host.size < sizeof(size_t) || host.size > sizeof(Struct)) refuseSize(name, host.size, sizeof(Struct));
+  value.size = host.size;
+  std::memcpy(static_cast<void*>(&host), &value, host.size);
+}
+
+// The defaults, for as many fields as the host knows.
+template <class Struct>
+void initialize(Struct* host, size_t size, const char* name) noexcept {
+  guarded(nullptr, false, [&] {
+    requireArgument(host, name);
+    if (size > sizeof(Struct)) refuseSize(name, size, sizeof(Struct));
+    Struct value;
+    if constexpr (requires { value.size; }) {
+      if (size < sizeof(size_t)) refuseSize(name, size, sizeof(Struct));
+      value.size = size;
+    }
+    std::memcpy(static_cast<void*>(host), &value, size);
+    return true;
+  });
+}
+
+}  // namespace odis::core

@@ -1,0 +1,101 @@
+#include "odis/api/guard.h"
+#include "odis/api/vertices.h"
+
+using odis::core::guardedFor;
+using odis::core::HostVertices;
+
+namespace odis::core {
+
+OdisGuideOptions adoptGuideOptions(const OdisGuideOptions& given) {
+  return adopt(given, "OdisGuideOptions");
+}
+
+}  // namespace odis::core
+
+OdisGuideImpl::OdisGuideImpl(OdisContext owner, odis::core::Guide content)
+    : memory(owner), guide(std::move(content)) {
+  memory.set(guide.bytes());
+}
+
+OdisGuideBuilderImpl::OdisGuideBuilderImpl(OdisContext owner, const OdisGuideOptions& options)
+    : memory(owner), builder(options, owner->tasks) {}
+
+void odisInitGuideOptions(OdisGuideOptions* options, size_t size) {
+  odis::core::initialize(options, size, "OdisGuideOptions");
+}
+
+OdisGuideBuilder odisNewGuideBuilder(OdisContext context, const OdisGuideOptions* options) {
+  return odis::core::guarded(context, OdisGuideBuilder(nullptr), [&] {
+    odis::core::requireArgument(context, "odisNewGuideBuilder: context");
+    return new OdisGuideBuilderImpl(context,
+                                    options ? odis::core::adoptGuideOptions(*options) : OdisGuideOptions());
+  });
+}
+void odisRetainGuideBuilder(OdisGuideBuilder builder) {
+  if (builder) builder->retain();
+}
+void odisReleaseGuideBuilder(OdisGuideBuilder builder) {
+  if (builder) builder->release();
+}
+
+bool odisAddVertices(OdisGuideBuilder builder, const OdisPathVertices* vertices) {
+  return guardedFor(builder, "odisAddVertices", false, [&] {
+    odis::core::requireArgument(vertices, "odisAddVertices: vertices");
+    const HostVertices given(vertices);
+    builder->builder.add(given.view());
+    builder->memory.set(builder->builder.bytes());
+    return true;
+  });
+}
+
+OdisGuide odisBuildGuide(OdisGuideBuilder builder, const OdisPathVertices* vertices, const float* pixelValues,
+                         size_t pixelCount) {
+  return guardedFor(builder, "odisBuildGuide", OdisGuide(nullptr), [&] {
+    odis::core::requireArgument(vertices, "odisBuildGuide: vertices");
+    const HostVertices given(vertices);
+    return new OdisGuideImpl(
+        &builder->memory.context(),
+        builder->builder.build(given.view(), {pixelValues, pixelValues ? pixelCount : 0}));
+  });
+}
+
+OdisGuide odisRebuildGuide(OdisGuideBuilder builder, OdisGuide previous) {
+  return guardedFor(builder, "odisRebuildGuide", OdisGuide(nullptr), [&] {
+    odis::core::requireArgument(previous, "odisRebuildGuide: previous");
+    return new OdisGuideImpl(&builder->memory.context(), builder->builder.rebuild(previous->guide));
+  });
+}
+
+bool odisGetVertexCounts(OdisGuideBuilder builder, OdisVertexCounts* counts) {
+  return guardedFor(builder, "odisGetVertexCounts", false, [&] {
+    odis::core::requireArgument(counts, "odisGetVertexCounts: counts");
+    odis::core::fillIn(*counts, builder->builder.vertexCounts(), "OdisVertexCounts");
+    return true;
+  });
+}
+
+uint64_t odisGetGuideBuilderBytes(OdisGuideBuilder builder) {
+  return guardedFor(builder, "odisGetGuideBuilderBytes", uint64_t(0),
+                    [&] { return builder->builder.bytes(); });
+}
+
+void odisRetainGuide(OdisGuide guide) {
+  if (guide) guide->retain();
+}
+void odisReleaseGuide(OdisGuide guide) {
+  if (guide) guide->release();
+}
+uint64_t odisGetGuideBytes(OdisGuide guide) {
+  return guardedFor(guide, "odisGetGuideBytes", uint64_t(0), [&] { return guide->guide.bytes(); });
+}
+float odisGetPredictedVarianceRatio(OdisGuide guide) {
+  return guardedFor(guide, "odisGetPredictedVarianceRatio", 1.0f,
+                    [&] { return guide->guide.predictedVarianceRatio(); });
+}
+bool odisGetGuideView(OdisGuide guide, OdisGuideView* view) {
+  return guardedFor(guide, "odisGetGuideView", false, [&] {
+    odis::core::requireArgument(view, "odisGetGuideView: view");
+    odis::core::fillIn(*view, guide->guide.view(), "OdisGuideView");
+    return true;
+  });
+}

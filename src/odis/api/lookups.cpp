@@ -1,0 +1,74 @@
+// Look-ups for hosts in C: the templates of the public headers, for one float. A wrong handle or cell is
+// answered as if there were no cell; nothing else is checked here.
+#include "odis/guide_view.h"
+#include "odis/mixture.h"
+#include "odis/odis.h"
+
+namespace odis::core {
+
+namespace {
+
+bool hasCell(const OdisGuideView* view, uint32_t cell) {
+  return view && cell < view->cellCount;
+}
+
+// The map at a vertex; false where there is none that can be sampled.
+bool prepareMap(const OdisGuideView* view, uint32_t cell, const OdisFloat3* normal, bool bothSides,
+                VertexMap<float>& map) {
+  if (!hasCell(view, cell) || !normal) return false;
+  map.prepare(view->maps, int32_t(cell), *normal, bothSides ? -1.0f : 0.0f);
+  return map.sampleable();
+}
+
+}  // namespace
+
+}  // namespace odis::core
+
+using odis::core::hasCell;
+using odis::core::prepareMap;
+
+uint32_t odisFindCell(const OdisGuideView* view, const OdisPlace* place) {
+  return view && place ? odis::findCell(*view, *place) : ODIS_NO_CELL;
+}
+
+float odisGetBsdfFraction(const OdisGuideView* view, uint32_t cell, float roughness) {
+  return hasCell(view, cell) ? odis::bsdfFraction(*view, int32_t(cell), roughness) : 1;
+}
+
+bool odisSampleMap(const OdisGuideView* view, uint32_t cell, const OdisFloat3* normal, bool bothSides,
+                   const float uv[2], OdisFloat3* wi, float* pdf) {
+  odis::VertexMap<float> map;
+  if (!uv || !wi || !pdf || !prepareMap(view, cell, normal, bothSides, map)) return false;
+  const odis::VertexMap<float>::Sample sample = map.sample(uv[0], uv[1]);
+  *wi = sample.wi;
+  *pdf = sample.pdf;
+  return true;
+}
+
+float odisGetMapPdf(const OdisGuideView* view, uint32_t cell, const OdisFloat3* normal, bool bothSides,
+                    const OdisFloat3* wi) {
+  odis::VertexMap<float> map;
+  return wi && prepareMap(view, cell, normal, bothSides, map) ? map.pdf(*wi) : 0;
+}
+
+float odisGetMixturePdf(float bsdfPdf, float guidablePdf, float guidableProbability, float bsdfFraction,
+                        float mapPdf) {
+  return odis::mixturePdf(bsdfPdf, guidablePdf, guidableProbability, bsdfFraction, mapPdf);
+}
+
+float odisGetSurvivalProbability(const OdisGuideView* view, uint32_t cell, float throughput) {
+  return hasCell(view, cell)
+             ? odis::survivalProbability(view->rules, view->decisions[cell].survivalFactor, throughput)
+             : 1;
+}
+
+float odisGetShadowRayProbability(const OdisGuideView* view, float contribution) {
+  return view ? odis::shadowRayProbability(view->rules, contribution) : 1;
+}
+
+float odisGetLearnedLights(const OdisGuideView* view, uint32_t cell, const float** cdf) {
+  const bool known = hasCell(view, cell) && view->lightGroups > 0;
+  const odis::LearnedLights lights = known ? odis::learnedLights(*view, cell) : odis::LearnedLights();
+  if (cdf) *cdf = lights.cdf;
+  return lights.fraction;
+}

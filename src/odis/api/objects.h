@@ -1,0 +1,129 @@
+// What stands behind the handles of the C interface.
+#pragma once
+
+#include <cstring>
+#include <stdexcept>
+#include <string>
+#include <thread>
+
+#include "odis/frame.h"
+#include "odis/guide.h"
+#include "odis/models/model.h"
+#include "odis/odis.h"
+#include "odis/record/recorder.h"
+#include "odis/work/object.h"
+#include "odis/work/tasks.h"
+
+namespace odis::core {
+
+// Holds a reference.
+template <class T>
+class Ref {
+ public:
+  Ref() = default;
+  explicit Ref(T* object) : m_object(object) {
+    if (object) object->retain();
+  }
+  Ref(const Ref& other) : Ref(other.m_object) {}
+  Ref(Ref&& other) noexcept : m_object(std::exchange(other.m_object, nullptr)) {}
+  Ref& operator=(Ref other) noexcept {
+    std::swap(m_object, other.m_object);
+    return *this;
+  }
+  ~Ref() {
+    if (m_object) m_object->release();
+  }
+  T* get() const { return m_object; }
+  T* operator->() const { return m_object; }
+  explicit operator bool() const { return m_object; }
+
+ private:
+  T* m_object = nullptr;
+};
+
+}  // namespace odis::core
+
+struct OdisContextImpl : odis::core::Object {
+  explicit OdisContextImpl(const OdisContextOptions& given);
+
+  void log(OdisLogLevel level, const std::string& message);
+  // Counts bytes that are held now (change > 0) or no longer.
+  void countMemory(int64_t change);
+  // Bytes that may still be held; all there are without a limit.
+  uint64_t memoryLeft() const;
+
+  const OdisContextOptions options;
+  const std::shared_ptr<const odis::core::Tasks> tasks;
+  std::atomic<int64_t> memory{0};
+
+ private:
+  std::mutex m_logMutex;
+};
+
+namespace odis::core {
+
+// Counts what one object holds.
+class MemoryUse {
+ public:
+  explicit MemoryUse(OdisContext context) : m_context(context) {}
+  ~MemoryUse() { set(0); }
+  MemoryUse(const MemoryUse&) = delete;
+  MemoryUse& operator=(const MemoryUse&) = delete;
+
+  OdisContextImpl& context() const { return *m_context.get(); }
+  void set(uint64_t bytes) {
+    const int64_t change = int64_t(bytes) - m_bytes.exchange(int64_t(bytes));
+    if (change != 0) m_context->countMemory(change);
+  }
+
+ private:
+  Ref<OdisContextImpl> m_context;
+  std::atomic<int64_t> m_bytes{0};
+};
+
+}  // namespace odis::core
+
+namespace odis::core {
+
+// The models that handles of hosts stand for.
+struct ContextModel : OdisModelImpl {
+  ContextModel(OdisContext owner, Model content) : OdisModelImpl(std::move(content)), context(owner) {}
+
+  Ref<OdisContextImpl> context;
+};
+
+}  // namespace odis::core
+
+struct OdisRecorderImpl : odis::core::Object {
+  explicit OdisRecorderImpl(OdisContext owner) : memory(owner) {}
+
+  odis::core::MemoryUse memory;
+  odis::core::PathRecorder recorder;
+};
+
+struct OdisGuideImpl : odis::core::Object {
+  OdisGuideImpl(OdisContext owner, odis::core::Guide content);
+
+  odis::core::MemoryUse memory;
+  odis::core::Guide guide;
+};
+
+struct OdisGuideBuilderImpl : odis::core::Object {
+  OdisGuideBuilderImpl(OdisContext owner, const OdisGuideOptions& options);
+
+  odis::core::MemoryUse memory;
+  odis::core::GuideBuilder builder;
+};
+
+struct OdisFrameImpl : odis::core::Object {
+  OdisFrameImpl(OdisContext owner, const OdisFrameOptions& options);
+  ~OdisFrameImpl() override;
+
+  void endPass(bool interrupted);
+  void requireNotEnding(const char* function) const;
+
+  odis::core::MemoryUse memory;
+  odis::core::Frame frame;
+  std::thread ending;  // of the pass; joinable from odisStartEndPass to odisWaitForPass
+  std::exception_ptr failure;
+};

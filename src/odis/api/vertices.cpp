@@ -1,0 +1,156 @@
+#include "odis/api/vertices.h"
+
+#include <bit>
+#include <cstddef>
+#include <cstring>
+#include <stdexcept>
+
+#include "odis/api/guard.h"
+
+namespace odis::core {
+
+namespace {
+
+// One field of a vertex, in both ways of describing vertices.
+struct FieldPair {
+  const char* name;
+  OdisVertexField OdisPathVertices::*described;
+  size_t offset, bytes;  // within OdisPathVertex
+  bool isFloat;
+};
+
+template <class Type>
+constexpr bool kIsFloat = std::is_same_v<Type, float> || std::is_same_v<Type, Float3>;
+
+#define ODIS_FIELD(NAME)                                                                          \
+  {                                                                                               \
+#NAME, &OdisPathVertices::NAME, offsetof(OdisPathVertex, NAME), sizeof(OdisPathVertex::NAME), \
+        kIsFloat < decltype(OdisPathVertex::NAME)>                                                \
+  }
+constexpr FieldPair kFields[] = {
+    ODIS_FIELD(position),
+    ODIS_FIELD(normal),
+    ODIS_FIELD(wo),
+    ODIS_FIELD(wi),
+    ODIS_FIELD(radiance),
+    ODIS_FIELD(weight),
+    ODIS_FIELD(direct),
+    ODIS_FIELD(pdf),
+    ODIS_FIELD(survival),
+    ODIS_FIELD(guidablePdf),
+    ODIS_FIELD(guidableProbability),
+    ODIS_FIELD(distance),
+    ODIS_FIELD(roughness),
+    ODIS_FIELD(cosine),
+    ODIS_FIELD(indirect),
+    ODIS_FIELD(emission),
+    ODIS_FIELD(emissionLightPdf),
+    ODIS_FIELD(light),
+    ODIS_FIELD(lightDirection),
+    ODIS_FIELD(lightPdf),
+    ODIS_FIELD(lightBsdfPdf),
+    ODIS_FIELD(lightGuidablePdf),
+    ODIS_FIELD(raysAfter),
+    ODIS_FIELD(lightGroupProbability),
+    ODIS_FIELD(lightGroup),
+    ODIS_FIELD(lightableGroups),
+    ODIS_FIELD(sampleWeight),
+    ODIS_FIELD(time),
+    ODIS_FIELD(pixel),
+    ODIS_FIELD(sample),
+    ODIS_FIELD(depth),
+    ODIS_FIELD(discrete),
+    ODIS_FIELD(scattersBothSides),
+};
+#undef ODIS_FIELD
+
+float halfToFloat(uint16_t half) {
+  const uint32_t sign = uint32_t(half & 0x8000u) << 16, exponent = (half >> 10) & 31u,
+                 mantissa = half & 0x3ffu;
+  if (exponent == 31) return std::bit_cast<float>(sign | 0x7f800000u | mantissa << 13);
+  const float value = exponent == 0 ? float(mantissa) * 0x1p-24f
+                                    : std::bit_cast<float>((exponent + 112) << 23 | mantissa << 13);
+  return std::bit_cast<float>(std::bit_cast<uint32_t>(value) | sign);
+}
+
+// The field of a vertex that is made of numbers of 16 bits.
+void copyHalves(void* to, const void* from, size_t floats) {
+  for (size_t i = 0; i < floats; ++i) {
+    uint16_t half;
+    std::memcpy(&half, static_cast<const char*>(from) + i * sizeof half, sizeof half);
+    const float value = halfToFloat(half);
+    std::memcpy(static_cast<char*>(to) + i * sizeof value, &value, sizeof value);
+  }
+}
+
+// Copies one field of all vertices.
+void copyField(const FieldPair& pair, const OdisVertexField& field, std::vector<PathVertex>& vertices) {
+  const bool half = field.format == ODIS_FORMAT_HALF;
+  const size_t bytes = half ? pair.bytes / 2 : pair.bytes;
+  const size_t stride = field.stride == 0 ? bytes : field.stride;
+  const auto require = [&](bool holds, const std::string& expected) {
+    if (!holds)
+      throw std::invalid_argument("OdisPathVertices." + std::string(pair.name) + ": expected " + expected);
+  };
+  require(half || field.format == ODIS_FORMAT_DEFAULT, "a format of OdisFormat");
+  require(!half || pair.isFloat, "no half floats for whole numbers");
+  require(stride >= bytes, "a stride of at least " + std::to_string(bytes) + " bytes");
+  require(vertices.size() <= PTRDIFF_MAX / stride, "an array that memory can hold");
+  for (size_t i = 0; i < vertices.size(); ++i) {
+    const char* from = static_cast<const char*>(field.data) + i * stride;
+    char* to = reinterpret_cast<char*>(&vertices[i]) + pair.offset;
+    half ? copyHalves(to, from, pair.bytes / sizeof(float)) : void(std::memcpy(to, from, pair.bytes));
+  }
+}
+
+// The array of OdisPathVertex that is described; null if it is something else.
+const PathVertex* asArray(const OdisPathVertices& described) {
+  const char* begin = static_cast<const char*>(described.position.data);
+  if (reinterpret_cast<uintptr_t>(begin) % alignof(PathVertex) != 0) return nullptr;
+  for (const FieldPair& pair : kFields) {
+    const OdisVertexField& field = described.*pair.described;
+    if (field.data != begin + pair.offset || field.stride != sizeof(PathVertex) ||
+        field.format != ODIS_FORMAT_DEFAULT)
+      return nullptr;
+  }
+  return reinterpret_cast<const PathVertex*>(begin);
+}
+
+}  // namespace
+
+HostVertices::HostVertices(const OdisPathVertices* given) {
+  if (!given) return;
+  const OdisPathVertices described = adopt(*given, "OdisPathVertices");
+  if (described.count == 0) return;
+  requireArgument(described.position.data, "OdisPathVertices.position");
+  if (const PathVertex* array = asArray(described)) {
+    m_view = {array, described.count};
+    return;
+  }
+  m_copies.resize(described.count);
+  for (const FieldPair& pair : kFields)
+    if ((described.*pair.described).data) copyField(pair, described.*pair.described, m_copies);
+  m_view = m_copies;
+}
+
+}  // namespace odis::core
+
+void odisInitPathVertex(OdisPathVertex* vertex, size_t size) {
+  odis::core::initialize(vertex, size, "OdisPathVertex");
+}
+void odisInitPathVertices(OdisPathVertices* vertices, size_t size) {
+  odis::core::initialize(vertices, size, "OdisPathVertices");
+}
+void odisDescribeVertices(OdisPathVertices* vertices, const OdisPathVertex* array, size_t count) {
+  odis::core::guarded(nullptr, false, [&] {
+    odis::core::requireArgument(vertices, "odisDescribeVertices: vertices");
+    if (count > 0) odis::core::requireArgument(array, "odisDescribeVertices: array");
+    OdisPathVertices described;
+    described.count = count;
+    for (const odis::core::FieldPair& pair : odis::core::kFields)
+      described.*pair.described = {reinterpret_cast<const char*>(array) + pair.offset, sizeof(OdisPathVertex),
+                                   ODIS_FORMAT_DEFAULT};
+    odis::core::fillIn(*vertices, described, "OdisPathVertices");
+    return true;
+  });
+}

@@ -1,0 +1,42 @@
+// What turns the statistics of cells into decisions: networks that were trained offline, or formulas.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <string_view>
+
+#include "odis/models/direction_model.h"
+#include "odis/models/lights.h"
+#include "odis/work/object.h"
+
+namespace odis::core {
+
+// Copies share what they hold. Null: a formula decides.
+struct Model {
+  std::shared_ptr<const DirectionModel> directions;
+  std::shared_ptr<const LightModel> lights;
+
+  // The networks that come with the library.
+  static Model builtIn();
+  // The networks of a file of weights, or of its bytes; `path` is what errors name. Throw WeightsError.
+  static Model load(const std::string& path);
+  static Model parse(const std::string& path, std::string_view bytes);
+};
+
+}  // namespace odis::core
+
+// What a handle of a model points to.
+struct OdisModelImpl : odis::core::Object {
+  explicit OdisModelImpl(odis::core::Model content) : model(std::move(content)) {}
+
+  odis::core::Model model;
+};
+
+namespace odis::core {
+
+// The model of some options; NULL stands for the one that comes with the library.
+inline Model modelOf(OdisModel handle) {
+  return handle ? handle->model : Model::builtIn();
+}
+
+}  // namespace odis::core
