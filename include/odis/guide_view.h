@@ -1,5 +1,5 @@
-// What a host looks up at every vertex in a guide (odis/view.h), inline, on the CPU or in CUDA. Cells are known
-// by their index.
+// What a host looks up at every vertex in a guide (odis/view.h), inline, on the CPU or in CUDA. Cells are
+// known by their index.
 //
 //   const uint32_t cell = odis::findCell(view, {position, normal, pixel, sample});
 //   if (cell != odis::kNoCell) {

@@ -1,6 +1,6 @@
-// ODIS's interface in C99. A host traces paths; ODIS learns from the first of them where light comes from and says how
-// to sample the others, which leaves the image unbiased. docs/api.md describes every function, docs/integrating.md how a
-// renderer uses them; odis/odis.hpp is the same in C++.
+// ODIS's interface in C99. A host traces paths; ODIS learns from the first of them where light comes from and
+// says how to sample the others, which leaves the image unbiased. docs/api.md describes every function,
+// docs/integrating.md how a renderer uses them; odis/odis.hpp is the same in C++.
 //
 //   OdisContext context = odisNewContext(NULL);
 //   OdisFrameOptions options;
@@ -17,13 +17,13 @@
 //   }
 //   odisGetPixelMean(frame, pixel, &mean);
 //
-// Objects have a count of references: odisNew... makes one, odisRetain... adds one, odisRelease... takes one away and
-// does nothing for NULL. An object keeps alive what it was made with. Different objects may be used by different
-// threads at once; functions that may be called by several threads for the same object say so.
+// Objects have a count of references: odisNew... makes one, odisRetain... adds one, odisRelease... takes one
+// away and does nothing for NULL. An object keeps alive what it was made with. Different objects may be used
+// by different threads at once; functions that may be called by several threads for the same object say so.
 //
-// A call that fails changes nothing, answers NULL, false or 0, and leaves a code and a message for odisGetError on the
-// thread that made it. NULL for a required argument is an error like any other. The library prints nothing, never ends
-// the process and does not change the threads or the signals of the host.
+// A call that fails changes nothing, answers NULL, false or 0, and leaves a code and a message for
+// odisGetError on the thread that made it. NULL for a required argument is an error like any other. The
+// library prints nothing, never ends the process and does not change the threads or the signals of the host.
 #ifndef ODIS_H
 #define ODIS_H
 
@@ -53,19 +53,21 @@
 extern "C" {
 #endif
 
-// ---- version and errors --------------------------------------------------------------------------------------------
+// ---- version and errors
+// --------------------------------------------------------------------------------------------
 
 // ODIS_VERSION of the library that runs, and its text: "0.1.0", with the commit if it was built from a clone.
 ODIS_API uint32_t odisGetVersion(void);
 ODIS_API const char* odisGetVersionText(void);
 
-// The first error of this thread since the last call, which forgets it. `message` (may be NULL) receives a text that is
-// valid until the thread's next call of this function, "" if there was no error.
+// The first error of this thread since the last call, which forgets it. `message` (may be NULL) receives a
+// text that is valid until the thread's next call of this function, "" if there was no error.
 ODIS_API OdisError odisGetError(const char** message);
 // "invalid argument", say; "unknown error" for what is no code.
 ODIS_API const char* odisGetErrorName(OdisError error);
 
-// ---- context: threads, memory, messages ----------------------------------------------------------------------------
+// ---- context: threads, memory, messages
+// ----------------------------------------------------------------------------
 
 ODIS_API void odisInitContextOptions(OdisContextOptions* options, size_t size);
 // NULL stands for the defaults.
@@ -75,7 +77,8 @@ ODIS_API void odisReleaseContext(OdisContext context);
 // Bytes that the context's objects hold, as far as it exceeds a few kilobytes an object.
 ODIS_API uint64_t odisGetMemoryUse(OdisContext context);
 
-// ---- model: what turns statistics into decisions -------------------------------------------------------------------
+// ---- model: what turns statistics into decisions
+// -------------------------------------------------------------------
 
 // The networks that come with the library.
 ODIS_API OdisModel odisNewModel(OdisContext context);
@@ -87,10 +90,11 @@ ODIS_API OdisModel odisNewModelWithFormulas(OdisModel model, bool directions, bo
 ODIS_API void odisRetainModel(OdisModel model);
 ODIS_API void odisReleaseModel(OdisModel model);
 
-// ---- recorder: from the events of paths to vertices ----------------------------------------------------------------
+// ---- recorder: from the events of paths to vertices
+// ----------------------------------------------------------------
 
-// One for each thread or tile. 250 bytes a vertex while paths are open; memory is kept for the next ones. Many paths
-// may be open at once, their events in any order as long as each path's own are in order:
+// One for each thread or tile. 250 bytes a vertex while paths are open; memory is kept for the next ones.
+// Many paths may be open at once, their events in any order as long as each path's own are in order:
 //
 //   for each ray of the path:
 //     odisRecordSurface or odisRecordEscape
@@ -120,47 +124,54 @@ ODIS_API bool odisRecordLight(OdisRecorder recorder, uint32_t path, const OdisLi
 ODIS_API bool odisRecordLightHidden(OdisRecorder recorder, uint32_t path);
 ODIS_API void odisInitBounceEvent(OdisBounceEvent* event, size_t size);
 ODIS_API bool odisRecordBounce(OdisRecorder recorder, uint32_t path, const OdisBounceEvent* event);
-// Closes all paths and returns their vertices, path after path, each with what only the complete path knows: the
-// radiance that arrives, contributions to the pixel, rays. They stay as they are until the next odisBeginPath.
+// Closes all paths and returns their vertices, path after path, each with what only the complete path knows:
+// the radiance that arrives, contributions to the pixel, rays. They stay as they are until the next
+// odisBeginPath.
 ODIS_API const OdisPathVertex* odisFinishPaths(OdisRecorder recorder, size_t* count);
 
-// ---- vertices ------------------------------------------------------------------------------------------------------
+// ---- vertices
+// ------------------------------------------------------------------------------------------------------
 
 ODIS_API void odisInitPathVertex(OdisPathVertex* vertex, size_t size);
 ODIS_API void odisInitPathVertices(OdisPathVertices* vertices, size_t size);
 // Describes an array of OdisPathVertex.
 ODIS_API void odisDescribeVertices(OdisPathVertices* vertices, const OdisPathVertex* array, size_t count);
 
-// ---- frame: an image from its first sample to its last -------------------------------------------------------------
+// ---- frame: an image from its first sample to its last
+// -------------------------------------------------------------
 
 ODIS_API void odisInitFrameOptions(OdisFrameOptions* options, size_t size);
-// 112 bytes a pixel for sums, 12 for decisions; 188 bytes a pilot vertex until the guide is built; the guide's own.
+// 112 bytes a pixel for sums, 12 for decisions; 188 bytes a pilot vertex until the guide is built; the
+// guide's own.
 ODIS_API OdisFrame odisNewFrame(OdisContext context, const OdisFrameOptions* options);
 ODIS_API void odisRetainFrame(OdisFrame frame);
 ODIS_API void odisReleaseFrame(OdisFrame frame);
 // Begins the next pass; false when the image is complete or a pass was interrupted, which is no error.
 ODIS_API bool odisBeginPass(OdisFrame frame, OdisFramePass* pass);
-// The samples of a pixel in the pass under way. They do not depend on what samples of that pixel brought. Thread-safe.
+// The samples of a pixel in the pass under way. They do not depend on what samples of that pixel brought.
+// Thread-safe.
 ODIS_API OdisSampleRange odisGetSamples(OdisFrame frame, uint32_t pixel);
-// An estimate of each pixel's luminance, from the pilot; NULL before the pilot has ended. Valid as long as the frame.
+// An estimate of each pixel's luminance, from the pilot; NULL before the pilot has ended. Valid as long as
+// the frame.
 ODIS_API const float* odisGetPixelValues(OdisFrame frame);
-// Hands over samples of the pass, with their vertices (may be NULL) if the pass wants them. Thread-safe, in any order
-// and in portions of any size, with the same result: whole tiles of 16 x 16 pixels are handled on the spot, whatever
-// comes in parts is kept until its tile is complete or the pass ends. A sample that the pass did not ask for, or that
-// comes twice where that can be told, is an error. Vertices of samples that are not due are left out and counted.
+// Hands over samples of the pass, with their vertices (may be NULL) if the pass wants them. Thread-safe, in
+// any order and in portions of any size, with the same result: whole tiles of 16 x 16 pixels are handled on
+// the spot, whatever comes in parts is kept until its tile is complete or the pass ends. A sample that the
+// pass did not ask for, or that comes twice where that can be told, is an error. Vertices of samples that are
+// not due are left out and counted.
 ODIS_API bool odisAddSamples(OdisFrame frame, const OdisFrameSample* samples, size_t count,
                              const OdisPathVertices* vertices);
-// Ends the pass: learns, builds the guide, settles what there is to settle. An interrupted pass may lack samples;
-// nothing is learned from it, and it is the last one. So is a pass whose learning is cancelled.
+// Ends the pass: learns, builds the guide, settles what there is to settle. An interrupted pass may lack
+// samples; nothing is learned from it, and it is the last one. So is a pass whose learning is cancelled.
 ODIS_API bool odisEndPass(OdisFrame frame, bool interrupted);
-// The same on another thread: the host goes on with other things and calls odisWaitForPass before anything else of this
-// frame, which answers what odisEndPass would have.
+// The same on another thread: the host goes on with other things and calls odisWaitForPass before anything
+// else of this frame, which answers what odisEndPass would have.
 ODIS_API bool odisStartEndPass(OdisFrame frame, bool interrupted);
 ODIS_API bool odisWaitForPass(OdisFrame frame);
 // Whether all further samples will be guided by the guide of today.
 ODIS_API bool odisGuideIsFinal(OdisFrame frame);
-// Weight of a sample in the mean of its pixel's samples, in units of a guided sample's. To be asked for after the last
-// pass. 1 for the pilot's, too, in a pixel that has no others.
+// Weight of a sample in the mean of its pixel's samples, in units of a guided sample's. To be asked for after
+// the last pass. 1 for the pilot's, too, in a pixel that has no others.
 ODIS_API float odisGetSampleWeight(OdisFrame frame, uint32_t pixel, uint32_t sample);
 // The weighted mean of the samples that a pixel has by now, and that mean's variance.
 ODIS_API bool odisGetPixelMean(OdisFrame frame, uint32_t pixel, OdisPixelMean* mean);
@@ -172,35 +183,37 @@ ODIS_API bool odisGetFrameVertexCounts(OdisFrame frame, OdisVertexCounts* counts
 ODIS_API OdisGuide odisGetFrameGuide(OdisFrame frame);
 // Sums over the pilot's samples of each pixel. Valid as long as the frame.
 ODIS_API const OdisPixelSums* odisGetPilotImage(OdisFrame frame);
-// Copies the pilot's vertices, tile after tile, within a tile ordered by pixel, sample, depth; returns how many there
-// are. None once the guide is built, unless they are kept. NULL: counts them only.
+// Copies the pilot's vertices, tile after tile, within a tile ordered by pixel, sample, depth; returns how
+// many there are. None once the guide is built, unless they are kept. NULL: counts them only.
 ODIS_API size_t odisGetPilotVertices(OdisFrame frame, OdisPathVertex* vertices, size_t capacity);
 
-// ---- guide: nested cells in world space, with a sampling map and decisions in each ---------------------------------
+// ---- guide: nested cells in world space, with a sampling map and decisions in each
+// ---------------------------------
 
-// For hosts that have no frame: vertices are added once or as samples arrive, and guides are built from all of them.
+// For hosts that have no frame: vertices are added once or as samples arrive, and guides are built from all
+// of them.
 ODIS_API void odisInitGuideOptions(OdisGuideOptions* options, size_t size);
 ODIS_API OdisGuideBuilder odisNewGuideBuilder(OdisContext context, const OdisGuideOptions* options);
 ODIS_API void odisRetainGuideBuilder(OdisGuideBuilder builder);
 ODIS_API void odisReleaseGuideBuilder(OdisGuideBuilder builder);
-// Adds to the statistics of the cells. The first call fixes the extent of the cells, so it should hold at least one pass
-// over the image. Vertices of guided paths may be added, too, their `pdf` being the mixture's. Vertices that can't be
-// used are left out and counted.
+// Adds to the statistics of the cells. The first call fixes the extent of the cells, so it should hold at
+// least one pass over the image. Vertices of guided paths may be added, too, their `pdf` being the mixture's.
+// Vertices that can't be used are left out and counted.
 ODIS_API bool odisAddVertices(OdisGuideBuilder builder, const OdisPathVertices* vertices);
-// Builds maps from all that was added, and BSDF sampling fractions from vertices that should be (a part of) the same,
-// without those of guided paths. `pixelValues`, indexed by OdisPathVertex.pixel, are what the vertices' contributions
-// are divided by; NULL: contributions are taken as they are.
+// Builds maps from all that was added, and BSDF sampling fractions from vertices that should be (a part of)
+// the same, without those of guided paths. `pixelValues`, indexed by OdisPathVertex.pixel, are what the
+// vertices' contributions are divided by; NULL: contributions are taken as they are.
 ODIS_API OdisGuide odisBuildGuide(OdisGuideBuilder builder, const OdisPathVertices* vertices,
                                   const float* pixelValues, size_t pixelCount);
-// Builds all but BSDF sampling fractions anew, from all that was added by now. Those are taken from `previous`, which
-// must come from this builder; cells that are new have their parents' fractions.
+// Builds all but BSDF sampling fractions anew, from all that was added by now. Those are taken from
+// `previous`, which must come from this builder; cells that are new have their parents' fractions.
 ODIS_API OdisGuide odisRebuildGuide(OdisGuideBuilder builder, OdisGuide previous);
 ODIS_API bool odisGetVertexCounts(OdisGuideBuilder builder, OdisVertexCounts* counts);
 // Held at most while guides are built, the vertices themselves not included, in bytes.
 ODIS_API uint64_t odisGetGuideBuilderBytes(OdisGuideBuilder builder);
 
-// A guide is fixed once it is built; all of this is thread-safe. About 830 bytes a cell, and 4 bytes a cell and group of
-// lights.
+// A guide is fixed once it is built; all of this is thread-safe. About 830 bytes a cell, and 4 bytes a cell
+// and group of lights.
 ODIS_API void odisRetainGuide(OdisGuide guide);
 ODIS_API void odisReleaseGuide(OdisGuide guide);
 ODIS_API uint64_t odisGetGuideBytes(OdisGuide guide);
@@ -209,30 +222,31 @@ ODIS_API float odisGetPredictedVarianceRatio(OdisGuide guide);
 // The guide as flat arrays, valid as long as the guide.
 ODIS_API bool odisGetGuideView(OdisGuide guide, OdisGuideView* view);
 
-// ---- look-ups, for hosts in C: those in C++ and CUDA use odis/guide_view.h -----------------------------------------
+// ---- look-ups, for hosts in C: those in C++ and CUDA use odis/guide_view.h
+// -----------------------------------------
 
 // The finest cell that there is for a vertex; ODIS_NO_CELL where the guide has seen nothing at all.
 ODIS_API uint32_t odisFindCell(const OdisGuideView* view, const OdisPlace* place);
 // The probability that a draw from lobes that may be guided stays with the BSDF, in (0, 1]; 1 without a cell.
 ODIS_API float odisGetBsdfFraction(const OdisGuideView* view, uint32_t cell, float roughness);
-// Samples a direction from the cell's map times the cosine to `normal` (or its absolute value, if the surface scatters
-// to both sides), from u, v uniform in [0, 1). False: the map can't be sampled at this vertex.
+// Samples a direction from the cell's map times the cosine to `normal` (or its absolute value, if the surface
+// scatters to both sides), from u, v uniform in [0, 1). False: the map can't be sampled at this vertex.
 ODIS_API bool odisSampleMap(const OdisGuideView* view, uint32_t cell, const OdisFloat3* normal,
-                            bool bothSides, const float uv[2], OdisFloat3* wi, float* pdf);
+                            bool bothSides, const float uv[2], OdisMapSample* sample);
 // The density of that.
 ODIS_API float odisGetMapPdf(const OdisGuideView* view, uint32_t cell, const OdisFloat3* normal,
                              bool bothSides, const OdisFloat3* wi);
 // The density of the mixture of BSDF and map (odis/mixture.h).
 ODIS_API float odisGetMixturePdf(float bsdfPdf, float guidablePdf, float guidableProbability,
                                  float bsdfFraction, float mapPdf);
-// The probability, in (0, 1], with which a path should go on from a vertex in this cell; `throughput` is that of the path
-// over the pixel's value, both as luminance.
+// The probability, in (0, 1], with which a path should go on from a vertex in this cell; `throughput` is that
+// of the path over the pixel's value, both as luminance.
 ODIS_API float odisGetSurvivalProbability(const OdisGuideView* view, uint32_t cell, float throughput);
-// The probability, in (0, 1], with which a shadow ray should be traced for light that, if nothing hides it, adds
-// `contribution` to the pixel, over the pixel's value, as luminance.
+// The probability, in (0, 1], with which a shadow ray should be traced for light that, if nothing hides it,
+// adds `contribution` to the pixel, over the pixel's value, as luminance.
 ODIS_API float odisGetShadowRayProbability(const OdisGuideView* view, float contribution);
-// The fraction of the choices of a light that follow the cell's table, in [0, 1), and the table: cumulative probabilities
-// of the groups, from 0 to 1. 0 and NULL where nothing is known.
+// The fraction of the choices of a light that follow the cell's table, in [0, 1), and the table: cumulative
+// probabilities of the groups, from 0 to 1. 0 and NULL where nothing is known.
 ODIS_API float odisGetLearnedLights(const OdisGuideView* view, uint32_t cell, const float** cdf);
 
 #ifdef __cplusplus

@@ -1,9 +1,10 @@
-// The data of ODIS's interface, in C99: what a host fills in and what it reads. odis/odis.h has the functions.
+// The data of ODIS's interface, in C99: what a host fills in and what it reads. odis/odis.h has the
+// functions.
 //
 // Structs that may grow begin with their size, which tells a newer library what an older host knows. In C,
 // odisInit...() fills in the size and the defaults; in C++ every struct has them from the start. World space,
-// unit directions, densities with respect to solid angle, radiance in the host's units, colours linear with the
-// primaries of sRGB.
+// unit directions, densities with respect to solid angle, radiance in the host's units, colours linear with
+// the primaries of sRGB.
 #ifndef ODIS_STRUCTS_H
 #define ODIS_STRUCTS_H
 
@@ -78,11 +79,13 @@ typedef void (*OdisTaskFunction)(void* user, size_t count, void (*task)(void* ta
 
 typedef struct OdisContextOptions {
   size_t size ODIS_DEFAULT(sizeof(OdisContextOptions));
-  // The library's own work is spread over this many threads; 0: one a core. Not used if the host brings tasks.
+  // The library's own work is spread over this many threads; 0: one a core. Not used if the host brings
+  // tasks.
   uint32_t threads ODIS_DEFAULT(0);
   OdisLogLevel logLevel ODIS_DEFAULT(ODIS_LOG_WARNING);  // the least important messages that are told
-  // The most bytes that all objects of the context together may hold; 0: no limit. Guides become coarser, with
-  // a warning, before it is exceeded; where that does not help, calls fail with ODIS_ERROR_OUT_OF_MEMORY.
+  // The most bytes that all objects of the context together may hold; 0: no limit. Guides become coarser,
+  // with a warning, before it is exceeded; where that does not help, calls fail with
+  // ODIS_ERROR_OUT_OF_MEMORY.
   uint64_t memoryLimit ODIS_DEFAULT(0);
   OdisLogFunction logFunction ODIS_DEFAULT(NULL);  // NULL: nothing is told
   void* logUser ODIS_DEFAULT(NULL);
@@ -94,7 +97,8 @@ typedef struct OdisContextOptions {
   void* taskUser ODIS_DEFAULT(NULL);
 } OdisContextOptions;
 
-// Groups of lights that are equal parts of one light: where nothing was learned, each is as likely as the others.
+// Groups of lights that are equal parts of one light: where nothing was learned, each is as likely as the
+// others.
 typedef struct OdisLightParts {
   uint32_t first ODIS_DEFAULT(0), count ODIS_DEFAULT(0);
 } OdisLightParts;
@@ -104,8 +108,8 @@ typedef struct OdisGuideOptions {
   OdisModel model ODIS_DEFAULT(NULL);  // NULL: the networks that come with the library
   // >= 1: the finest cells have an edge of (diagonal of what the first vertices span) / this.
   int32_t cellsPerDiagonal ODIS_DEFAULT(32);
-  // >= 0. Weight of the coarser level when the formula blends its map with a finer one's, in samples, for each
-  // level, finest first; the last one is for the uniform map.
+  // >= 0. Weight of the coarser level when the formula blends its map with a finer one's, in samples, for
+  // each level, finest first; the last one is for the uniform map.
   float priorSamples[ODIS_CELL_LEVELS] ODIS_DEFAULT({250, 250, 120, 30});
   float floor ODIS_DEFAULT(0.03f);  // in [0, 1]: share of the uniform distribution in every map
   float clamp
@@ -135,8 +139,8 @@ typedef struct OdisFrameOptions {
   // Samples per pixel of the pilot; 0.25 is one sample in each 2 x 2 pixels. 0: 0.25 where that is enough to
   // learn from (the image is large) and a whole sample would be dear (there are few), else 1.
   double pilotSamplesPerPixel ODIS_DEFAULT(0);
-  // >= 0. Weight of a pilot sample relative to a guided one. A constant, because whatever the frame learns, it
-  // learns from the pilot: weights by what was learned would bias the image.
+  // >= 0. Weight of a pilot sample relative to a guided one. A constant, because whatever the frame learns,
+  // it learns from the pilot: weights by what was learned would bias the image.
   float pilotWeight ODIS_DEFAULT(0.6f);
   // Further samples per pixel that the guide is made from instead of the pilot's, and that are no part of the
   // image: for experiments that ask what a better guide would gain. The guide is not refined then.
@@ -235,8 +239,8 @@ typedef struct OdisEmissionEvent {
       ODIS_DEFAULT(0);  // density with which next-event estimation would have found it; 0 if it can't
 } OdisEmissionEvent;
 
-// A shadow ray was traced for next-event estimation. Both radiances are outgoing, f |cos| Le / pdf, divided by
-// the probability of tracing the ray.
+// A shadow ray was traced for next-event estimation. Both radiances are outgoing, f |cos| Le / pdf, divided
+// by the probability of tracing the ray.
 typedef struct OdisLightEvent {
   size_t size ODIS_DEFAULT(sizeof(OdisLightEvent));
   OdisFloat3 unweighted, weighted;  // without and with the MIS weight

@@ -1,5 +1,5 @@
-// A guide as flat arrays, in C99: what a host looks up at every vertex, on any processor. odis/guide_view.h and the
-// headers that it names have the look-ups for C++ and CUDA, odis/odis.h for C.
+// A guide as flat arrays, in C99: what a host looks up at every vertex, on any processor. odis/guide_view.h
+// and the headers that it names have the look-ups for C++ and CUDA, odis/odis.h for C.
 #ifndef ODIS_VIEW_H
 #define ODIS_VIEW_H
 
@@ -8,12 +8,18 @@
 // Counts up when a field changes its meaning; what is added comes at the end.
 #define ODIS_GUIDE_VIEW_VERSION 1
 
-// Where a look-up is made, and for which sample of which pixel, counted as in the frame. The guides of today answer
-// all samples alike.
+// Where a look-up is made, and for which sample of which pixel, counted as in the frame. The guides of today
+// answer all samples alike.
 typedef struct OdisPlace {
   OdisFloat3 position, normal;  // unit shading normal, on the side of the outgoing direction
   uint32_t pixel ODIS_DEFAULT(0), sample ODIS_DEFAULT(0);
 } OdisPlace;
+
+// A direction drawn from a map, and its density.
+typedef struct OdisMapSample {
+  OdisFloat3 wi;
+  float pdf ODIS_DEFAULT(0);
+} OdisMapSample;
 
 // Where the cells lie: the first corner of the first cell, and 1 / edge of the finest.
 typedef struct OdisCellGrid {
@@ -21,7 +27,8 @@ typedef struct OdisCellGrid {
   float inverseEdge ODIS_DEFAULT(1);
 } OdisCellGrid;
 
-// A slot of the hash table from keys of cells (odis/cell_grid.h) to their numbers; ODIS_NO_CELL marks a free one.
+// A slot of the hash table from keys of cells (odis/cell_grid.h) to their numbers; ODIS_NO_CELL marks a free
+// one.
 typedef struct OdisCellSlot {
   uint64_t key ODIS_DEFAULT(0);
   uint32_t cell ODIS_DEFAULT(ODIS_NO_CELL);
@@ -31,41 +38,42 @@ typedef struct OdisCellSlot {
 typedef struct OdisMapArrays {
   // [cell][texel]: relative incident radiance, at least 1, so that no direction is impossible.
   const uint16_t* texels ODIS_DEFAULT(NULL);
-  // [cell][quantity][block]: the sums over the block's texels of texel times direction (x, y, z), and of the texels.
+  // [cell][quantity][block]: the sums over the block's texels of texel times direction (x, y, z), and of the
+  // texels.
   const float* sums ODIS_DEFAULT(NULL);
   // [axis][texel]: the directions of the texels' centres, x then y then z.
   const float* directions ODIS_DEFAULT(NULL);
-  // What is added to every cosine: something, so that blocks wholly below the horizon have a density too, but so
-  // little that even the one bright texel of a dark map attracts next to nothing from below.
+  // What is added to every cosine: something, so that blocks wholly below the horizon have a density too, but
+  // so little that even the one bright texel of a dark map attracts next to nothing from below.
   float rim ODIS_DEFAULT(1e-4f);
 } OdisMapArrays;
 
 // What a cell decides beside directions. 32 bytes.
 typedef struct OdisCellDecisions {
-  // BSDF sampling fraction of each roughness class, in (0, 1]: the probability that a draw that may be guided stays
-  // with the BSDF; 1 where directions are not guided.
+  // BSDF sampling fraction of each roughness class, in (0, 1]: the probability that a draw that may be guided
+  // stays with the BSDF; 1 where directions are not guided.
   float bsdfFraction[ODIS_ROUGHNESS_CLASSES] ODIS_DEFAULT({1, 1, 1});
-  // What throughput over the pixel's value is multiplied by to give the probability that a path goes on; infinity:
-  // always.
+  // What throughput over the pixel's value is multiplied by to give the probability that a path goes on;
+  // infinity: always.
   float survivalFactor ODIS_DEFAULT(INFINITY);
-  // Mean radiance that a vertex here scatters back, next-event estimation included, or nothing: what a path adds that
-  // ends before it knows. A path that survives with probability p adds (1 - 1/p) times as much, so that the mean
-  // remains right whatever this value is; pixels may become negative.
+  // Mean radiance that a vertex here scatters back, next-event estimation included, or nothing: what a path
+  // adds that ends before it knows. A path that survives with probability p adds (1 - 1/p) times as much, so
+  // that the mean remains right whatever this value is; pixels may become negative.
   OdisFloat3 outgoingRadiance;
-  // Fraction of the choices of a light that follow the cell's table, in [0, 1); 0: nothing is known and there is no
-  // table.
+  // Fraction of the choices of a light that follow the cell's table, in [0, 1); 0: nothing is known and there
+  // is no table.
   float learnedLightFraction ODIS_DEFAULT(0);
 } OdisCellDecisions;
 
 // The constants of the rules, so that a host that was compiled earlier follows the library's.
 typedef struct OdisGuideRules {
-  // Lower bounds of the roughness (alpha of a microfacet distribution, 1 for diffuse) of the classes: diffuse, rough,
-  // glossy.
+  // Lower bounds of the roughness (alpha of a microfacet distribution, 1 for diffuse) of the classes:
+  // diffuse, rough, glossy.
   float roughnessBounds[ODIS_ROUGHNESS_CLASSES] ODIS_DEFAULT({0.5f, 0.2f, 0});
   // The least probability of survival, so that no path weighs more than its inverse for it.
   float leastSurvival ODIS_DEFAULT(0.3f);
-  // Light that adds less than this fraction of the pixel's value is worth a shadow ray only sometimes, and at least
-  // with this probability.
+  // Light that adds less than this fraction of the pixel's value is worth a shadow ray only sometimes, and at
+  // least with this probability.
   float fullShadowRayContribution ODIS_DEFAULT(0.05f), leastShadowRayProbability ODIS_DEFAULT(0.2f);
 } OdisGuideRules;
 
@@ -92,11 +100,11 @@ typedef struct OdisFramePass {
   OdisPassKind kind ODIS_DEFAULT(ODIS_PASS_GUIDED);
   bool wantsVertices ODIS_DEFAULT(false);
   bool partOfImage ODIS_DEFAULT(true);
-  // The seed of the random numbers. Passes that are no part of the image have another one, and in frames of fewer than
-  // 1024 pixels each guide has one of its own (docs/unbiasedness.md#sobol-points).
+  // The seed of the random numbers. Passes that are no part of the image have another one, and in frames of
+  // fewer than 1024 pixels each guide has one of its own (docs/unbiasedness.md#sobol-points).
   uint64_t seed ODIS_DEFAULT(0);
-  // Number of samples of all passes of this kind and all pixels, for progress; about, where pixels have different
-  // numbers.
+  // Number of samples of all passes of this kind and all pixels, for progress; about, where pixels have
+  // different numbers.
   uint64_t stageSamples ODIS_DEFAULT(0);
   // Guides paths by what was learned; without cells where nothing was. Valid until the pass ends.
   const OdisGuideView* guide ODIS_DEFAULT(NULL);

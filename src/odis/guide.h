@@ -35,8 +35,8 @@ class CellSamples {
   std::unique_ptr<Data> m_data;
 };
 
-// A set of cells, fixed once built; copies share it. Thread-safe. About 830 bytes a cell, and 4 bytes a cell and group of
-// lights.
+// A set of cells, fixed once built; copies share it. Thread-safe. About 830 bytes a cell, and 4 bytes a cell
+// and group of lights.
 class Guide {
  public:
   Guide();

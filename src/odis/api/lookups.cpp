@@ -36,12 +36,11 @@ float odisGetBsdfFraction(const OdisGuideView* view, uint32_t cell, float roughn
 }
 
 bool odisSampleMap(const OdisGuideView* view, uint32_t cell, const OdisFloat3* normal, bool bothSides,
-                   const float uv[2], OdisFloat3* wi, float* pdf) {
+                   const float uv[2], OdisMapSample* sample) {
   odis::VertexMap<float> map;
-  if (!uv || !wi || !pdf || !prepareMap(view, cell, normal, bothSides, map)) return false;
-  const odis::VertexMap<float>::Sample sample = map.sample(uv[0], uv[1]);
-  *wi = sample.wi;
-  *pdf = sample.pdf;
+  if (!uv || !sample || !prepareMap(view, cell, normal, bothSides, map)) return false;
+  const odis::VertexMap<float>::Sample drawn = map.sample(uv[0], uv[1]);
+  *sample = {drawn.wi, drawn.pdf};
   return true;
 }
 

@@ -7,8 +7,8 @@
 
 namespace odis::core {
 
-// Vertices of a host: those that lie as OdisPathVertex are looked at where they are, others are copied. Throws
-// std::invalid_argument for strides and formats that can't be.
+// Vertices of a host: those that lie as OdisPathVertex are looked at where they are, others are copied.
+// Throws std::invalid_argument for strides and formats that can't be.
 class HostVertices {
  public:
   // NULL: none.

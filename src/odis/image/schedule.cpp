@@ -24,7 +24,7 @@ uint64_t mixBits(uint64_t x) {
   return x ^ (x >> 33);
 }
 
-double pilotSamplesPerPixel(const FrameOptions& options) {
+double pilotSamplesPerPixel(const OdisFrameOptions& options) {
   if (options.pilotSamplesPerPixel > 0) return std::max(options.pilotSamplesPerPixel, 1e-3);
   const size_t pixels = size_t(options.width) * options.height;
   return pixels >= kManyPixels && options.samplesPerPixel < kManySamples ? 0.25 : 1.0;
@@ -33,7 +33,7 @@ double pilotSamplesPerPixel(const FrameOptions& options) {
 // For each pixel how many of its samples belong to the pilot: `pilotSpp` rounded, or, if that is below one,
 // a sample in one pixel of each square of 1 / pilotSpp pixels (of the next whole side), which is chosen by
 // a hash of the square and the seed.
-std::vector<uint32_t> pilotCounts(const FrameOptions& options, double pilotSpp) {
+std::vector<uint32_t> pilotCounts(const OdisFrameOptions& options, double pilotSpp) {
   const size_t pixels = size_t(options.width) * options.height;
   if (pilotSpp >= 1)
     return std::vector<uint32_t>(pixels,
@@ -52,7 +52,7 @@ std::vector<uint32_t> pilotCounts(const FrameOptions& options, double pilotSpp) 
 
 }  // namespace
 
-Schedule::Schedule(const FrameOptions& options)
+Schedule::Schedule(const OdisFrameOptions& options)
     : m_spp(options.samplesPerPixel), m_mostRemaining(options.samplesPerPixel) {
   double pilotSpp = 0;
   if (options.guided) {

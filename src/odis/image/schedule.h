@@ -4,16 +4,18 @@
 #include <utility>
 #include <vector>
 
-#include "odis/frame.h"
+#include "odis/structs.h"
 
 namespace odis::core {
+
+using SampleRange = OdisSampleRange;
 
 // A pixel's first samples are the pilot's, where there is one; what remains is guided. The guide learns
 // from the first samples that remain, too, and after some of them it is settled how many each pixel has. 8
 // bytes a pixel.
 class Schedule {
  public:
-  explicit Schedule(const FrameOptions& options);
+  explicit Schedule(const OdisFrameOptions& options);
 
   // How many samples of the pixel belong to the pilot.
   uint32_t pilotCount(uint32_t pixel) const { return m_pilotCounts.empty() ? 0 : m_pilotCounts[pixel]; }

@@ -7,9 +7,12 @@
 #include <mutex>
 #include <vector>
 
-#include "odis/frame.h"
+#include "odis/path_vertex.h"
 
 namespace odis::core {
+
+using SampleRange = OdisSampleRange;
+using FrameSample = OdisFrameSample;
 
 // Collects the samples of a pass. Tiles are squares of 16 x 16 pixels, cut off at the right and at the
 // bottom; within a tile pixels are ordered by blocks of 4 x 4, so that neighbours in the order are
