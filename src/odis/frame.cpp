@@ -286,6 +286,16 @@ void Frame::endPass(bool interrupted) {
   d.finished = false;
 }
 
+void Frame::limitBytes(uint64_t most) {
+  if (m_data->builder) m_data->builder->limitBytes(most);
+}
+int Frame::coarsening() const {
+  return m_data->builder ? m_data->builder->coarsening() : 1;
+}
+uint64_t Frame::samplesLeftOut() const {
+  return m_data->builder ? m_data->builder->samplesLeftOut() : 0;
+}
+
 uint64_t Frame::bytes() const {
   const Data& d = *m_data;
   constexpr uint64_t kPerPixel = 2 * sizeof(PixelSums) + sizeof(float) + 2 * sizeof(uint32_t);

@@ -85,6 +85,10 @@ class Frame {
   // guide is built, unless they are kept.
   std::vector<PathVertex> pilotVertices() const;
   size_t pilotVertexCount() const;
+  // As those of GuideBuilder; nothing where there is no builder any more.
+  void limitBytes(uint64_t most);
+  int coarsening() const;
+  uint64_t samplesLeftOut() const;
   // Held now. Thread-safe.
   uint64_t bytes() const;
 

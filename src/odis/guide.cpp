@@ -5,6 +5,7 @@
 #include <stdexcept>
 
 #include "odis/cells/statistics.h"
+#include "odis/cells/surroundings.h"
 #include "odis/maps/pack.h"
 #include "odis/maps/texel_directions.h"
 #include "odis/models/bsdf_fraction.h"
@@ -167,6 +168,20 @@ void GuideBuilder::add(ArrayView<const CellSamples> samples) {
 }
 VertexCounts GuideBuilder::vertexCounts() const {
   return m_data->store.vertexCounts();
+}
+void GuideBuilder::limitBytes(uint64_t most) {
+  constexpr uint64_t kPerGuide = kMapTexels * sizeof(uint16_t) + kSumsPerMap * sizeof(float) +
+                                 sizeof(CellDecisions) + sizeof(uint64_t) + 2 * sizeof(CellSlot);
+  constexpr uint64_t kPerCell = sizeof(CellStatistics) + sizeof(Surroundings) + sizeof(LightField) +
+                                sizeof(DirectionDistribution) + 2 * sizeof(CellMoments) + 2 * kPerGuide;
+  const uint64_t tables = 2 * sizeof(float) * (m_data->options.lightGroups + 1);
+  m_data->store.limitCells(most / (kPerCell + tables));
+}
+int GuideBuilder::coarsening() const {
+  return m_data->store.coarsening();
+}
+uint64_t GuideBuilder::samplesLeftOut() const {
+  return m_data->store.samplesLeftOut();
 }
 uint64_t GuideBuilder::bytes() const {
   // What build() makes beside the cells' statistics: distributions, and sums for the BSDF sampling fraction.

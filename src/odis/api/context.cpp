@@ -1,5 +1,3 @@
-#include <cinttypes>
-
 #include "odis/api/guard.h"
 
 using odis::core::adopt;
@@ -26,6 +24,21 @@ uint64_t OdisContextImpl::memoryLeft() const {
   const int64_t left = int64_t(std::min<uint64_t>(options.memoryLimit, INT64_MAX)) - memory;
   return left > 0 ? uint64_t(left) : 0;
 }
+
+namespace odis::core {
+
+void MemoryWarnings::report(OdisContextImpl& context, int coarsening, uint64_t samplesLeftOut) {
+  if (coarsening > m_coarsening)
+    context.log(ODIS_LOG_WARNING,
+                "the memory's limit makes the cells' edges " + std::to_string(coarsening) + " times as long");
+  if (samplesLeftOut > 0 && !m_leftOut)
+    context.log(ODIS_LOG_WARNING,
+                "the memory's limit leaves no room for new cells: the guide learns nothing there");
+  m_coarsening = coarsening;
+  m_leftOut = samplesLeftOut > 0;
+}
+
+}  // namespace odis::core
 
 void odisInitContextOptions(OdisContextOptions* options, size_t size) {
   odis::core::initialize(options, size, "OdisContextOptions");

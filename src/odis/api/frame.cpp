@@ -47,6 +47,7 @@ using odis::core::guardedForFrame;
 
 OdisFrameImpl::OdisFrameImpl(OdisContext owner, const OdisFrameOptions& options)
     : memory(owner), frame(options, owner->tasks) {
+  if (frame.bytes() > owner->memoryLeft()) throw std::bad_alloc();
   memory.set(frame.bytes());
 }
 
@@ -55,8 +56,24 @@ OdisFrameImpl::~OdisFrameImpl() {
 }
 
 void OdisFrameImpl::endPass(bool interrupted) {
+  OdisContextImpl& context = memory.context();
+  if (context.options.memoryLimit > 0) frame.limitBytes(context.memoryLeft());
   frame.endPass(interrupted);
   memory.set(frame.bytes());
+  warnings.report(context, frame.coarsening(), frame.samplesLeftOut());
+}
+
+// The vertices if there is room for them, otherwise none.
+odis::ArrayView<const OdisPathVertex> OdisFrameImpl::withinMemory(
+    odis::ArrayView<const OdisPathVertex> vertices) {
+  OdisContextImpl& context = memory.context();
+  // Half of the memory is for the guide.
+  if (context.options.memoryLimit == 0 ||
+      vertices.size() * sizeof(OdisPathVertex) + context.options.memoryLimit / 2 <= context.memoryLeft())
+    return vertices;
+  if (!verticesLeftOut.exchange(true))
+    context.log(ODIS_LOG_WARNING, "the memory's limit leaves out vertices: the guide learns from the first");
+  return {};
 }
 
 void OdisFrameImpl::requireNotEnding(const char* function) const {
@@ -108,7 +125,7 @@ bool odisAddSamples(OdisFrame frame, const OdisFrameSample* samples, size_t coun
   return guardedForFrame(frame, "odisAddSamples", false, [&](Frame& f) {
     if (count > 0) odis::core::requireArgument(samples, "odisAddSamples: samples");
     const odis::core::HostVertices given(vertices);
-    f.add({samples, count}, given.view());
+    f.add({samples, count}, frame->withinMemory(given.view()));
     frame->memory.set(f.bytes());
     return true;
   });

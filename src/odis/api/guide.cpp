@@ -42,8 +42,12 @@ bool odisAddVertices(OdisGuideBuilder builder, const OdisPathVertices* vertices)
   return guardedFor(builder, "odisAddVertices", false, [&] {
     odis::core::requireArgument(vertices, "odisAddVertices: vertices");
     const HostVertices given(vertices);
+    OdisContextImpl& context = builder->memory.context();
+    if (context.options.memoryLimit > 0)
+      builder->builder.limitBytes(context.memoryLeft() + builder->builder.bytes());
     builder->builder.add(given.view());
     builder->memory.set(builder->builder.bytes());
+    builder->warnings.report(context, builder->builder.coarsening(), builder->builder.samplesLeftOut());
     return true;
   });
 }

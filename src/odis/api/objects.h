@@ -108,11 +108,26 @@ struct OdisGuideImpl : odis::core::Object {
   odis::core::Guide guide;
 };
 
+namespace odis::core {
+
+// What a builder or a frame had to do to keep the memory's limit, told to the log once each.
+class MemoryWarnings {
+ public:
+  void report(OdisContextImpl& context, int coarsening, uint64_t samplesLeftOut);
+
+ private:
+  int m_coarsening = 1;
+  bool m_leftOut = false;
+};
+
+}  // namespace odis::core
+
 struct OdisGuideBuilderImpl : odis::core::Object {
   OdisGuideBuilderImpl(OdisContext owner, const OdisGuideOptions& options);
 
   odis::core::MemoryUse memory;
   odis::core::GuideBuilder builder;
+  odis::core::MemoryWarnings warnings;
 };
 
 struct OdisFrameImpl : odis::core::Object {
@@ -121,9 +136,12 @@ struct OdisFrameImpl : odis::core::Object {
 
   void endPass(bool interrupted);
   void requireNotEnding(const char* function) const;
+  odis::ArrayView<const OdisPathVertex> withinMemory(odis::ArrayView<const OdisPathVertex> vertices);
 
   odis::core::MemoryUse memory;
   odis::core::Frame frame;
+  odis::core::MemoryWarnings warnings;
+  std::atomic<bool> verticesLeftOut{false};
   std::thread ending;  // of the pass; joinable from odisStartEndPass to odisWaitForPass
   std::exception_ptr failure;
 };

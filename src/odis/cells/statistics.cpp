@@ -64,14 +64,29 @@ void CellStore::place(VertexParts parts, int cellsPerDiagonal) {
   place(CellGrid({low[0] - offset, low[1] - offset, low[2] - offset}, edge));
 }
 
+// Doubles the edges of the cells until there are few enough. Coarser levels add less than half as many.
+void CellStore::coarsen(VertexParts parts) {
+  constexpr int kMostCoarsening = 1 << 18;
+  while (m_coarsening < kMostCoarsening) {
+    CellIndex finest;
+    for (const ArrayView<const PathVertex>& part : parts)
+      for (const PathVertex& v : part)
+        if (isUsable(v)) finest.insert(m_grid.key(v.position, v.normal, 0));
+    if (finest.size() + finest.size() / 2 <= m_mostCells) return;
+    m_coarsening *= 2;
+    place(CellGrid(m_grid.origin(), 2 * m_grid.finestEdge()));
+  }
+}
+
 void CellStore::place(const CellGrid& grid) {
   m_grid = grid;
   m_placed = true;
 }
 
 // The number of the cell with this key, of the finest level; it and its ancestors get numbers if they have
-// none.
+// none. kNoCell where there is no room for them.
 uint32_t CellStore::insert(uint64_t key) {
+  if (m_links.size() + kCellLevels > m_mostCells) return m_index.find(key);
   uint32_t child = kNoCell, finest = kNoCell;
   for (int level = 0; level < kCellLevels; ++level, key = CellGrid::parent(key)) {
     const uint32_t before = m_index.size();
@@ -120,7 +135,10 @@ void accumulate(CellStatistics& cell, LightField* field, const Float3& middle, f
 }  // namespace
 
 void CellStore::add(VertexParts parts, int cellsPerDiagonal) {
-  if (!m_placed) place(parts, cellsPerDiagonal);
+  if (!m_placed) {
+    place(parts, cellsPerDiagonal);
+    if (m_mostCells < SIZE_MAX) coarsen(parts);
+  }
   const std::vector<VertexBatch> pilot = makeBatches(parts);
   std::vector<BatchSamples> samples(pilot.size());
   m_tasks->forEach(pilot.size(), [&](size_t b) { samples[b] = take(pilot[b]); });
@@ -157,18 +175,25 @@ void CellStore::add(std::span<const BatchSamples* const> batches) {
   std::vector<BatchCells> cells(batches.size());
   m_transientBytes = 0;
   for (size_t b = 0; b < batches.size(); ++b) {
-    for (const BatchSamples::Cell& cell : batches[b]->cells) cells[b].cells.push_back(insert(cell.key));
+    for (const BatchSamples::Cell& cell : batches[b]->cells) {
+      cells[b].cells.push_back(insert(cell.key));
+      if (cells[b].cells.back() == kNoCell) m_samplesLeftOut += cell.count;
+    }
     cells[b].cellOf = batches[b]->cellOf;
     m_transientBytes += batches[b]->bytes();
     addCounts(m_vertexCounts, batches[b]->counts);
   }
   addNewCells();
+  // Samples without a cell are sorted behind all others.
+  for (BatchCells& batch : cells)
+    for (uint32_t& cell : batch.cells) cell = std::min(cell, uint32_t(m_cells.size()));
 
   // Values are clamped to a multiple of the mean over the next coarser cell, so that no single path rules a
   // map.
   std::vector<double> parentSum(m_cells.size(), 0.0), parentCount(m_cells.size(), 0.0);
   for (size_t b = 0; b < batches.size(); ++b)
     for (size_t i = 0; i < cells[b].cells.size(); ++i) {
+      if (cells[b].cells[i] == m_cells.size()) continue;
       const uint32_t parent = m_cells[cells[b].cells[i]].parent;
       parentSum[parent] += batches[b]->cells[i].value;
       parentCount[parent] += batches[b]->cells[i].count;
@@ -176,7 +201,7 @@ void CellStore::add(std::span<const BatchSamples* const> batches) {
 
   // Sort the samples by cell and add them up.
   const CellOrder<CellSample> order =
-      sortByCell<CellSample>(*m_tasks, cells, uint32_t(m_cells.size()),
+      sortByCell<CellSample>(*m_tasks, cells, uint32_t(m_cells.size()) + 1,
                              [&](size_t b, size_t i) -> const CellSample& { return batches[b]->samples[i]; });
   m_transientBytes += order.bytes();
   forEachCell(*m_tasks, m_cells.size(), [&](size_t parent) {

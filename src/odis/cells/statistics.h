@@ -85,6 +85,13 @@ class CellStore {
                      std::shared_ptr<const Tasks> tasks = libraryTasks());
   ~CellStore();
 
+  // Keeps the number of cells below a limit: the first call of `add` makes them as much larger as it takes,
+  // later ones leave out the samples of cells that there is no more room for.
+  void limitCells(size_t most) { m_mostCells = most; }
+  // How many times larger the cells' edges are for that, and how many samples were left out.
+  int coarsening() const { return m_coarsening; }
+  uint64_t samplesLeftOut() const { return m_samplesLeftOut; }
+
   // Places the grid; otherwise the first call of `add` does.
   void place(const CellGrid& grid);
   // Sorts the vertices into cells and adds them up.
@@ -110,6 +117,7 @@ class CellStore {
 
  private:
   void place(VertexParts parts, int cellsPerDiagonal);
+  void coarsen(VertexParts parts);
   uint32_t insert(uint64_t key);
   void addNewCells();
   void lookAround();
@@ -122,6 +130,9 @@ class CellStore {
   bool m_looksAround;
   std::shared_ptr<const Tasks> m_tasks;
   bool m_placed = false;
+  size_t m_mostCells = SIZE_MAX;
+  int m_coarsening = 1;
+  uint64_t m_samplesLeftOut = 0;
   CellGrid m_grid;
   CellIndex m_index;
   struct Link {

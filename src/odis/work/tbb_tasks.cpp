@@ -1,6 +1,9 @@
 // Tasks on oneTBB, which host and library share if the host uses it, too.
+#include <tbb/info.h>
 #include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
+
+#include <algorithm>
 
 #include "odis/work/tasks.h"
 
@@ -10,8 +13,11 @@ namespace {
 
 class TbbTasks : public Tasks {
  public:
+  // More threads than cores are of no use, and oneTBB would complain of them on the console.
   explicit TbbTasks(uint32_t threads)
-      : m_arena(threads > 0 ? std::make_unique<tbb::task_arena>(int(threads)) : nullptr) {}
+      : m_arena(threads > 0 ? std::make_unique<tbb::task_arena>(
+                                  std::min(int(threads), tbb::info::default_concurrency()))
+                            : nullptr) {}
 
  protected:
   void run(size_t count, Task task, void* data) const override {
