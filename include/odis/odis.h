@@ -187,6 +187,17 @@ ODIS_API const OdisPixelSums* odisGetPilotImage(OdisFrame frame);
 // many there are. None once the guide is built, unless they are kept. NULL: counts them only.
 ODIS_API size_t odisGetPilotVertices(OdisFrame frame, OdisPathVertex* vertices, size_t capacity);
 
+// Writes all that the frame is, between two passes or within one; no odisAddSamples may be under way. What a
+// tile has that is not complete is left out: the host traces it again.
+ODIS_API bool odisSaveFrame(OdisFrame frame, const char* path);
+// The frame that was saved, which goes on where it was: odisBeginPass begins the rest of the pass that was
+// under way, where odisGetSamples answers no samples for pixels that have theirs. The result has the same
+// bits as if nothing had happened. `model` must be the one that the frame had; NULL: the networks that come
+// with the library.
+ODIS_API OdisFrame odisLoadFrame(OdisContext context, const char* path, OdisModel model);
+// Tells another function of progress from now on: a loaded frame has none.
+ODIS_API bool odisSetFrameProgress(OdisFrame frame, OdisProgressFunction function, void* user);
+
 // ---- guide: nested cells in world space, with a sampling map and decisions in each
 // ---------------------------------
 
@@ -221,6 +232,13 @@ ODIS_API uint64_t odisGetGuideBytes(OdisGuide guide);
 ODIS_API float odisGetPredictedVarianceRatio(OdisGuide guide);
 // The guide as flat arrays, valid as long as the guide.
 ODIS_API bool odisGetGuideView(OdisGuide guide, OdisGuideView* view);
+
+// Files, which `odis inspect` shows. A loaded guide answers as the saved one did.
+ODIS_API bool odisSaveGuide(OdisGuide guide, const char* path);
+ODIS_API OdisGuide odisLoadGuide(OdisContext context, const char* path);
+ODIS_API bool odisSaveVertices(const OdisPathVertices* vertices, const char* path);
+// Copies the vertices of a file; returns how many there are. NULL: counts them only.
+ODIS_API size_t odisLoadVertices(const char* path, OdisPathVertex* vertices, size_t capacity);
 
 // ---- look-ups, for hosts in C: those in C++ and CUDA use odis/guide_view.h
 // -----------------------------------------

@@ -165,6 +165,12 @@ class PathRecorder : public Handle<OdisRecorder, odisRetainRecorder, odisRelease
 class Guide : public Handle<OdisGuide, odisRetainGuide, odisReleaseGuide> {
  public:
   explicit Guide(OdisGuide guide) : Handle(guide) {}
+  static Guide load(const std::string& path, const Context& context = Context::shared()) {
+    return Guide(odisLoadGuide(context.get(), path.c_str()));
+  }
+  void save(const std::string& path) const {
+    if (!odisSaveGuide(get(), path.c_str())) throwError();
+  }
 
   // Valid as long as a reference to the guide is held.
   GuideView view() const {
@@ -209,9 +215,15 @@ class GuideBuilder : public Handle<OdisGuideBuilder, odisRetainGuideBuilder, odi
 class Frame : public Handle<OdisFrame, odisRetainFrame, odisReleaseFrame> {
  public:
   explicit Frame(const FrameOptions& options, const Context& context = Context::shared())
-      : Handle(make(options, options.guide.flat(), context)),
-        m_pixels(size_t(options.width) * options.height),
-        m_pass(std::make_shared<FramePass>()) {}
+      : Frame(make(options, options.guide.flat(), context)) {}
+
+  // A frame that was saved, with the model that it had; it goes on where it was.
+  static Frame load(const std::string& path, const Model& model, const Context& context = Context::shared()) {
+    return Frame(odisLoadFrame(context.get(), path.c_str(), model.get()));
+  }
+  void save(const std::string& path) const {
+    if (!odisSaveFrame(get(), path.c_str())) throwError();
+  }
 
   // Null when the image is complete, or a pass was interrupted. Valid until the pass ends.
   const FramePass* beginPass() {
@@ -274,6 +286,8 @@ class Frame : public Handle<OdisFrame, odisRetainFrame, odisReleaseFrame> {
   }
 
  private:
+  explicit Frame(OdisFrame frame)
+      : Handle(frame), m_pixels(statistics().pixels), m_pass(std::make_shared<FramePass>()) {}
   static OdisFrame make(OdisFrameOptions options, const OdisGuideOptions& guide, const Context& context) {
     options.guide = &guide;
     return odisNewFrame(context.get(), &options);

@@ -189,6 +189,7 @@ typedef struct OdisPixelSums {
 
 typedef struct OdisFrameStatistics {
   size_t size ODIS_DEFAULT(sizeof(OdisFrameStatistics));
+  uint64_t pixels ODIS_DEFAULT(0);
   uint64_t samples ODIS_DEFAULT(0), pilotSamples ODIS_DEFAULT(0);
   uint64_t notFinite ODIS_DEFAULT(0);  // samples that counted as black
   uint64_t pilotVertices ODIS_DEFAULT(0);

@@ -1,13 +1,11 @@
-#include "odis/frame.h"
+#include "odis/frame_data.h"
 
-#include <atomic>
 #include <bit>
 #include <cmath>
 #include <stdexcept>
 
 #include "odis/image/sample_counts.h"
-#include "odis/image/schedule.h"
-#include "odis/image/tiles.h"
+#include "odis/models/model.h"
 
 namespace odis::core {
 
@@ -32,6 +30,34 @@ void requireOrder(bool holds, const char* message) {
   if (!holds) throw std::logic_error(message);
 }
 
+Float3 finiteOrBlack(const Float3& value, std::atomic<uint64_t>& notFinite) {
+  if (std::isfinite(value.x) && std::isfinite(value.y) && std::isfinite(value.z)) return value;
+  ++notFinite;
+  return {};
+}
+
+std::vector<ArrayView<const PathVertex>> partsOf(const VertexTiles& tiles) {
+  return {tiles.begin(), tiles.end()};
+}
+
+uint64_t countVertices(const VertexTiles& tiles) {
+  uint64_t count = 0;
+  for (const std::vector<PathVertex>& tile : tiles) count += tile.size();
+  return count;
+}
+
+// What the options point to, as far as they do: the builder complains where they don't.
+std::vector<OdisLightParts> copied(const GuideOptions& o) {
+  if (!o.lightParts) return {};
+  return {o.lightParts, o.lightParts + o.lightPartCount};
+}
+
+// The same for models that decide the same.
+uint64_t idOf(const Model& model) {
+  const uint64_t networks = (model.directions ? 1 : 0) + (model.lights ? 2 : 0);
+  return networks << 32 | (networks > 0 ? model.checksum : 0);
+}
+
 const FrameOptions& checked(const FrameOptions& o) {
   requireOption(o.width > 0 && o.height > 0, "width, height: expected at least one pixel");
   requireOption(uint64_t(o.width) * o.height < (uint64_t(1) << 31),
@@ -44,75 +70,19 @@ const FrameOptions& checked(const FrameOptions& o) {
   return o;
 }
 
-Float3 finiteOrBlack(const Float3& value, std::atomic<uint64_t>& notFinite) {
-  if (std::isfinite(value.x) && std::isfinite(value.y) && std::isfinite(value.z)) return value;
-  ++notFinite;
-  return {};
-}
-
-using Tiles = std::vector<std::vector<PathVertex>>;
-
-std::vector<ArrayView<const PathVertex>> partsOf(const Tiles& tiles) {
-  return {tiles.begin(), tiles.end()};
-}
-
-uint64_t countVertices(const Tiles& tiles) {
-  uint64_t count = 0;
-  for (const std::vector<PathVertex>& tile : tiles) count += tile.size();
-  return count;
-}
-
 }  // namespace
 
-struct Frame::Data {
-  Data(const FrameOptions& o, std::shared_ptr<const Tasks> tasks)
-      : options(checked(o)),
-        schedule(o),
-        pilot(size_t(o.width) * o.height),
-        later(pilot.size()),
-        tiles(o.width, o.height),
-        builder(o.guided
-                    ? std::make_unique<GuideBuilder>(o.guide ? *o.guide : GuideOptions(), std::move(tasks))
-                    : nullptr),
-        next(o.guided ? ODIS_PASS_PILOT : ODIS_PASS_GUIDED) {}
-
-  // The stages, in their order.
-  void describePass();
-  void take(uint32_t tile, ArrayView<const FrameSample> samples, ArrayView<const PathVertex> vertices);
-  void endPilot();
-  void endOraclePass();
-  void buildGuide(const Tiles& taught, const Tiles& judged);
-  void endGuidedPass();
-  void spreadSamples();
-  void refineGuide();
-  void takeStock(uint64_t vertices);
-
-  bool learns() const { return done < schedule.lastRefinement(); }
-  SampleRange samples(uint32_t pixel) const;
-
-  FrameOptions options;
-  Schedule schedule;
-  std::vector<PixelSums> pilot, later;  // of the pilot's samples, and of those after it
-  TileCollector tiles;
-  std::vector<float> pixelValues;
-  std::unique_ptr<GuideBuilder> builder;
-  Guide guide;
-  uint64_t guidesBuilt = 0;
-
-  FramePass pass;
-  GuideView view;  // of the guide of the pass
-  bool inPass = false, finished = false;
-  OdisPassKind next;                     // of the pass under way, or of the next one
-  uint32_t oraclePasses = 0;             // passes of the oracle that are done
-  uint32_t done = 0, end = 0;            // samples after the pilot: done before the pass, and by its end
-  Tiles pilotVertices, passVertices;     // [tile]
-  Tiles oracleVertices;                  // those that the oracle's BSDF sampling fractions are made from
-  std::vector<CellSamples> cellSamples;  // [tile]
-  std::atomic<uint64_t> notFinite{0};
-  std::atomic<uint64_t> keptBytes{0};  // of vertices, or of what was taken from them
-  uint64_t outsideFrame = 0, buildingBytes = 0, pilotVertexCount = 0;
-  VertexCounts vertexCounts;
-};
+Frame::Data::Data(const FrameOptions& o, std::shared_ptr<const Tasks> tasks)
+    : options(checked(o)),
+      guideOptions(o.guide ? *o.guide : GuideOptions()),
+      lightParts(copied(guideOptions)),
+      modelId(idOf(modelOf(guideOptions.model))),
+      schedule(o),
+      pilot(size_t(o.width) * o.height),
+      later(pilot.size()),
+      tiles(o.width, o.height),
+      builder(o.guided ? std::make_unique<GuideBuilder>(guideOptions, std::move(tasks)) : nullptr),
+      next(o.guided ? ODIS_PASS_PILOT : ODIS_PASS_GUIDED) {}
 
 SampleRange Frame::Data::samples(uint32_t pixel) const {
   switch (next) {
@@ -184,7 +154,7 @@ void Frame::Data::endOraclePass() {
 
 // Builds the first guide from all that the builder was taught, with BSDF sampling fractions from the
 // vertices `judged`.
-void Frame::Data::buildGuide(const Tiles& taught, const Tiles& judged) {
+void Frame::Data::buildGuide(const VertexTiles& taught, const VertexTiles& judged) {
   builder->add(partsOf(taught));
   guide = builder->build(partsOf(judged), pixelValues);
   ++guidesBuilt;
@@ -227,6 +197,19 @@ void Frame::Data::refineGuide() {
   takeStock(0);
 }
 
+void Frame::Data::resume() {
+  tiles.skip(resumed->tilesDone);
+  if (!pass.wantsVertices) return resumed.reset();
+  if (next == ODIS_PASS_GUIDED) {
+    cellSamples = std::move(resumed->cellSamples);
+    for (const CellSamples& samples : cellSamples) keptBytes += samples.bytes();
+  } else {
+    passVertices = std::move(resumed->vertices);
+    keptBytes += countVertices(passVertices) * sizeof(PathVertex);
+  }
+  resumed.reset();
+}
+
 void Frame::Data::endGuidedPass() {
   if (end == schedule.spreadAfter()) spreadSamples();
   if (learns())
@@ -249,6 +232,7 @@ const FramePass* Frame::beginPass() {
   d.tiles.beginPass([&d](uint32_t pixel) { return d.samples(pixel); },
                     [&d](uint32_t tile, ArrayView<const FrameSample> samples,
                          ArrayView<const PathVertex> vertices) { d.take(tile, samples, vertices); });
+  if (d.resumed) d.resume();
   d.inPass = true;
   return &d.pass;
 }
@@ -256,7 +240,7 @@ const FramePass* Frame::beginPass() {
 SampleRange Frame::samples(uint32_t pixel) const {
   requireOrder(m_data->inPass, "Frame::samples: expected a pass under way");
   if (pixel >= m_data->pilot.size()) throw std::out_of_range("Frame::samples: expected a pixel of the frame");
-  return m_data->samples(pixel);
+  return m_data->tiles.isDone(pixel) ? SampleRange() : m_data->samples(pixel);
 }
 
 ArrayView<const float> Frame::pixelValues() const {
@@ -284,6 +268,10 @@ void Frame::endPass(bool interrupted) {
     kind == ODIS_PASS_PILOT ? d.buildGuide(d.pilotVertices, d.pilotVertices)
                             : d.buildGuide({}, d.oracleVertices);
   d.finished = false;
+}
+
+void Frame::setProgress(OdisProgressFunction function, void* user) {
+  if (m_data->builder) m_data->builder->setProgress(function, user);
 }
 
 void Frame::limitBytes(uint64_t most) {
@@ -335,6 +323,7 @@ FrameStatistics Frame::statistics() const {
     result.samples += sampleCount(pixel);
     result.pilotSamples += d.pilot[pixel].count;
   }
+  result.pixels = d.pilot.size();
   result.pilotFraction = all > 0 ? pilot / all : 0;
   result.notFinite = d.notFinite;
   result.pilotVertices = d.pilotVertexCount;

@@ -85,6 +85,17 @@ class Frame {
   // guide is built, unless they are kept.
   std::vector<PathVertex> pilotVertices() const;
   size_t pilotVertexCount() const;
+  // Writes all that the frame is, between passes or within one; no call of add() may be under way. Vertices
+  // and samples of tiles that are not complete are left out: the host traces them again.
+  void save(ArchiveWriter& file) const;
+  // The frame that was saved, which goes on where it was: beginPass() begins the rest of the pass that was
+  // under way, and samples() answers none where they are in. `model` must be the one that the frame had.
+  // Throws FileError.
+  static Frame load(const Archive& file, OdisModel model,
+                    std::shared_ptr<const Tasks> tasks = libraryTasks());
+  // Tells of progress from now on.
+  void setProgress(OdisProgressFunction function, void* user);
+
   // As those of GuideBuilder; nothing where there is no builder any more.
   void limitBytes(uint64_t most);
   int coarsening() const;

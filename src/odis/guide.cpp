@@ -1,4 +1,4 @@
-#include "odis/guide.h"
+#include "odis/guide_data.h"
 
 #include <algorithm>
 #include <cmath>
@@ -16,25 +16,6 @@
 #include "odis/work/progress.h"
 
 namespace odis::core {
-
-// Memory that begins at a cache line and is not touched before it is filled in.
-template <class T>
-class LineArray {
- public:
-  explicit LineArray(size_t size = 0)
-      : m_size(size), m_data(static_cast<T*>(::operator new[](size * sizeof(T), kLine))) {}
-  T* at(size_t i) { return m_data.get() + i; }
-  const T* data() const { return m_data.get(); }
-  uint64_t bytes() const { return m_size * sizeof(T); }
-
- private:
-  static constexpr std::align_val_t kLine{64};
-  struct Free {
-    void operator()(T* data) const { ::operator delete[](data, kLine); }
-  };
-  size_t m_size;
-  std::unique_ptr<T, Free> m_data;
-};
 
 namespace {
 
@@ -55,23 +36,6 @@ void check(const GuideOptions& options) {
 }
 
 }  // namespace
-
-struct Guide::Data {
-  explicit Data(size_t cells) : sums(cells * kSumsPerMap), texels(cells * kMapTexels), decisions(cells) {}
-
-  MapArrays maps() const { return {texels.data(), sums.data(), texelDirections().x}; }
-
-  const void* builder = nullptr;  // the one that it comes from
-  CellGrid grid;
-  CellIndex index;
-  std::vector<uint64_t> keys;
-  LineArray<float> sums;
-  LineArray<uint16_t> texels;
-  std::vector<CellDecisions> decisions;
-  std::vector<float> lightTables;
-  uint32_t lightGroups = 0;
-  GuidingPrediction prediction;
-};
 
 Guide::Guide() = default;
 Guide::~Guide() = default;
@@ -107,10 +71,6 @@ float Guide::predictedVarianceRatio() const {
   return m_data ? m_data->prediction.varianceRatio : 1;
 }
 
-struct CellSamples::Data {
-  BatchSamples samples;
-};
-
 CellSamples::CellSamples() = default;
 CellSamples::~CellSamples() = default;
 CellSamples::CellSamples(CellSamples&&) noexcept = default;
@@ -119,30 +79,6 @@ CellSamples& CellSamples::operator=(CellSamples&&) noexcept = default;
 uint64_t CellSamples::bytes() const {
   return m_data ? m_data->samples.bytes() : 0;
 }
-
-struct GuideBuilder::Data {
-  Data(const GuideOptions& o, Model model, std::shared_ptr<const Tasks> tasks)
-      : options(o),
-        lightParts(o.lightParts, o.lightParts + o.lightPartCount),
-        progress(o.progressFunction, o.progressUser),
-        directions(std::move(model.directions)),
-        lights(std::move(model.lights)),
-        store(o.clamp, directions && directions->looksAround(), std::move(tasks)) {
-    if (!directions) directions = std::make_shared<DirectionFormula>(o);
-    if (!lights) lights = std::make_shared<LightFormula>();
-  }
-
-  Guide buildMaps(const std::vector<CellStatistics>& cells,
-                  std::vector<DirectionDistribution>& distributions) const;
-  void addRouletteAndLights(Guide::Data& guide, const std::vector<CellStatistics>& cells) const;
-
-  GuideOptions options;
-  std::vector<LightParts> lightParts;
-  Progress progress;
-  std::shared_ptr<const DirectionModel> directions;
-  std::shared_ptr<const LightModel> lights;
-  CellStore store;
-};
 
 GuideBuilder::GuideBuilder(const GuideOptions& options, std::shared_ptr<const Tasks> tasks) {
   check(options);
@@ -168,6 +104,9 @@ void GuideBuilder::add(ArrayView<const CellSamples> samples) {
 }
 VertexCounts GuideBuilder::vertexCounts() const {
   return m_data->store.vertexCounts();
+}
+void GuideBuilder::setProgress(OdisProgressFunction function, void* user) {
+  m_data->progress = Progress(function, user);
 }
 void GuideBuilder::limitBytes(uint64_t most) {
   constexpr uint64_t kPerGuide = kMapTexels * sizeof(uint16_t) + kSumsPerMap * sizeof(float) +

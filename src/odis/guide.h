@@ -19,6 +19,9 @@ namespace odis::core {
 
 using GuideOptions = OdisGuideOptions;
 
+class Archive;
+class ArchiveWriter;
+
 // What a builder takes of some vertices, so that those need not be kept: about 70 bytes a vertex.
 class CellSamples {
  public:
@@ -31,6 +34,7 @@ class CellSamples {
 
  private:
   friend class GuideBuilder;
+  friend struct SavedCellSamples;
   struct Data;
   std::unique_ptr<Data> m_data;
 };
@@ -50,6 +54,10 @@ class Guide {
   uint64_t bytes() const;
   // The variance of a guided sample that the pilot predicts, as a ratio to an unguided one; 1 before build().
   float predictedVarianceRatio() const;
+
+  // Writes the guide, and reads one. The latter throws FileError.
+  void save(ArchiveWriter& file) const;
+  static Guide load(const Archive& file);
 
  private:
   friend class GuideBuilder;
@@ -90,12 +98,20 @@ class GuideBuilder {
   // that are new have their parents' fractions.
   Guide rebuild(const Guide& previous) const;
 
-  // Keeps the memory of building and of two guides below a limit, as well as can be foreseen: the cells become
-  // as much larger as it takes, or samples without a cell are left out.
+  // Keeps the memory of building and of two guides below a limit, as well as can be foreseen: the cells
+  // become as much larger as it takes, or samples without a cell are left out.
   void limitBytes(uint64_t most);
   // How many times larger the cells' edges are for that, and how many samples were left out.
   int coarsening() const;
   uint64_t samplesLeftOut() const;
+  // Writes all that was added, and reads it into a builder with the same options that nothing was added to.
+  void save(ArchiveWriter& file) const;
+  void load(const Archive& file);
+  // Tells of progress from now on.
+  void setProgress(OdisProgressFunction function, void* user);
+  // Lets rebuild() take a guide that was built before this builder was saved.
+  void adopt(Guide& guide) const;
+
   // How many of the vertices added were taken, and how many refused, by reason.
   VertexCounts vertexCounts() const;
   // Held at most, the vertices themselves not included.

@@ -98,9 +98,8 @@ TEST(ApiContext, CancellingEndsAFrame) {
       OdisPathVertex vertex = apiVertices()[0];
       vertex.pixel = 5;
       frame.add({&sample, 1}, {&vertex, 1});
-      const bool ended = inBackground
-                             ? odisStartEndPass(frame.get(), false) && odisWaitForPass(frame.get())
-                             : odisEndPass(frame.get(), false);
+      const bool ended = inBackground ? odisStartEndPass(frame.get(), false) && odisWaitForPass(frame.get())
+                                      : odisEndPass(frame.get(), false);
       if (!ended) {
         EXPECT_EQ(takeError(), ODIS_ERROR_CANCELLED);
       }

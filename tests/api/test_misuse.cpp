@@ -194,7 +194,12 @@ TEST(ApiMisuse, NumbersThatCannotBeAreRefused) {
 
 // What is not a number in any field of vertices ends in a guide whose densities are numbers.
 TEST(ApiMisuse, SpoiledVerticesLeaveAGuideOfNumbers) {
-  const float spoiled[] = {NAN, INFINITY, -INFINITY, -1, 0, std::numeric_limits<float>::denorm_min(),
+  const float spoiled[] = {NAN,
+                           INFINITY,
+                           -INFINITY,
+                           -1,
+                           0,
+                           std::numeric_limits<float>::denorm_min(),
                            std::numeric_limits<float>::max()};
   std::vector<OdisPathVertex> vertices = apiVertices();
   for (size_t i = 0; i < vertices.size(); i += 3) {

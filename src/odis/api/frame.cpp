@@ -45,8 +45,8 @@ using odis::core::Frame;
 using odis::core::guardedFor;
 using odis::core::guardedForFrame;
 
-OdisFrameImpl::OdisFrameImpl(OdisContext owner, const OdisFrameOptions& options)
-    : memory(owner), frame(options, owner->tasks) {
+OdisFrameImpl::OdisFrameImpl(OdisContext owner, odis::core::Frame content)
+    : memory(owner), frame(std::move(content)) {
   if (frame.bytes() > owner->memoryLeft()) throw std::bad_alloc();
   memory.set(frame.bytes());
 }
@@ -89,7 +89,7 @@ OdisFrame odisNewFrame(OdisContext context, const OdisFrameOptions* options) {
   return odis::core::guarded(context, OdisFrame(nullptr), [&] {
     odis::core::requireArgument(context, "odisNewFrame: context");
     odis::core::requireArgument(options, "odisNewFrame: options");
-    return new OdisFrameImpl(context, odis::core::AdoptedFrameOptions(*options).frame);
+    return new OdisFrameImpl(context, Frame(odis::core::AdoptedFrameOptions(*options).frame, context->tasks));
   });
 }
 void odisRetainFrame(OdisFrame frame) {

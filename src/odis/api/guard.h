@@ -2,13 +2,9 @@
 #pragma once
 
 #include "odis/api/objects.h"
+#include "odis/files/archive.h"
 
 namespace odis::core {
-
-class FileError : public std::runtime_error {
- public:
-  using std::runtime_error::runtime_error;
-};
 
 // Leaves a code and a message for odisGetError on this thread, and tells the context's error function;
 // `context` may be null.

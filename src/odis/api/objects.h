@@ -131,7 +131,7 @@ struct OdisGuideBuilderImpl : odis::core::Object {
 };
 
 struct OdisFrameImpl : odis::core::Object {
-  OdisFrameImpl(OdisContext owner, const OdisFrameOptions& options);
+  OdisFrameImpl(OdisContext owner, odis::core::Frame content);
   ~OdisFrameImpl() override;
 
   void endPass(bool interrupted);

@@ -19,6 +19,8 @@ namespace odis::core {
 // its parent, and over those around its parent's parent; zeros beyond the coarsest level.
 using Surroundings = std::array<Histogram, 2>;
 
+class Archive;
+class ArchiveWriter;
 class LightPoints;
 struct LightField;
 
@@ -102,6 +104,10 @@ class CellStore {
   // The cells, with the coarser levels and what lies around filled in. They stay as they are until more is
   // added.
   const std::vector<CellStatistics>& rollUp();
+
+  // Writes all that was added, and reads it into a store without cells. The latter throws FileError.
+  void save(ArchiveWriter& file) const;
+  void load(const Archive& file);
 
   // How many vertices were taken and refused.
   const VertexCounts& vertexCounts() const { return m_vertexCounts; }

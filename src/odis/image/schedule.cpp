@@ -91,6 +91,18 @@ void Schedule::spread(std::vector<uint32_t> counts) {
   }
 }
 
+bool Schedule::restore(std::vector<uint32_t> counts) {
+  if (counts.empty()) return true;
+  uint32_t most = 0;
+  for (uint32_t pixel = 0; pixel < counts.size(); ++pixel) {
+    if (counts[pixel] < pilotCount(pixel)) return false;
+    most = std::max(most, counts[pixel] - pilotCount(pixel));
+  }
+  m_counts = std::move(counts);
+  m_mostRemaining = most;
+  return true;
+}
+
 float Schedule::remainingRatio(uint32_t pixel) const {
   const uint32_t pilot = pilotCount(pixel);
   return float(sampleCount(pixel) - pilot) / float(m_spp - pilot);

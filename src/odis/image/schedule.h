@@ -37,6 +37,10 @@ class Schedule {
   uint32_t spreadAfter() const { return m_spreadAfter; }
   // Settles that, spreadAfter() being done: `counts` are of all of a pixel's samples.
   void spread(std::vector<uint32_t> counts);
+  // How many samples each pixel has, if that is settled; and settles it as it was in a saved frame. Returns
+  // whether that can be.
+  const std::vector<uint32_t>& counts() const { return m_counts; }
+  bool restore(std::vector<uint32_t> counts);
   // How many samples remain after the pilot in a pixel, as a ratio to how many would if all pixels had as
   // many.
   float remainingRatio(uint32_t pixel) const;

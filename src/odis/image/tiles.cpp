@@ -117,6 +117,16 @@ void TileCollector::handOnWaiting(uint32_t index) {
   handOn(index, samples, vertices);
 }
 
+void TileCollector::skip(const std::vector<uint8_t>& done) {
+  for (uint32_t t = 0; t < tileCount(); ++t) m_tiles[t].done = done[t] != 0;
+}
+
+std::vector<uint8_t> TileCollector::done() const {
+  std::vector<uint8_t> done;
+  for (uint32_t t = 0; t < tileCount(); ++t) done.push_back(m_tiles[t].done);
+  return done;
+}
+
 uint64_t TileCollector::endPass() {
   for (uint32_t t = 0; t < tileCount(); ++t) {
     Tile& tile = m_tiles[t];

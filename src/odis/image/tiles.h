@@ -35,6 +35,13 @@ class TileCollector {
   // Hands on the tiles that lack samples. Returns how many vertices were refused because they were not due.
   uint64_t endPass();
 
+  // Whether all samples of a pixel's tile are in.
+  bool isDone(uint32_t pixel) const { return m_tiles[tileOf(pixel)].done; }
+  // Takes tiles as done whose samples are in already.
+  void skip(const std::vector<uint8_t>& done);
+  // [tile] which are.
+  std::vector<uint8_t> done() const;
+
   // What waits for the rest of its tile.
   uint64_t bytes() const { return m_waitingBytes; }
 
@@ -45,7 +52,7 @@ class TileCollector {
     std::vector<FrameSample> samples;
     std::vector<PathVertex> vertices;
     uint64_t due = 0;  // number of samples due in the pass; 0: not counted yet
-    bool done = false;
+    std::atomic<bool> done{false};
   };
   uint32_t tileOf(uint32_t pixel) const;
   uint32_t placeInTile(uint32_t pixel) const;

@@ -1,5 +1,6 @@
 #include "odis/models/model.h"
 
+#include "odis/files/crc32.h"
 #include "odis/models/direction_network.h"
 #include "odis/models/light_network.h"
 
@@ -13,6 +14,7 @@ Model fromWeights(const Weights& weights) {
   if (weights.contains("directions.blend.weight"))
     model.directions = std::make_shared<DirectionNetwork>(weights);
   if (weights.contains("lights.0.weight")) model.lights = std::make_shared<LightNetwork>(weights);
+  model.checksum = crc32(weights.bytes());
   return model;
 }
 

@@ -15,6 +15,7 @@ namespace odis::core {
 struct Model {
   std::shared_ptr<const DirectionModel> directions;
   std::shared_ptr<const LightModel> lights;
+  uint32_t checksum = 0;  // of the weights, by which a saved frame knows its model
 
   // The networks that come with the library.
   static Model builtIn();

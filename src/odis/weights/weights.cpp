@@ -4,6 +4,8 @@
 #include <filesystem>
 #include <fstream>
 
+#include "odis/files/crc32.h"
+
 namespace odis::core {
 
 // In a source that the build makes of weights/odis.weights.
@@ -16,16 +18,6 @@ constexpr uint32_t kFormat = 1;
 constexpr size_t kMostDimensions = 4;
 constexpr uint64_t kMostElements = 1u << 24;
 constexpr uintmax_t kMostBytes = 1u << 28;  // of a file; those of today have 10 kB
-
-// As zlib, PNG and gzip have it (polynomial 0xedb88320, reflected).
-uint32_t crc32(std::string_view bytes) {
-  uint32_t crc = ~0u;
-  for (const char c : bytes) {
-    crc ^= uint8_t(c);
-    for (int bit = 0; bit < 8; ++bit) crc = (crc >> 1) ^ (0xedb88320u & (0u - (crc & 1u)));
-  }
-  return ~crc;
-}
 
 void put(std::string& bytes, uint32_t value) {
   for (int i = 0; i < 4; ++i) bytes.push_back(char(uint8_t(value >> (8 * i))));

@@ -1,0 +1,69 @@
+// What a frame holds.
+#pragma once
+
+#include <atomic>
+
+#include "odis/frame.h"
+#include "odis/image/schedule.h"
+#include "odis/image/tiles.h"
+
+namespace odis::core {
+
+// Vertices of each tile.
+using VertexTiles = std::vector<std::vector<PathVertex>>;
+
+struct Frame::Data {
+  Data(const FrameOptions& o, std::shared_ptr<const Tasks> tasks);
+
+  // The stages, in their order.
+  void describePass();
+  void take(uint32_t tile, ArrayView<const FrameSample> samples, ArrayView<const PathVertex> vertices);
+  void endPilot();
+  void endOraclePass();
+  void buildGuide(const VertexTiles& taught, const VertexTiles& judged);
+  void endGuidedPass();
+  void spreadSamples();
+  void refineGuide();
+  void takeStock(uint64_t vertices);
+
+  bool learns() const { return done < schedule.lastRefinement(); }
+  SampleRange samples(uint32_t pixel) const;
+
+  // What a saved frame has of a pass: all of the tiles whose samples were in.
+  struct ResumedPass {
+    std::vector<uint8_t> tilesDone;
+    VertexTiles vertices;
+    std::vector<CellSamples> cellSamples;
+  };
+  // Goes on with the pass that was under way when the frame was saved.
+  void resume();
+
+  FrameOptions options;
+  GuideOptions guideOptions;
+  std::vector<OdisLightParts> lightParts;
+  uint64_t modelId;  // tells models apart
+  Schedule schedule;
+  std::vector<PixelSums> pilot, later;  // of the pilot's samples, and of those after it
+  TileCollector tiles;
+  std::vector<float> pixelValues;
+  std::unique_ptr<GuideBuilder> builder;
+  Guide guide;
+  uint64_t guidesBuilt = 0;
+
+  FramePass pass;
+  GuideView view;  // of the guide of the pass
+  bool inPass = false, finished = false;
+  OdisPassKind next;                     // of the pass under way, or of the next one
+  uint32_t oraclePasses = 0;             // passes of the oracle that are done
+  uint32_t done = 0, end = 0;            // samples after the pilot: done before the pass, and by its end
+  VertexTiles pilotVertices, passVertices;     // [tile]
+  VertexTiles oracleVertices;                  // those that the oracle's BSDF sampling fractions are made from
+  std::vector<CellSamples> cellSamples;  // [tile]
+  std::atomic<uint64_t> notFinite{0};
+  std::atomic<uint64_t> keptBytes{0};  // of vertices, or of what was taken from them
+  uint64_t outsideFrame = 0, buildingBytes = 0, pilotVertexCount = 0;
+  VertexCounts vertexCounts;
+  std::unique_ptr<ResumedPass> resumed;
+};
+
+}  // namespace odis::core

@@ -1,0 +1,79 @@
+// What a guide, samples of cells and a builder hold.
+#pragma once
+
+#include "odis/cells/statistics.h"
+#include "odis/guide.h"
+#include "odis/maps/texel_directions.h"
+#include "odis/models/bsdf_fraction.h"
+#include "odis/models/direction_formula.h"
+#include "odis/models/lights.h"
+#include "odis/models/model.h"
+#include "odis/work/progress.h"
+
+namespace odis::core {
+
+// Memory that begins at a cache line and is not touched before it is filled in.
+template <class T>
+class LineArray {
+ public:
+  explicit LineArray(size_t size = 0)
+      : m_size(size), m_data(static_cast<T*>(::operator new[](size * sizeof(T), kLine))) {}
+  T* at(size_t i) { return m_data.get() + i; }
+  const T* data() const { return m_data.get(); }
+  uint64_t bytes() const { return m_size * sizeof(T); }
+
+ private:
+  static constexpr std::align_val_t kLine{64};
+  struct Free {
+    void operator()(T* data) const { ::operator delete[](data, kLine); }
+  };
+  size_t m_size;
+  std::unique_ptr<T, Free> m_data;
+};
+
+struct Guide::Data {
+  explicit Data(size_t cells) : sums(cells * kSumsPerMap), texels(cells * kMapTexels), decisions(cells) {}
+
+  MapArrays maps() const { return {texels.data(), sums.data(), texelDirections().x}; }
+
+  const void* builder = nullptr;  // the one that it comes from
+  CellGrid grid;
+  CellIndex index;
+  std::vector<uint64_t> keys;
+  LineArray<float> sums;
+  LineArray<uint16_t> texels;
+  std::vector<CellDecisions> decisions;
+  std::vector<float> lightTables;
+  uint32_t lightGroups = 0;
+  GuidingPrediction prediction;
+};
+
+struct CellSamples::Data {
+  BatchSamples samples;
+};
+
+struct GuideBuilder::Data {
+  Data(const GuideOptions& o, Model model, std::shared_ptr<const Tasks> tasks)
+      : options(o),
+        lightParts(o.lightParts, o.lightParts + o.lightPartCount),
+        progress(o.progressFunction, o.progressUser),
+        directions(std::move(model.directions)),
+        lights(std::move(model.lights)),
+        store(o.clamp, directions && directions->looksAround(), std::move(tasks)) {
+    if (!directions) directions = std::make_shared<DirectionFormula>(o);
+    if (!lights) lights = std::make_shared<LightFormula>();
+  }
+
+  Guide buildMaps(const std::vector<CellStatistics>& cells,
+                  std::vector<DirectionDistribution>& distributions) const;
+  void addRouletteAndLights(Guide::Data& guide, const std::vector<CellStatistics>& cells) const;
+
+  GuideOptions options;
+  std::vector<LightParts> lightParts;
+  Progress progress;
+  std::shared_ptr<const DirectionModel> directions;
+  std::shared_ptr<const LightModel> lights;
+  CellStore store;
+};
+
+}  // namespace odis::core

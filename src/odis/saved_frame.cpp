@@ -1,0 +1,225 @@
+// Frames written to a file and read again.
+#include <array>
+#include <cstddef>
+
+#include "odis/files/archive.h"
+#include "odis/frame_data.h"
+#include "odis/guide_data.h"
+#include "odis/saved_vertices.h"
+
+namespace odis::core {
+
+namespace {
+
+// A struct some of whose fields are truth values, which a damaged file may hold anything for.
+template <class T>
+T readChecked(const Archive& file, const std::string& name, std::initializer_list<size_t> truthValues) {
+  const auto bytes = file.value<std::array<unsigned char, sizeof(T)>>(name);
+  for (const size_t offset : truthValues) file.require(bytes[offset] <= 1, name + ": is damaged");
+  return file.value<T>(name);
+}
+
+// Arrays of each tile one after another, and their sizes.
+void saveTiles(ArchiveWriter& file, const std::string& name, const VertexTiles& tiles) {
+  std::vector<uint64_t> sizes;
+  std::vector<PathVertex> all;
+  for (const std::vector<PathVertex>& tile : tiles) {
+    sizes.push_back(tile.size());
+    all.insert(all.end(), tile.begin(), tile.end());
+  }
+  file.add(name + ".sizes", sizes);
+  file.add(name, all);
+}
+
+// The parts of an array that have these sizes. `take` is called with the first and the one after the last.
+template <class T, class Take>
+void forEachPart(const Archive& file, const std::string& name, const std::vector<T>& all,
+                 const std::vector<uint64_t>& sizes, const Take& take) {
+  size_t begin = 0;
+  for (const uint64_t size : sizes) {
+    file.require(size <= all.size() - begin, name + ": is cut off");
+    take(all.begin() + std::ptrdiff_t(begin), all.begin() + std::ptrdiff_t(begin + size));
+    begin += size;
+  }
+  file.require(begin == all.size(), name + ": is too long");
+}
+
+VertexTiles loadTiles(const Archive& file, const std::string& name) {
+  const std::vector<uint64_t> sizes = file.get<uint64_t>(name + ".sizes");
+  const std::vector<PathVertex> all = loadVertices(file, name);
+  VertexTiles tiles;
+  forEachPart(file, name, all, sizes, [&](auto begin, auto end) { tiles.emplace_back(begin, end); });
+  return tiles;
+}
+
+// Where a frame is between its first sample and its last.
+struct Position {
+  uint64_t guidesBuilt, notFinite, outsideFrame, buildingBytes, pilotVertices;
+  uint32_t next, oraclePasses, done, inPass, finished, builder;
+};
+
+}  // namespace
+
+// What was taken from the vertices of a guided pass, tile by tile.
+struct SavedCellSamples {
+  static void save(ArchiveWriter& file, const std::vector<CellSamples>& tiles) {
+    std::vector<uint64_t> sizes, cellSizes;
+    std::vector<CellSample> samples;
+    std::vector<uint32_t> cellOf;
+    std::vector<BatchSamples::Cell> cells;
+    std::vector<VertexCounts> counts;
+    for (const CellSamples& tile : tiles) {
+      const BatchSamples none;
+      const BatchSamples& batch = tile.m_data ? tile.m_data->samples : none;
+      sizes.push_back(batch.samples.size());
+      cellSizes.push_back(batch.cells.size());
+      samples.insert(samples.end(), batch.samples.begin(), batch.samples.end());
+      cellOf.insert(cellOf.end(), batch.cellOf.begin(), batch.cellOf.end());
+      cells.insert(cells.end(), batch.cells.begin(), batch.cells.end());
+      counts.push_back(batch.counts);
+    }
+    file.add("pass.samples.sizes", sizes);
+    file.add("pass.samples", samples);
+    file.add("pass.samples.cellOf", cellOf);
+    file.add("pass.cells.sizes", cellSizes);
+    file.add("pass.cells", cells);
+    file.add("pass.counts", counts);
+  }
+
+  static std::vector<CellSamples> load(const Archive& file) {
+    const std::vector<uint64_t> sizes = file.get<uint64_t>("pass.samples.sizes");
+    std::vector<BatchSamples> batches(sizes.size());
+    size_t next = 0;
+    forEachPart(file, "pass.samples", file.get<CellSample>("pass.samples"), sizes,
+                [&](auto begin, auto end) { batches[next++].samples.assign(begin, end); });
+    next = 0;
+    forEachPart(file, "pass.samples.cellOf", file.get<uint32_t>("pass.samples.cellOf"), sizes,
+                [&](auto begin, auto end) { batches[next++].cellOf.assign(begin, end); });
+    next = 0;
+    forEachPart(file, "pass.cells", file.get<BatchSamples::Cell>("pass.cells"),
+                file.get<uint64_t>("pass.cells.sizes", sizes.size()),
+                [&](auto begin, auto end) { batches[next++].cells.assign(begin, end); });
+    const std::vector<VertexCounts> counts = file.get<VertexCounts>("pass.counts", sizes.size());
+    std::vector<CellSamples> tiles(sizes.size());
+    for (size_t t = 0; t < tiles.size(); ++t) {
+      BatchSamples& batch = batches[t];
+      batch.counts = counts[t];
+      for (const uint32_t cell : batch.cellOf)
+        file.require(cell < batch.cells.size(), "pass.samples.cellOf: is damaged");
+      for (const CellSample& sample : batch.samples)
+        file.require(!(sample.lightSquare > 0) || sample.lightGroup < kMaxLightGroups,
+                     "pass.samples: are damaged");
+      for (const BatchSamples::Cell& cell : batch.cells)
+        file.require(CellGrid::levelOf(cell.key) == 0, "pass.cells: are damaged");
+      tiles[t].m_data = std::make_unique<CellSamples::Data>(CellSamples::Data{std::move(batch)});
+    }
+    return tiles;
+  }
+};
+
+void Frame::save(ArchiveWriter& file) const {
+  const Data& d = *m_data;
+  FrameOptions options = d.options;
+  GuideOptions guide = d.guideOptions;
+  options.guide = nullptr;
+  guide.model = nullptr;
+  guide.lightParts = nullptr;
+  guide.progressFunction = nullptr;
+  guide.progressUser = nullptr;
+  file.addValue("frame.options", options);
+  file.addValue("frame.guideOptions", guide);
+  file.add("frame.lightParts", d.lightParts);
+  file.addValue("frame.model", d.modelId);
+  file.addValue("frame.position",
+                Position{d.guidesBuilt, d.notFinite, d.outsideFrame, d.buildingBytes, d.pilotVertexCount,
+                         uint32_t(d.next), d.oraclePasses, d.done, d.inPass, d.finished, d.builder != nullptr});
+  file.addValue("frame.vertexCounts", d.vertexCounts);
+  file.add("frame.counts", d.schedule.counts());
+  file.add("frame.pilot", d.pilot);
+  file.add("frame.later", d.later);
+  file.add("frame.pixelValues", d.pixelValues);
+  saveTiles(file, "frame.pilotVertices", d.pilotVertices);
+  saveTiles(file, "frame.oracleVertices", d.oracleVertices);
+  if (d.inPass) {
+    file.add("pass.tilesDone", d.tiles.done());
+    saveTiles(file, "pass.vertices", d.passVertices);
+    SavedCellSamples::save(file, d.cellSamples);
+  }
+  if (d.builder) d.builder->save(file);
+  d.guide.save(file);
+}
+
+Frame Frame::load(const Archive& file, OdisModel model, std::shared_ptr<const Tasks> tasks) {
+  file.requireKind("frame");
+  FrameOptions options = readChecked<FrameOptions>(
+      file, "frame.options",
+      {offsetof(FrameOptions, guided), offsetof(FrameOptions, adaptive), offsetof(FrameOptions, keepPilotVertices)});
+  GuideOptions guideOptions =
+      readChecked<GuideOptions>(file, "frame.guideOptions", {offsetof(GuideOptions, controlVariate)});
+  const std::vector<OdisLightParts> lightParts = file.get<OdisLightParts>("frame.lightParts");
+  // Pointers of a file mean nothing.
+  options.guide = &guideOptions;
+  guideOptions.progressFunction = nullptr;
+  guideOptions.progressUser = nullptr;
+  guideOptions.model = model;
+  guideOptions.lightParts = lightParts.data();
+  guideOptions.lightPartCount = lightParts.size();
+  // A damaged size must not cost more memory than the file has.
+  const std::vector<PixelSums> pilot = file.get<PixelSums>("frame.pilot");
+  file.require(uint64_t(options.width) * options.height == pilot.size(), "frame.options: are damaged");
+  std::unique_ptr<Frame> frame;
+  try {
+    frame = std::make_unique<Frame>(options, std::move(tasks));
+  } catch (const std::invalid_argument& error) {
+    file.require(false, error.what());
+  }
+  Data& d = *frame->m_data;
+  file.require(file.value<uint64_t>("frame.model") == d.modelId, "was saved with another model");
+  d.pilot = pilot;
+  d.later = file.get<PixelSums>("frame.later", pilot.size());
+  d.pixelValues = file.get<float>("frame.pixelValues");
+  file.require(d.pixelValues.empty() || d.pixelValues.size() == pilot.size(), "frame.pixelValues: are damaged");
+  const std::vector<uint32_t> counts = file.get<uint32_t>("frame.counts");
+  file.require((counts.empty() || counts.size() == pilot.size()) && d.schedule.restore(counts),
+               "frame.counts: are damaged");
+  const Position at = file.value<Position>("frame.position");
+  file.require(at.next <= ODIS_PASS_GUIDED && at.done <= d.schedule.mostRemaining(),
+               "frame.position: is damaged");
+  d.guidesBuilt = at.guidesBuilt;
+  d.notFinite = at.notFinite;
+  d.outsideFrame = at.outsideFrame;
+  d.buildingBytes = at.buildingBytes;
+  d.pilotVertexCount = at.pilotVertices;
+  d.next = OdisPassKind(at.next);
+  d.oraclePasses = at.oraclePasses;
+  d.done = at.done;
+  d.finished = at.finished != 0;
+  d.vertexCounts = file.value<VertexCounts>("frame.vertexCounts");
+  d.pilotVertices = loadTiles(file, "frame.pilotVertices");
+  d.oracleVertices = loadTiles(file, "frame.oracleVertices");
+  d.guide = Guide::load(file);
+  // A pass that learns needs the builder, and that needs to know where cells are as soon as there is a guide.
+  file.require(at.builder != 0 || d.next == ODIS_PASS_GUIDED, "frame.position: is damaged");
+  file.require(at.builder != 0 || !d.learns(), "frame.position: is damaged");
+  if (at.builder && d.builder) {
+    d.builder->load(file);
+    d.builder->adopt(d.guide);
+  } else {
+    d.builder.reset();
+  }
+  file.require(d.builder || !d.learns() || !options.guided, "frame.position: is damaged");
+  if (at.inPass) {
+    d.resumed = std::make_unique<Data::ResumedPass>();
+    d.resumed->tilesDone = file.get<uint8_t>("pass.tilesDone", d.tiles.tileCount());
+    d.resumed->vertices = loadTiles(file, "pass.vertices");
+    d.resumed->cellSamples = SavedCellSamples::load(file);
+    const auto fits = [&](size_t size) { return size == 0 || size == d.tiles.tileCount(); };
+    file.require(fits(d.resumed->vertices.size()) && fits(d.resumed->cellSamples.size()),
+                 "pass.vertices: are damaged");
+    d.resumed->vertices.resize(d.tiles.tileCount());
+    d.resumed->cellSamples.resize(d.tiles.tileCount());
+  }
+  return std::move(*frame);
+}
+
+}  // namespace odis::core

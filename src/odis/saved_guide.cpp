@@ -1,0 +1,98 @@
+// Guides and builders written to a file and read again.
+#include <cmath>
+
+#include "odis/files/archive.h"
+#include "odis/guide_data.h"
+#include "odis/maps/pack.h"
+
+namespace odis::core {
+
+namespace {
+
+// Whether a cell decides what a host can follow.
+bool isSound(const CellDecisions& d) {
+  for (const float fraction : d.bsdfFraction)
+    if (!(fraction > 0 && fraction <= 1)) return false;
+  const Float3& outgoing = d.outgoingRadiance;
+  return d.survivalFactor >= 0 && std::isfinite(outgoing.x + outgoing.y + outgoing.z) &&
+         d.learnedLightFraction >= 0 && d.learnedLightFraction < 1;
+}
+
+// Whether a table rises from 0 to 1, or to anything less where nothing is known.
+bool isSound(std::span<const float> table, bool known) {
+  if (known && (table.front() != 0 || table.back() != 1)) return false;
+  for (size_t i = 0; i + 1 < table.size(); ++i)
+    if (!(table[i] >= 0 && table[i] <= table[i + 1])) return false;
+  return table.back() <= 1;
+}
+
+void checkGrid(const Archive& file, const OdisCellGrid& grid) {
+  file.require(std::isfinite(grid.origin.x + grid.origin.y + grid.origin.z) && grid.inverseEdge > 0 &&
+                   std::isfinite(grid.inverseEdge),
+               "the grid is damaged");
+}
+
+}  // namespace
+
+void Guide::save(ArchiveWriter& file) const {
+  file.addValue("guide.built", uint8_t(m_data != nullptr));
+  if (!m_data) return;
+  const size_t cells = m_data->decisions.size();
+  file.addValue("guide.grid", m_data->grid.flat());
+  file.add("guide.keys", m_data->keys);
+  file.add("guide.texels", std::span<const uint16_t>(m_data->texels.data(), cells * kMapTexels));
+  file.add("guide.decisions", m_data->decisions);
+  file.addValue("guide.lightGroups", m_data->lightGroups);
+  file.add("guide.lightTables", m_data->lightTables);
+  file.addValue("guide.prediction", m_data->prediction);
+}
+
+Guide Guide::load(const Archive& file) {
+  Guide guide;
+  if (!file.value<uint8_t>("guide.built")) return guide;
+  const OdisCellGrid grid = file.value<OdisCellGrid>("guide.grid");
+  checkGrid(file, grid);
+  const std::vector<uint64_t> keys = file.get<uint64_t>("guide.keys");
+  const std::vector<uint16_t> texels = file.get<uint16_t>("guide.texels", keys.size() * kMapTexels);
+  file.require(std::find(texels.begin(), texels.end(), uint16_t(0)) == texels.end(),
+               "guide.texels: a direction is impossible");
+  guide.m_data = std::make_shared<Data>(keys.size());
+  Data& data = *guide.m_data;
+  data.grid = CellGrid(grid);
+  data.keys = keys;
+  for (uint32_t c = 0; c < keys.size(); ++c)
+    file.require(CellGrid::levelOf(keys[c]) < kCellLevels && data.index.insert(keys[c]) == c,
+                 "guide.keys: are damaged");
+  std::copy(texels.begin(), texels.end(), data.texels.at(0));
+  for (size_t c = 0; c < keys.size(); ++c)
+    sumBlocks(data.texels.at(c * kMapTexels), data.sums.at(c * kSumsPerMap));
+  data.decisions = file.get<CellDecisions>("guide.decisions", keys.size());
+  data.lightGroups = file.value<uint32_t>("guide.lightGroups");
+  file.require(data.lightGroups <= kMaxLightGroups, "guide.lightGroups: is damaged");
+  const size_t columns = data.lightGroups + 1;
+  data.lightTables = file.get<float>("guide.lightTables", data.lightGroups > 0 ? keys.size() * columns : 0);
+  for (size_t c = 0; c < keys.size(); ++c) {
+    file.require(isSound(data.decisions[c]), "guide.decisions: are damaged");
+    if (data.lightGroups > 0)
+      file.require(isSound(std::span<const float>(&data.lightTables[c * columns], columns),
+                           data.decisions[c].learnedLightFraction > 0),
+                   "guide.lightTables: are damaged");
+  }
+  data.prediction = file.value<GuidingPrediction>("guide.prediction");
+  return guide;
+}
+
+void GuideBuilder::save(ArchiveWriter& file) const {
+  m_data->store.save(file);
+}
+
+void GuideBuilder::load(const Archive& file) {
+  checkGrid(file, file.value<OdisCellGrid>("cells.grid"));
+  m_data->store.load(file);
+}
+
+void GuideBuilder::adopt(Guide& guide) const {
+  if (guide.m_data) guide.m_data->builder = m_data.get();
+}
+
+}  // namespace odis::core

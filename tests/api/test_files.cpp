@@ -1,0 +1,201 @@
+// Guides, vertices and frames in files: what is read is what was written, and a frame goes on where it was.
+#include <filesystem>
+#include <fstream>
+#include <random>
+
+#include "api/api_scene.h"
+#include "frame/run_frame.h"
+#include "odis/files/crc32.h"
+#include "support/models.h"
+#include "support/temporary_folder.h"
+
+namespace odis::test {
+namespace {
+
+std::string readAll(const std::string& path) {
+  std::ifstream stream(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(stream), {}};
+}
+
+void writeAll(const std::string& path, const std::string& bytes) {
+  std::ofstream(path, std::ios::binary).write(bytes.data(), std::streamsize(bytes.size()));
+}
+
+TEST(ApiFiles, AGuideIsReadAsItWasWritten) {
+  const TemporaryFolder folder;
+  const std::string path = folder.path("a.guide");
+  GuideOptions options;
+  options.lightGroups = 2;
+  GuideBuilder builder(options);
+  std::vector<OdisPathVertex> vertices = apiVertices();
+  for (size_t i = 0; i < vertices.size(); ++i) {
+    vertices[i].lightGroup = i % 2;
+    vertices[i].lightGroupProbability = 0.5f;
+    vertices[i].direct = {i % 2 ? 1.0f : 0.1f, 1, 1};
+  }
+  builder.add(vertices);
+  const Guide guide = builder.build(vertices);
+  guide.save(path);
+  const Guide read = Guide::load(path);
+  const GuideView a = guide.view(), b = read.view();
+  EXPECT_TRUE(sameBits(a, b));
+  EXPECT_EQ(std::memcmp(a.maps.sums, b.maps.sums, a.cellCount * kSumsPerMap * sizeof(float)), 0);
+  EXPECT_EQ(std::memcmp(a.lightTables, b.lightTables, a.cellCount * 3 * sizeof(float)), 0);
+  EXPECT_EQ(guide.predictedVarianceRatio(), read.predictedVarianceRatio());
+  for (const OdisPathVertex& v : vertices)
+    EXPECT_EQ(findCell(a, {v.position, v.normal}), findCell(b, {v.position, v.normal}));
+}
+
+TEST(ApiFiles, VerticesAreReadAsTheyWereWritten) {
+  const TemporaryFolder folder;
+  const std::string path = folder.path("a.vertices");
+  const OdisPathVertices described = describe(apiVertices());
+  ASSERT_TRUE(odisSaveVertices(&described, path.c_str()));
+  std::vector<OdisPathVertex> read(odisLoadVertices(path.c_str(), nullptr, 0));
+  ASSERT_EQ(read.size(), apiVertices().size());
+  EXPECT_EQ(odisLoadVertices(path.c_str(), read.data(), read.size()), read.size());
+  EXPECT_EQ(std::memcmp(read.data(), apiVertices().data(), read.size() * sizeof read[0]), 0);
+}
+
+// Traces a pass, but no more pixels than these; pixels whose samples are in are passed over.
+void tracePartOfPass(Frame& frame, const FramePass& pass, const ToyHost& host, uint32_t pixels) {
+  PathRecorder recorder;
+  for (uint32_t pixel = 0; pixel < pixels; ++pixel) {
+    std::vector<FrameSample> samples;
+    const SampleRange range = frame.samples(pixel);
+    for (uint32_t i = 0; i < range.count; ++i)
+      samples.push_back(host.trace(pass, frame.pixelValues(), pixel, range.first + i, recorder));
+    frame.add(samples, recorder.finish());
+  }
+}
+
+// A frame that is saved and loaded in every pass, within it or before it, has the image of one that is not.
+TEST(ApiFiles, ASavedFrameGoesOnWithTheSameBits) {
+  const TemporaryFolder folder;
+  const std::string path = folder.path("a.frame");
+  const ToyRoom room;
+  for (const bool network : {true, false}) {
+    FrameOptions options = toyOptions(40, 24, 8);
+    options.seed = 5;
+    options.keepPilotVertices = true;
+    if (!network) options.guide.model = makeModel(nullptr, nullptr);
+    const uint32_t pixels = options.width * options.height;
+    Frame expected(options);
+    runFrame(expected, options, room);
+    const ToyHost host(room, options.width, options.height);
+    Frame frame(options);
+    for (int passes = 0;; ++passes) {
+      frame.save(path);
+      frame = Frame::load(path, options.guide.model);
+      const FramePass* pass = frame.beginPass();
+      if (!pass) break;
+      tracePartOfPass(frame, *pass, host, pixels * 2 / 3);
+      frame.save(path);
+      frame = Frame::load(path, options.guide.model);
+      pass = frame.beginPass();
+      ASSERT_NE(pass, nullptr);
+      uint32_t done = 0;
+      for (uint32_t pixel = 0; pixel < pixels; ++pixel) done += frame.samples(pixel).count == 0;
+      EXPECT_GE(done, 1u) << "pass " << passes;
+      runPass(frame, *pass, host, pixels);
+      frame.endPass();
+    }
+    EXPECT_EQ(luminances(frame, options), luminances(expected, options));
+    EXPECT_TRUE(sameBits(frame.guide().view(), expected.guide().view()));
+    EXPECT_EQ(frame.vertexCounts().accepted, expected.vertexCounts().accepted);
+    EXPECT_EQ(frame.pilotVertices().size(), expected.pilotVertices().size());
+    EXPECT_EQ(frame.statistics().samples, expected.statistics().samples);
+  }
+}
+
+TEST(ApiFiles, AFrameWithoutAGuideIsSavedToo) {
+  const TemporaryFolder folder;
+  const std::string path = folder.path("a.frame");
+  FrameOptions options = toyOptions(20, 20, 8);
+  options.guided = false;
+  Frame expected(options), frame(options);
+  const ToyRoom room;
+  runFrame(expected, options, room);
+  frame.save(path);
+  frame = Frame::load(path, Model());
+  runFrame(frame, options, room);
+  EXPECT_EQ(luminances(frame, options), luminances(expected, options));
+}
+
+TEST(ApiFiles, OtherFilesAreRefused) {
+  const TemporaryFolder folder;
+  const std::string guide = folder.path("a.guide"), frame = folder.path("a.frame"),
+                    broken = folder.path("broken");
+  GuideBuilder builder;
+  builder.add(apiVertices());
+  builder.build(apiVertices()).save(guide);
+  FrameOptions options = toyOptions(8, 8, 2);
+  Frame(options).save(frame);
+  const OdisContext context = Context::shared().get();
+  const auto expectRefused = [&](const std::string& path, const std::string& part) {
+    std::string message;
+    EXPECT_EQ(odisLoadGuide(context, path.c_str()), nullptr);
+    EXPECT_EQ(takeError(&message), ODIS_ERROR_FILE);
+    EXPECT_NE(message.find(path), std::string::npos) << message;
+    EXPECT_NE(message.find(part), std::string::npos) << message;
+  };
+  expectRefused(folder.path("absent"), "regular file");
+  expectRefused(folder.path(""), "regular file");
+  expectRefused(frame, "found a saved \"frame\", expected a \"guide\"");
+  writeAll(broken, "no archive at all");
+  expectRefused(broken, "ODISSAVE");
+  std::string bytes = readAll(guide);
+  bytes[bytes.size() / 2] ^= 1;
+  writeAll(broken, bytes);
+  expectRefused(broken, "damaged");
+  writeAll(broken, readAll(guide).substr(0, 100));
+  expectRefused(broken, "damaged");
+  EXPECT_FALSE(odisSaveGuide(builder.build(apiVertices()).get(), folder.path("no/such/folder").c_str()));
+  EXPECT_EQ(takeError(), ODIS_ERROR_FILE);
+  EXPECT_EQ(odisLoadFrame(context, frame.c_str(), formulas()), nullptr);
+  std::string message;
+  EXPECT_EQ(takeError(&message), ODIS_ERROR_FILE);
+  EXPECT_NE(message.find("another model"), std::string::npos) << message;
+  EXPECT_FALSE(std::filesystem::exists(guide + ".part"));
+}
+
+// Bytes that were changed, with a checksum that fits them: what is read either works or is refused.
+TEST(ApiFiles, DamageThatTheChecksumDoesNotShowIsHarmless) {
+  const TemporaryFolder folder;
+  const std::string path = folder.path("a.frame");
+  const ToyRoom room;
+  FrameOptions options = toyOptions(20, 20, 8);
+  const ToyHost host(room, options.width, options.height);
+  Frame frame(options);
+  const FramePass* pass = frame.beginPass();
+  runPass(frame, *pass, host, 400);
+  frame.endPass();
+  pass = frame.beginPass();
+  tracePartOfPass(frame, *pass, host, 350);
+  frame.save(path);
+  const std::string sound = readAll(path);
+  std::mt19937 engine(3);
+  int refused = 0;
+  for (int i = 0; i < 120; ++i) {
+    std::string bytes = sound.substr(0, sound.size() - 4);
+    // Most of the file is numbers of any value; the others are near its begin.
+    const size_t range = i % 2 ? bytes.size() : 1500;
+    for (int k = 0; k < 3; ++k) bytes[engine() % range] = char(engine());
+    const uint32_t crc = core::crc32(bytes);
+    for (int byte = 0; byte < 4; ++byte) bytes.push_back(char(uint8_t(crc >> (8 * byte))));
+    writeAll(path, bytes);
+    const OdisFrame read = odisLoadFrame(Context::shared().get(), path.c_str(), nullptr);
+    refused += read == nullptr;
+    if (read) {
+      OdisFramePass next;
+      if (odisBeginPass(read, &next)) odisEndPass(read, false);
+    }
+    takeError();
+    odisReleaseFrame(read);
+  }
+  EXPECT_GT(refused, 15);
+  EXPECT_LT(refused, 120);
+}
+
+}  // namespace
+}  // namespace odis::test
