@@ -37,6 +37,8 @@ struct Frame::Data {
   };
   // Goes on with the pass that was under way when the frame was saved.
   void resume();
+  void loadPosition(const Archive& file);
+  void loadPass(const Archive& file);
 
   FrameOptions options;
   GuideOptions guideOptions;
@@ -53,12 +55,12 @@ struct Frame::Data {
   FramePass pass;
   GuideView view;  // of the guide of the pass
   bool inPass = false, finished = false;
-  OdisPassKind next;                     // of the pass under way, or of the next one
-  uint32_t oraclePasses = 0;             // passes of the oracle that are done
-  uint32_t done = 0, end = 0;            // samples after the pilot: done before the pass, and by its end
-  VertexTiles pilotVertices, passVertices;     // [tile]
-  VertexTiles oracleVertices;                  // those that the oracle's BSDF sampling fractions are made from
-  std::vector<CellSamples> cellSamples;  // [tile]
+  OdisPassKind next;                        // of the pass under way, or of the next one
+  uint32_t oraclePasses = 0;                // passes of the oracle that are done
+  uint32_t done = 0, end = 0;               // samples after the pilot: done before the pass, and by its end
+  VertexTiles pilotVertices, passVertices;  // [tile]
+  VertexTiles oracleVertices;               // those that the oracle's BSDF sampling fractions are made from
+  std::vector<CellSamples> cellSamples;     // [tile]
   std::atomic<uint64_t> notFinite{0};
   std::atomic<uint64_t> keptBytes{0};  // of vertices, or of what was taken from them
   uint64_t outsideFrame = 0, buildingBytes = 0, pilotVertexCount = 0;

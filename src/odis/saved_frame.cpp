@@ -55,7 +55,7 @@ VertexTiles loadTiles(const Archive& file, const std::string& name) {
 // Where a frame is between its first sample and its last.
 struct Position {
   uint64_t guidesBuilt, notFinite, outsideFrame, buildingBytes, pilotVertices;
-  uint32_t next, oraclePasses, done, inPass, finished, builder;
+  uint32_t next, oraclePasses, done, finished, builder;
 };
 
 }  // namespace
@@ -132,7 +132,7 @@ void Frame::save(ArchiveWriter& file) const {
   file.addValue("frame.model", d.modelId);
   file.addValue("frame.position",
                 Position{d.guidesBuilt, d.notFinite, d.outsideFrame, d.buildingBytes, d.pilotVertexCount,
-                         uint32_t(d.next), d.oraclePasses, d.done, d.inPass, d.finished, d.builder != nullptr});
+                         uint32_t(d.next), d.oraclePasses, d.done, d.finished, d.builder != nullptr});
   file.addValue("frame.vertexCounts", d.vertexCounts);
   file.add("frame.counts", d.schedule.counts());
   file.add("frame.pilot", d.pilot);
@@ -149,27 +149,77 @@ void Frame::save(ArchiveWriter& file) const {
   d.guide.save(file);
 }
 
+namespace {
+
+// The options of a saved frame, and what they point to.
+struct SavedOptions {
+  FrameOptions frame;
+  GuideOptions guide;
+  std::vector<OdisLightParts> lightParts;
+
+  SavedOptions(const Archive& file, OdisModel model)
+      : frame(readChecked<FrameOptions>(file, "frame.options",
+                                        {offsetof(FrameOptions, guided), offsetof(FrameOptions, adaptive),
+                                         offsetof(FrameOptions, keepPilotVertices)})),
+        guide(
+            readChecked<GuideOptions>(file, "frame.guideOptions", {offsetof(GuideOptions, controlVariate)})),
+        lightParts(file.get<OdisLightParts>("frame.lightParts")) {
+    // Pointers of a file mean nothing.
+    frame.guide = &guide;
+    guide.model = model;
+    guide.progressFunction = nullptr;
+    guide.progressUser = nullptr;
+    guide.lightParts = lightParts.data();
+    guide.lightPartCount = lightParts.size();
+  }
+};
+
+}  // namespace
+
+// Goes to the place between the first sample and the last where the frame was.
+void Frame::Data::loadPosition(const Archive& file) {
+  const auto require = [&file](bool holds) { file.require(holds, "frame.position: is damaged"); };
+  const Position at = file.value<Position>("frame.position");
+  require(at.next <= ODIS_PASS_GUIDED && at.done <= schedule.mostRemaining());
+  guidesBuilt = at.guidesBuilt;
+  notFinite = at.notFinite;
+  outsideFrame = at.outsideFrame;
+  buildingBytes = at.buildingBytes;
+  pilotVertexCount = at.pilotVertices;
+  next = OdisPassKind(at.next);
+  oraclePasses = at.oraclePasses;
+  done = at.done;
+  finished = at.finished != 0;
+  // Who learns needs a builder.
+  require(at.builder ? builder != nullptr : next == ODIS_PASS_GUIDED && !learns());
+  if (!at.builder) return builder.reset();
+  builder->load(file);
+  builder->adopt(guide);
+}
+
+// Takes up what the pass under way has already.
+void Frame::Data::loadPass(const Archive& file) {
+  resumed = std::make_unique<ResumedPass>();
+  resumed->tilesDone = file.get<uint8_t>("pass.tilesDone", tiles.tileCount());
+  resumed->vertices = loadTiles(file, "pass.vertices");
+  resumed->cellSamples = SavedCellSamples::load(file);
+  const auto fits = [this](size_t size) { return size == 0 || size == tiles.tileCount(); };
+  file.require(fits(resumed->vertices.size()) && fits(resumed->cellSamples.size()),
+               "pass.vertices: are damaged");
+  resumed->vertices.resize(tiles.tileCount());
+  resumed->cellSamples.resize(tiles.tileCount());
+}
+
 Frame Frame::load(const Archive& file, OdisModel model, std::shared_ptr<const Tasks> tasks) {
   file.requireKind("frame");
-  FrameOptions options = readChecked<FrameOptions>(
-      file, "frame.options",
-      {offsetof(FrameOptions, guided), offsetof(FrameOptions, adaptive), offsetof(FrameOptions, keepPilotVertices)});
-  GuideOptions guideOptions =
-      readChecked<GuideOptions>(file, "frame.guideOptions", {offsetof(GuideOptions, controlVariate)});
-  const std::vector<OdisLightParts> lightParts = file.get<OdisLightParts>("frame.lightParts");
-  // Pointers of a file mean nothing.
-  options.guide = &guideOptions;
-  guideOptions.progressFunction = nullptr;
-  guideOptions.progressUser = nullptr;
-  guideOptions.model = model;
-  guideOptions.lightParts = lightParts.data();
-  guideOptions.lightPartCount = lightParts.size();
+  const SavedOptions options(file, model);
   // A damaged size must not cost more memory than the file has.
   const std::vector<PixelSums> pilot = file.get<PixelSums>("frame.pilot");
-  file.require(uint64_t(options.width) * options.height == pilot.size(), "frame.options: are damaged");
+  file.require(uint64_t(options.frame.width) * options.frame.height == pilot.size(),
+               "frame.options: are damaged");
   std::unique_ptr<Frame> frame;
   try {
-    frame = std::make_unique<Frame>(options, std::move(tasks));
+    frame = std::make_unique<Frame>(options.frame, std::move(tasks));
   } catch (const std::invalid_argument& error) {
     file.require(false, error.what());
   }
@@ -178,47 +228,17 @@ Frame Frame::load(const Archive& file, OdisModel model, std::shared_ptr<const Ta
   d.pilot = pilot;
   d.later = file.get<PixelSums>("frame.later", pilot.size());
   d.pixelValues = file.get<float>("frame.pixelValues");
-  file.require(d.pixelValues.empty() || d.pixelValues.size() == pilot.size(), "frame.pixelValues: are damaged");
+  file.require(d.pixelValues.empty() || d.pixelValues.size() == pilot.size(),
+               "frame.pixelValues: are damaged");
   const std::vector<uint32_t> counts = file.get<uint32_t>("frame.counts");
   file.require((counts.empty() || counts.size() == pilot.size()) && d.schedule.restore(counts),
                "frame.counts: are damaged");
-  const Position at = file.value<Position>("frame.position");
-  file.require(at.next <= ODIS_PASS_GUIDED && at.done <= d.schedule.mostRemaining(),
-               "frame.position: is damaged");
-  d.guidesBuilt = at.guidesBuilt;
-  d.notFinite = at.notFinite;
-  d.outsideFrame = at.outsideFrame;
-  d.buildingBytes = at.buildingBytes;
-  d.pilotVertexCount = at.pilotVertices;
-  d.next = OdisPassKind(at.next);
-  d.oraclePasses = at.oraclePasses;
-  d.done = at.done;
-  d.finished = at.finished != 0;
   d.vertexCounts = file.value<VertexCounts>("frame.vertexCounts");
   d.pilotVertices = loadTiles(file, "frame.pilotVertices");
   d.oracleVertices = loadTiles(file, "frame.oracleVertices");
   d.guide = Guide::load(file);
-  // A pass that learns needs the builder, and that needs to know where cells are as soon as there is a guide.
-  file.require(at.builder != 0 || d.next == ODIS_PASS_GUIDED, "frame.position: is damaged");
-  file.require(at.builder != 0 || !d.learns(), "frame.position: is damaged");
-  if (at.builder && d.builder) {
-    d.builder->load(file);
-    d.builder->adopt(d.guide);
-  } else {
-    d.builder.reset();
-  }
-  file.require(d.builder || !d.learns() || !options.guided, "frame.position: is damaged");
-  if (at.inPass) {
-    d.resumed = std::make_unique<Data::ResumedPass>();
-    d.resumed->tilesDone = file.get<uint8_t>("pass.tilesDone", d.tiles.tileCount());
-    d.resumed->vertices = loadTiles(file, "pass.vertices");
-    d.resumed->cellSamples = SavedCellSamples::load(file);
-    const auto fits = [&](size_t size) { return size == 0 || size == d.tiles.tileCount(); };
-    file.require(fits(d.resumed->vertices.size()) && fits(d.resumed->cellSamples.size()),
-                 "pass.vertices: are damaged");
-    d.resumed->vertices.resize(d.tiles.tileCount());
-    d.resumed->cellSamples.resize(d.tiles.tileCount());
-  }
+  d.loadPosition(file);
+  if (file.contains("pass.tilesDone")) d.loadPass(file);
   return std::move(*frame);
 }
 

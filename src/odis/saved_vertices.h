@@ -16,9 +16,9 @@ inline void saveVertices(ArchiveWriter& file, const std::string& name, ArrayView
 // Throws FileError, also for truth values that are none.
 inline std::vector<PathVertex> loadVertices(const Archive& file, const std::string& name) {
   for (const auto& bytes : file.get<std::array<unsigned char, sizeof(PathVertex)>>(name))
-    file.require(bytes[offsetof(PathVertex, discrete)] <= 1 &&
-                     bytes[offsetof(PathVertex, scattersBothSides)] <= 1,
-                 name + ": are damaged");
+    file.require(
+        bytes[offsetof(PathVertex, discrete)] <= 1 && bytes[offsetof(PathVertex, scattersBothSides)] <= 1,
+        name + ": are damaged");
   return file.get<PathVertex>(name);
 }
 

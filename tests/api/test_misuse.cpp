@@ -72,6 +72,13 @@ TEST(ApiMisuse, NullIsAnError) {
   REFUSED(odisGetGuideBytes(nullptr));
   REFUSED(odisGetPredictedVarianceRatio(nullptr) != 1);
   REFUSED(odisGetGuideView(nullptr, &view));
+  REFUSED(odisSaveFrame(nullptr, "x"));
+  REFUSED(odisLoadFrame(nullptr, "x", nullptr));
+  REFUSED(odisSetFrameProgress(nullptr, nullptr, nullptr));
+  REFUSED(odisSaveGuide(nullptr, "x"));
+  REFUSED(odisLoadGuide(nullptr, "x"));
+  REFUSED(odisSaveVertices(nullptr, "x"));
+  REFUSED(odisLoadVertices(nullptr, nullptr, 0));
   odisInitFrameOptions(nullptr, sizeof(OdisFrameOptions));
   REFUSED(false);
   odisDescribeVertices(nullptr, nullptr, 0);
@@ -103,6 +110,10 @@ TEST(ApiMisuse, NullArgumentsOfObjectsAreErrors) {
   REFUSED(odisRebuildGuide(builder.get(), nullptr));
   REFUSED(odisGetVertexCounts(builder.get(), nullptr));
   EXPECT_TRUE(odisAddVertices(builder.get(), &none));
+  REFUSED(odisSaveFrame(frame.get(), nullptr));
+  REFUSED(odisLoadFrame(context.get(), nullptr, nullptr));
+  REFUSED(odisLoadGuide(context.get(), nullptr));
+  REFUSED(odisSaveVertices(&none, nullptr));
   // Releasing nothing is fine, as free() of nothing is.
   odisReleaseContext(nullptr);
   odisReleaseModel(nullptr);

@@ -108,8 +108,8 @@ Archive Archive::parse(const std::string& path, std::string bytes) {
   Cursor cursor(body, kArchiveMagic.size());
   uint32_t format = 0, crc = 0, count = 0;
   archive.require(cursor.read(format), "is cut off");
-  archive.require(format == kArchiveFormat, "found format " + std::to_string(format) + ", expected " +
-                                                std::to_string(kArchiveFormat));
+  archive.require(format == kArchiveFormat,
+                  "found format " + std::to_string(format) + ", expected " + std::to_string(kArchiveFormat));
   Cursor(all, body.size()).read(crc);
   archive.require(crc == crc32(body), "is damaged or cut off");
   archive.require(cursor.read(archive.m_kind) && cursor.read(count), "is cut off");
