@@ -275,7 +275,7 @@ void Frame::setProgress(OdisProgressFunction function, void* user) {
 }
 
 void Frame::limitBytes(uint64_t most) {
-  if (m_data->builder) m_data->builder->limitBytes(most);
+  if (m_data->builder) m_data->builder->limitBytes(most, countVertices(m_data->passVertices));
 }
 int Frame::coarsening() const {
   return m_data->builder ? m_data->builder->coarsening() : 1;
@@ -288,7 +288,7 @@ uint64_t Frame::bytes() const {
   const Data& d = *m_data;
   constexpr uint64_t kPerPixel = 2 * sizeof(PixelSums) + sizeof(float) + 2 * sizeof(uint32_t);
   return d.pilot.size() * kPerPixel + d.tiles.bytes() + d.keptBytes + d.guide.bytes() +
-         (d.builder ? d.builder->bytes() : 0);
+         (d.builder ? d.builder->heldBytes() : 0);
 }
 
 bool Frame::guideIsFinal() const {

@@ -108,19 +108,23 @@ VertexCounts GuideBuilder::vertexCounts() const {
 void GuideBuilder::setProgress(OdisProgressFunction function, void* user) {
   m_data->progress = Progress(function, user);
 }
-void GuideBuilder::limitBytes(uint64_t most) {
+void GuideBuilder::limitBytes(uint64_t most, uint64_t vertices) {
   constexpr uint64_t kPerGuide = kMapTexels * sizeof(uint16_t) + kSumsPerMap * sizeof(float) +
                                  sizeof(CellDecisions) + sizeof(uint64_t) + 2 * sizeof(CellSlot);
   constexpr uint64_t kPerCell = sizeof(CellStatistics) + sizeof(Surroundings) + sizeof(LightField) +
                                 sizeof(DirectionDistribution) + 2 * sizeof(CellMoments) + 2 * kPerGuide;
   const uint64_t tables = 2 * sizeof(float) * (m_data->options.lightGroups + 1);
-  m_data->store.limitCells(most / (kPerCell + tables));
+  const uint64_t samples = vertices * (sizeof(CellSample) + sizeof(uint32_t) + sizeof(void*));
+  m_data->store.limitCells((most - std::min(most, samples)) / (kPerCell + tables));
 }
 int GuideBuilder::coarsening() const {
   return m_data->store.coarsening();
 }
 uint64_t GuideBuilder::samplesLeftOut() const {
   return m_data->store.samplesLeftOut();
+}
+uint64_t GuideBuilder::heldBytes() const {
+  return m_data->store.bytes();
 }
 uint64_t GuideBuilder::bytes() const {
   // What build() makes beside the cells' statistics: distributions, and sums for the BSDF sampling fraction.

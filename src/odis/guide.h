@@ -98,9 +98,9 @@ class GuideBuilder {
   // that are new have their parents' fractions.
   Guide rebuild(const Guide& previous) const;
 
-  // Keeps the memory of building and of two guides below a limit, as well as can be foreseen: the cells
-  // become as much larger as it takes, or samples without a cell are left out.
-  void limitBytes(uint64_t most);
+  // Keeps the memory of building from so many vertices, and of two guides, below a limit, as well as can be
+  // foreseen: the cells become as much larger as it takes, or samples without a cell are left out.
+  void limitBytes(uint64_t most, uint64_t vertices);
   // How many times larger the cells' edges are for that, and how many samples were left out.
   int coarsening() const;
   uint64_t samplesLeftOut() const;
@@ -114,8 +114,9 @@ class GuideBuilder {
 
   // How many of the vertices added were taken, and how many refused, by reason.
   VertexCounts vertexCounts() const;
-  // Held at most, the vertices themselves not included.
+  // Held at most, and held now, the vertices themselves not included.
   uint64_t bytes() const;
+  uint64_t heldBytes() const;
 
  private:
   struct Data;

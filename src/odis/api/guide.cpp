@@ -44,9 +44,10 @@ bool odisAddVertices(OdisGuideBuilder builder, const OdisPathVertices* vertices)
     const HostVertices given(vertices);
     OdisContextImpl& context = builder->memory.context();
     if (context.options.memoryLimit > 0)
-      builder->builder.limitBytes(context.memoryLeft() + builder->builder.bytes());
+      builder->builder.limitBytes(context.memoryLeft() + builder->builder.heldBytes(), given.view().size());
     builder->builder.add(given.view());
     builder->memory.set(builder->builder.bytes());
+    builder->memory.set(builder->builder.heldBytes());
     builder->warnings.report(context, builder->builder.coarsening(), builder->builder.samplesLeftOut());
     return true;
   });
