@@ -53,8 +53,7 @@
 extern "C" {
 #endif
 
-// ---- version and errors
-// --------------------------------------------------------------------------------------------
+// ---- version and errors ----
 
 // ODIS_VERSION of the library that runs, and its text: "0.1.0", with the commit if it was built from a clone.
 ODIS_API uint32_t odisGetVersion(void);
@@ -66,8 +65,7 @@ ODIS_API OdisError odisGetError(const char** message);
 // "invalid argument", say; "unknown error" for what is no code.
 ODIS_API const char* odisGetErrorName(OdisError error);
 
-// ---- context: threads, memory, messages
-// ----------------------------------------------------------------------------
+// ---- context: threads, memory, messages ----
 
 ODIS_API void odisInitContextOptions(OdisContextOptions* options, size_t size);
 // NULL stands for the defaults.
@@ -77,8 +75,7 @@ ODIS_API void odisReleaseContext(OdisContext context);
 // Bytes that the context's objects hold, as far as it exceeds a few kilobytes an object.
 ODIS_API uint64_t odisGetMemoryUse(OdisContext context);
 
-// ---- model: what turns statistics into decisions
-// -------------------------------------------------------------------
+// ---- model: what turns statistics into decisions ----
 
 // The networks that come with the library.
 ODIS_API OdisModel odisNewModel(OdisContext context);
@@ -90,8 +87,7 @@ ODIS_API OdisModel odisNewModelWithFormulas(OdisModel model, bool directions, bo
 ODIS_API void odisRetainModel(OdisModel model);
 ODIS_API void odisReleaseModel(OdisModel model);
 
-// ---- recorder: from the events of paths to vertices
-// ----------------------------------------------------------------
+// ---- recorder: from the events of paths to vertices ----
 
 // One for each thread or tile. 250 bytes a vertex while paths are open; memory is kept for the next ones.
 // Many paths may be open at once, their events in any order as long as each path's own are in order:
@@ -129,16 +125,14 @@ ODIS_API bool odisRecordBounce(OdisRecorder recorder, uint32_t path, const OdisB
 // odisBeginPath.
 ODIS_API const OdisPathVertex* odisFinishPaths(OdisRecorder recorder, size_t* count);
 
-// ---- vertices
-// ------------------------------------------------------------------------------------------------------
+// ---- vertices ----
 
 ODIS_API void odisInitPathVertex(OdisPathVertex* vertex, size_t size);
 ODIS_API void odisInitPathVertices(OdisPathVertices* vertices, size_t size);
 // Describes an array of OdisPathVertex.
 ODIS_API void odisDescribeVertices(OdisPathVertices* vertices, const OdisPathVertex* array, size_t count);
 
-// ---- frame: an image from its first sample to its last
-// -------------------------------------------------------------
+// ---- frame: an image from its first sample to its last ----
 
 ODIS_API void odisInitFrameOptions(OdisFrameOptions* options, size_t size);
 // 112 bytes a pixel for sums, 12 for decisions; 188 bytes a pilot vertex until the guide is built; the
@@ -148,8 +142,8 @@ ODIS_API void odisRetainFrame(OdisFrame frame);
 ODIS_API void odisReleaseFrame(OdisFrame frame);
 // Begins the next pass; false when the image is complete or a pass was interrupted, which is no error.
 ODIS_API bool odisBeginPass(OdisFrame frame, OdisFramePass* pass);
-// The samples of a pixel in the pass under way. They do not depend on what samples of that pixel brought.
-// Thread-safe.
+// The samples of a pixel in the pass under way, none where all of its tile of 16 x 16 pixels are in. They do not
+// depend on what samples of that pixel brought. Thread-safe.
 ODIS_API OdisSampleRange odisGetSamples(OdisFrame frame, uint32_t pixel);
 // An estimate of each pixel's luminance, from the pilot; NULL before the pilot has ended. Valid as long as
 // the frame.
@@ -198,8 +192,7 @@ ODIS_API OdisFrame odisLoadFrame(OdisContext context, const char* path, OdisMode
 // Tells another function of progress from now on: a loaded frame has none.
 ODIS_API bool odisSetFrameProgress(OdisFrame frame, OdisProgressFunction function, void* user);
 
-// ---- guide: nested cells in world space, with a sampling map and decisions in each
-// ---------------------------------
+// ---- guide: nested cells in world space, with a sampling map and decisions in each ----
 
 // For hosts that have no frame: vertices are added once or as samples arrive, and guides are built from all
 // of them.
@@ -240,8 +233,7 @@ ODIS_API bool odisSaveVertices(const OdisPathVertices* vertices, const char* pat
 // Copies the vertices of a file; returns how many there are. NULL: counts them only.
 ODIS_API size_t odisLoadVertices(const char* path, OdisPathVertex* vertices, size_t capacity);
 
-// ---- look-ups, for hosts in C: those in C++ and CUDA use odis/guide_view.h
-// -----------------------------------------
+// ---- look-ups, for hosts in C: those in C++ and CUDA use odis/guide_view.h ----
 
 // The finest cell that there is for a vertex; ODIS_NO_CELL where the guide has seen nothing at all.
 ODIS_API uint32_t odisFindCell(const OdisGuideView* view, const OdisPlace* place);
