@@ -16,10 +16,10 @@ namespace {
 using PriorSamples = std::array<float, ODIS_CELL_LEVELS>;
 using Ranges = std::vector<std::pair<uint32_t, uint32_t>>;
 
-PriorSamples priorSamples(const OdisGuideOptions& options) {
+PriorSamples priorSamples(const GuideOptions& options) {
   return std::to_array(options.priorSamples);
 }
-void setPriorSamples(OdisGuideOptions& options, const PriorSamples& samples) {
+void setPriorSamples(GuideOptions& options, const PriorSamples& samples) {
   std::copy(samples.begin(), samples.end(), options.priorSamples);
 }
 
@@ -88,9 +88,10 @@ void bindGuideOptions(nb::module_& module) {
             setLightParts(*self, parts);
           },
           nb::kw_only(), "model"_a = nb::none(), "cells_per_diagonal"_a = defaults.cellsPerDiagonal,
-          "prior_samples"_a = priorSamples(defaults), "floor"_a = defaults.floor, "clamp"_a = defaults.clamp,
-          "fixed_bsdf_fraction"_a = defaults.fixedBsdfFraction, "control_variate"_a = defaults.controlVariate,
-          "light_groups"_a = defaults.lightGroups, "light_parts"_a = Ranges())
+          "prior_samples"_a = std::to_array(defaults.priorSamples), "floor"_a = defaults.floor,
+          "clamp"_a = defaults.clamp, "fixed_bsdf_fraction"_a = defaults.fixedBsdfFraction,
+          "control_variate"_a = defaults.controlVariate, "light_groups"_a = defaults.lightGroups,
+          "light_parts"_a = Ranges())
       .def_rw("model", &GuideOptions::model)
       .def_rw("cells_per_diagonal", &GuideOptions::cellsPerDiagonal)
       .def_prop_rw("prior_samples", priorSamples, setPriorSamples)
