@@ -67,15 +67,14 @@ class Calls {
   static constexpr int kSingle = -1;
 
   [[noreturn]] static void refuse() {
-    throw Error(ODIS_ERROR_INVALID_OPERATION,
-                "expected another thread's call of the same object to end first");
+    throw Error(ODIS_ERROR_INVALID_OPERATION, "expected a call by another thread to end first");
   }
 
   std::atomic<int> m_running{0};
 };
 
-// What `body` returns, called without the interpreter's lock and beside no other call of the object, or beside
-// calls of its kind alone.
+// What `body` returns, called without the interpreter's lock and beside no other call of the
+// object (callAlone), or beside calls of its kind only (callBeside).
 template <class Body>
 auto callAlone(Calls& calls, const Body& body) {
   const Calls::Single call(calls);

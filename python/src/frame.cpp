@@ -191,16 +191,14 @@ void bindResults(nb::class_<ImageFrame>& frame) {
           "pixel_values", &ImageFrame::pixelValues,
           "(height, width), float32: estimates of the pixels' luminance, from the pilot, where they\n"
           "lie in the frame; None before the pilot has ended.")
-      .def(
-          "image", &ImageFrame::image,
-          R"(The weighted means of the pixels' samples, and their variances: two of (height, width, 3), float32.
+      .def("image", &ImageFrame::image,
+           R"(The means of the pixels' samples, and their variances: two of (height, width, 3), float32.
 
 Means are black where there are no samples, variances 0 where there are fewer than two.)")
       .def("sample_counts", &ImageFrame::sampleCounts,
            "The number of samples that each pixel has by now: (height, width), uint32.")
-      .def(
-          "sample_weights", &ImageFrame::sampleWeights, "pixel"_a, "sample"_a,
-          R"(Weights of samples in the means of their pixels, in units of a guided sample's: (count,), float32.
+      .def("sample_weights", &ImageFrame::sampleWeights, "pixel"_a, "sample"_a,
+           R"(Weights of samples in their pixels, in units of a guided sample's: (count,), float32.
 
 pixel, sample: uint32 of shape (count,). To be asked for after the last pass.)")
       .def_prop_ro("statistics", &ImageFrame::statistics, "FrameStatistics by now.")

@@ -125,23 +125,22 @@ Numbers shadowRayProbability(const Guide& guide, const Array& contribution) {
 void bindLookups(nb::class_<Guide>& guide) {
   guide
       .def("find_cells", findCells, "positions"_a, "normals"_a,
-           R"(The finest cell that there is for each vertex: (count,), uint32; NO_CELL where nothing was seen.
+           R"(The finest cell that there is for each vertex: (count,), uint32; NO_CELL where there is none.
 
-positions, normals: float32 of shape (count, 3); unit shading normals, on the side of the outgoing direction.)")
+positions, normals: float32 of shape (count, 3); shading normals, unit, on wo's side.)")
       .def(
           "sample", sample, "cells"_a, "normals"_a, "uv"_a, "both_sides"_a = false,
-          R"(Samples directions from the cells' maps times the cosine: (count, 3) and densities (count,), float32.
+          R"(Samples from the cells' maps times the cosine: directions (count, 3), densities (count,); float32.
 
 cells: uint32 of shape (count,). normals: float32 of shape (count, 3), unit. uv: float32 of shape (count, 2),
 uniform in [0, 1). both_sides: bool, or bool of shape (count,): whether the surface scatters to both sides.
 Densities are with respect to solid angle; 0, with the direction 0, where there is no map to sample.)")
-      .def(
-          "pdf", pdf, "cells"_a, "normals"_a, "directions"_a, "both_sides"_a = false,
-          R"(The densities of `sample`, with respect to solid angle: (count,), float32; 0 where there is no map.
+      .def("pdf", pdf, "cells"_a, "normals"_a, "directions"_a, "both_sides"_a = false,
+           R"(The densities of `sample`, with respect to solid angle: (count,), float32; 0 without a map.
 
 directions: float32 of shape (count, 3), unit.)")
       .def("bsdf_fraction", bsdfFraction, "cells"_a, "roughness"_a,
-           R"(Probabilities that a draw that may be guided stays with the BSDF: (count,), float32 in (0, 1].
+           R"(Probabilities that draws that may be guided stay with the BSDF: (count,), float32 in (0, 1].
 
 roughness: float32 of shape (count,): alpha of a microfacet distribution, 1 for diffuse. 1 without a cell.)")
       .def("survival_probability", survivalProbability, "cells"_a, "throughput"_a,

@@ -2,6 +2,7 @@
 
 import gc
 import os
+import signal
 import tempfile
 import threading
 import unittest
@@ -193,6 +194,20 @@ class Threads(unittest.TestCase):
             thread.join()
         self.assertEqual(builder.vertex_counts.accepted, 100000 * sum(outcomes))
         self.assertGreaterEqual(sum(outcomes), 1)
+
+
+    def test_ctrl_c(self):
+        """A signal while a guide is built raises KeyboardInterrupt, and the builder works on."""
+        fields = made_up.vertices(100000)
+        builder = odis.GuideBuilder()
+        builder.add(fields)
+        main = threading.get_ident()
+        other = threading.Thread(target=lambda: signal.pthread_kill(main, signal.SIGINT))
+        with self.assertRaises(KeyboardInterrupt):
+            other.start()
+            builder.build(fields)
+            other.join()
+        self.assertGreater(len(builder.build(fields)), 0)
 
 
 if __name__ == "__main__":
