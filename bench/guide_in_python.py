@@ -1,5 +1,6 @@
 """How long a guide of a million vertices takes from arrays in Python and from the same arrays in C++, in turns, on the
-same number of threads. Needs the package and the program guide_of_files (`scripts/wheel` builds both).
+same number of threads: medians of seconds, and of the seconds of all threads' work, which other programs on the machine
+disturb less. Needs the package and the program guide_of_files (`scripts/wheel` builds both).
 
     python3 bench/guide_in_python.py build/wheel/python/guide_of_files [--vertices 1000000] [--rounds 9] [--threads 2]
 """
@@ -17,14 +18,14 @@ import odis
 
 
 def build(fields, context):
-    """The guide in Python and the seconds that it took."""
+    """The guide in Python, and the seconds that it took, by the clock and of all threads' work."""
     options = odis.GuideOptions(light_groups=made_up.LIGHT_GROUPS)
-    begin = time.perf_counter()
+    begin, work = time.perf_counter(), time.process_time()
     builder = odis.GuideBuilder(options, context)
     vertices = odis.PathVertices(**fields)
     builder.add(vertices)
     guide = builder.build(vertices)
-    return guide, time.perf_counter() - begin
+    return guide, (time.perf_counter() - begin, time.process_time() - work)
 
 
 def main():
@@ -46,10 +47,12 @@ def main():
             guide, taken = build(fields, context)
             seconds["Python"].append(taken)
         same = in_cpp.guide_bytes() == made_up.guide_bytes(guide)
-    median = {name: statistics.median(all_seconds[1:]) for name, all_seconds in seconds.items()}
-    for name in seconds:
-        print(f"{name:8} {median[name]:.3f} s, from {min(seconds[name][1:]):.3f} to {max(seconds[name][1:]):.3f} s")
-    print(f"ratio    {median['Python'] / median['C++']:.3f}; the guides are {'the same' if same else 'different'}")
+    for i, kind in enumerate(("by the clock", "of work")):
+        taken = {name: [rounds[i] for rounds in all_rounds[1:]] for name, all_rounds in seconds.items()}
+        median = {name: statistics.median(numbers) for name, numbers in taken.items()}
+        spans = [f"{name} {median[name]:.3f} ({min(taken[name]):.3f} to {max(taken[name]):.3f})" for name in taken]
+        print(f"seconds {kind}: {', '.join(spans)}, ratio {median['Python'] / median['C++']:.3f}")
+    print(f"the guides are {'the same' if same else 'different'}")
 
 
 if __name__ == "__main__":
