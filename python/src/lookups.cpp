@@ -128,9 +128,8 @@ void bindLookups(nb::class_<Guide>& guide) {
            R"(The finest cell that there is for each vertex: (count,), uint32; NO_CELL where there is none.
 
 positions, normals: float32 of shape (count, 3); shading normals, unit, on wo's side.)")
-      .def(
-          "sample", sample, "cells"_a, "normals"_a, "uv"_a, "both_sides"_a = false,
-          R"(Samples the cells' maps times the cosine: directions (count, 3), densities (count,), float32.
+      .def("sample", sample, "cells"_a, "normals"_a, "uv"_a, "both_sides"_a = false,
+           R"(Samples the cells' maps times the cosine: directions (count, 3), densities (count,), float32.
 
 cells: uint32 of shape (count,). normals: float32 of shape (count, 3), unit. uv: float32 of shape (count, 2),
 uniform in [0, 1). both_sides: bool, or bool of shape (count,): whether the surface scatters to both sides.
