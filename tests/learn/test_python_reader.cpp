@@ -1,4 +1,4 @@
-// A shard with known numbers for python/odis_dataset.py to read.
+// A shard with known numbers for python/odis/dataset.py to read.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 

@@ -5,7 +5,8 @@
     shard["view0/pilot0/radiance"]        # an array of shape (3, vertices), in the view's unit of radiance
     shard.directions(0, 0, "wi")          # unit vectors, (vertices, 3)
 
-`python3 odis_dataset.py FILE.shard` prints what is in it.
+`python3 -m odis.dataset FILE.shard` prints what is in it. This file stands by itself: without the rest of the package,
+`python3 python/odis/dataset.py FILE.shard` does the same in a clone.
 """
 
 import json
@@ -109,7 +110,7 @@ def main(path):
 
 if __name__ == "__main__":
     if len(sys.argv) != 2:
-        sys.exit("usage: python3 odis_dataset.py FILE.shard")
+        sys.exit("usage: python3 -m odis.dataset FILE.shard")
     try:
         main(sys.argv[1])
     except (ValueError, OSError) as error:

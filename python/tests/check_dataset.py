@@ -1,5 +1,6 @@
-"""Tests of odis_dataset.py, run by ctest: `test_odis_dataset.py ODIS` makes a small shard with that command and looks
-at it; `test_odis_dataset.py --golden FILE` reads the shard that tests/learn/python_reader_test.cpp writes."""
+"""Tests of odis/dataset.py, run by ctest: `check_dataset.py ODIS` makes a small shard with that command and looks at
+it; `check_dataset.py --golden FILE` reads the shard that tests/learn/test_python_reader.cpp writes. The reader is one
+file that stands by itself, so it is tested in a clone, where the rest of the package is not built."""
 
 import json
 import pathlib
@@ -10,7 +11,8 @@ import tempfile
 import numpy as np
 
 sys.dont_write_bytecode = True
-from odis_dataset import Shard, prefix, square_to_direction, texel_directions
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent.parent / "odis"))
+from dataset import Shard, prefix, square_to_direction, texel_directions
 
 
 def expect(condition, what):

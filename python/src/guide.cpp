@@ -1,0 +1,135 @@
+// Guide: its arrays, shown where they lie. Look-ups are in lookups.cpp.
+#include <odis/odis.hpp>
+
+#include "arrays.h"
+#include "lookups.h"
+
+namespace odis::python {
+
+namespace {
+
+using Self = nb::pointer_and_handle<Guide>;
+
+constexpr int64_t kDecisionFloats = sizeof(CellDecisions) / sizeof(float);
+
+// An array of the guide's, which keeps the guide alive. Without cells it may be anywhere.
+template <class Result>
+Result shown(const Self& self, typename Result::Scalar* data, std::initializer_list<size_t> shape,
+             std::initializer_list<int64_t> strides = {}) {
+  static typename Result::Scalar none{};
+  return Result(data ? data : &none, shape, self.h, strides);
+}
+
+// One of the numbers, or vectors, of the decisions of all cells.
+template <class Result>
+Result shownDecision(const Self& self, size_t offset, size_t columns) {
+  const GuideView view = self.p->view();
+  const float* data =
+      view.decisions ? reinterpret_cast<const float*>(view.decisions) + offset / sizeof(float) : nullptr;
+  if (columns == 0) return shown<Result>(self, data, {view.cellCount}, {kDecisionFloats});
+  return shown<Result>(self, data, {view.cellCount, columns}, {kDecisionFloats, 1});
+}
+
+using Floats = NumpyArray<const float, -1>;
+using FloatRows = NumpyArray<const float, -1, 3>;
+
+void bindMaps(nb::class_<Guide>& guide) {
+  guide
+      .def_prop_ro(
+          "cell_keys",
+          [](Self self) {
+            const GuideView view = self.p->view();
+            return shown<NumpyArray<const uint64_t, -1>>(self, view.keys, {view.cellCount});
+          },
+          "(cells,), uint64: where each cell lies: three coordinates of 19 bits from the lowest bit on, the\n"
+          "axis of its normals from bit 57 on, its level from bit 60 on (odis/cell_grid.h).")
+      .def_prop_ro(
+          "texels",
+          [](Self self) {
+            const GuideView view = self.p->view();
+            return shown<NumpyArray<const uint16_t, -1, kMapTexels>>(self, view.maps.texels,
+                                                                     {view.cellCount, size_t(kMapTexels)});
+          },
+          "(cells, 256), uint16: relative incident radiance over directions, at least 1.")
+      .def_prop_ro(
+          "block_sums",
+          [](Self self) {
+            const GuideView view = self.p->view();
+            return shown<NumpyArray<const float, -1, 4, kMapBlocks>>(self, view.maps.sums,
+                                                                     {view.cellCount, 4, size_t(kMapBlocks)});
+          },
+          "(cells, 4, 16), float32: for each 16 texels one after another the sums of texel times direction\n"
+          "(x, y, z) and of the texels.")
+      .def_prop_ro(
+          "texel_directions",
+          [](Self self) {
+            const size_t texels = self.p->view().maps.directions ? kMapTexels : 0;
+            return shown<NumpyArray<const float, 3, -1>>(self, self.p->view().maps.directions, {3, texels});
+          },
+          "(3, 256), float32: unit directions of the texels' centres; (3, 0) without cells.");
+}
+
+void bindDecisions(nb::class_<Guide>& guide) {
+  guide
+      .def_prop_ro(
+          "bsdf_fractions",
+          [](Self self) { return shownDecision<FloatRows>(self, offsetof(CellDecisions, bsdfFraction), 3); },
+          "(cells, 3), float32 in (0, 1]: BSDF sampling fractions of diffuse, rough and glossy vertices.")
+      .def_prop_ro(
+          "survival_factors",
+          [](Self self) { return shownDecision<Floats>(self, offsetof(CellDecisions, survivalFactor), 0); },
+          "(cells,), float32: times throughput over pixel value it is the probability that a path goes on;\n"
+          "infinity: always.")
+      .def_prop_ro(
+          "outgoing_radiance",
+          [](Self self) {
+            return shownDecision<FloatRows>(self, offsetof(CellDecisions, outgoingRadiance), 3);
+          },
+          "(cells, 3), float32: mean radiance that a vertex scatters back, or nothing: what a path adds "
+          "that\n"
+          "roulette ends; one that survives with probability p adds (1 - 1 / p) times as much.")
+      .def_prop_ro(
+          "learned_light_fractions",
+          [](Self self) {
+            return shownDecision<Floats>(self, offsetof(CellDecisions, learnedLightFraction), 0);
+          },
+          "(cells,), float32 in [0, 1): fraction of the choices of a light that follow the cell's table.")
+      .def_prop_ro(
+          "light_tables",
+          [](Self self) {
+            const GuideView view = self.p->view();
+            const size_t cells = view.lightGroups > 0 ? view.cellCount : 0;
+            return shown<NumpyArray<const float, -1, -1>>(self, view.lightTables,
+                                                          {cells, size_t(view.lightGroups) + 1});
+          },
+          "(cells, light_groups + 1), float32: cumulative probabilities of the groups of lights, from 0 to "
+          "1,\n"
+          "where the fraction is above 0; (0, 1) where nothing was learned about lights.");
+}
+
+}  // namespace
+
+void bindGuide(nb::module_& module) {
+  nb::class_<Guide> guide(
+      module, "Guide", R"(What was learned: nested cells in world space, a sampling map and decisions in each.
+
+Fixed once built, and safe to use by many threads. Its arrays are read-only, lie in the guide's own memory,
+and keep it alive. About 830 bytes a cell.)");
+  guide
+      .def(
+          "__len__", [](const Guide& self) { return self.view().cellCount; }, "Number of cells.")
+      .def_prop_ro("bytes", &Guide::bytes, "What it holds.")
+      .def_prop_ro("predicted_variance_ratio", &Guide::predictedVarianceRatio,
+                   "The variance of a guided sample that the pilot predicts, as a ratio to an unguided one.")
+      .def_prop_ro(
+          "light_groups", [](const Guide& self) { return self.view().lightGroups; },
+          "Number of groups of lights that it knows of.")
+      .def_prop_ro(
+          "finest_edge", [](const Guide& self) { return 1 / self.view().grid.inverseEdge; },
+          "Edge of the finest cells, in world space; those of the next levels are twice as long.");
+  bindMaps(guide);
+  bindDecisions(guide);
+  bindLookups(guide);
+}
+
+}  // namespace odis::python

@@ -1,0 +1,156 @@
+#include "lookups.h"
+
+#include <nanobind/stl/pair.h>
+#include <nanobind/stl/variant.h>
+
+#include <algorithm>
+
+#include "arrays.h"
+#include "calls.h"
+
+namespace odis::python {
+
+namespace {
+
+using Cells = NumpyArray<uint32_t, -1>;
+using Numbers = NumpyArray<float, -1>;
+using Vectors = NumpyArray<float, -1, 3>;
+// For all vertices alike, or for each.
+using Flags = std::variant<bool, Array>;
+
+class FlagAt {
+ public:
+  FlagAt(const Flags& flags, const char* name, size_t count) : m_all(std::get_if<bool>(&flags)) {
+    if (!m_all) m_rows.emplace_back(std::get<Array>(flags), name, 0, count);
+  }
+  bool operator()(size_t i) const { return m_all ? *m_all : m_rows[0](i); }
+
+ private:
+  const bool* m_all;
+  std::vector<Rows<bool>> m_rows;
+};
+
+Cells findCells(const Guide& guide, const Array& positions, const Array& normals) {
+  const Rows<float> at(positions, "positions", 3), normal(normals, "normals", 3, at.size());
+  const Cells result = newArray<Cells>({at.size()});
+  withoutLock([&] {
+    const GuideView view = guide.view();
+    constexpr size_t kChunk = 128;
+    Place places[kChunk];
+    for (size_t begin = 0; begin < at.size(); begin += kChunk) {
+      const size_t count = std::min(kChunk, at.size() - begin);
+      for (size_t i = 0; i < count; ++i) places[i] = {vectorAt(at, begin + i), vectorAt(normal, begin + i)};
+      odis::findCells(view, places, count, result.data() + begin);
+    }
+  });
+  return result;
+}
+
+std::pair<Vectors, Numbers> sample(const Guide& guide, const Array& cells, const Array& normals,
+                                   const Array& uv, const Flags& bothSides) {
+  const Rows<uint32_t> cell(cells, "cells");
+  const size_t count = cell.size();
+  const Rows<float> normal(normals, "normals", 3, count), random(uv, "uv", 2, count);
+  const FlagAt both(bothSides, "both_sides", count);
+  const Vectors directions = newArray<Vectors>({count, 3});
+  const Numbers pdfs = newArray<Numbers>({count});
+  withoutLock([&] {
+    const GuideView view = guide.view();
+    for (size_t i = 0; i < count; ++i) {
+      const Float3 n = vectorAt(normal, i);
+      const float numbers[2] = {random(i, 0), random(i, 1)};
+      Float3 wi;
+      float pdf = 0;
+      odisSampleMap(&view, cell(i), &n, both(i), numbers, &wi, &pdf);
+      std::memcpy(directions.data() + 3 * i, &wi, sizeof wi);
+      pdfs.data()[i] = pdf;
+    }
+  });
+  return {directions, pdfs};
+}
+
+Numbers pdf(const Guide& guide, const Array& cells, const Array& normals, const Array& directions,
+            const Flags& bothSides) {
+  const Rows<uint32_t> cell(cells, "cells");
+  const size_t count = cell.size();
+  const Rows<float> normal(normals, "normals", 3, count), direction(directions, "directions", 3, count);
+  const FlagAt both(bothSides, "both_sides", count);
+  const Numbers result = newArray<Numbers>({count});
+  withoutLock([&] {
+    const GuideView view = guide.view();
+    for (size_t i = 0; i < count; ++i) {
+      const Float3 n = vectorAt(normal, i), wi = vectorAt(direction, i);
+      result.data()[i] = odisGetMapPdf(&view, cell(i), &n, both(i), &wi);
+    }
+  });
+  return result;
+}
+
+Numbers bsdfFraction(const Guide& guide, const Array& cells, const Array& roughness) {
+  const Rows<uint32_t> cell(cells, "cells");
+  const Rows<float> alpha(roughness, "roughness", 0, cell.size());
+  const Numbers result = newArray<Numbers>({cell.size()});
+  withoutLock([&] {
+    const GuideView view = guide.view();
+    for (size_t i = 0; i < cell.size(); ++i) result.data()[i] = odisGetBsdfFraction(&view, cell(i), alpha(i));
+  });
+  return result;
+}
+
+Numbers survivalProbability(const Guide& guide, const Array& cells, const Array& throughput) {
+  const Rows<uint32_t> cell(cells, "cells");
+  const Rows<float> relative(throughput, "throughput", 0, cell.size());
+  const Numbers result = newArray<Numbers>({cell.size()});
+  withoutLock([&] {
+    const GuideView view = guide.view();
+    for (size_t i = 0; i < cell.size(); ++i)
+      result.data()[i] = odisGetSurvivalProbability(&view, cell(i), relative(i));
+  });
+  return result;
+}
+
+Numbers shadowRayProbability(const Guide& guide, const Array& contribution) {
+  const Rows<float> relative(contribution, "contribution");
+  const Numbers result = newArray<Numbers>({relative.size()});
+  withoutLock([&] {
+    const GuideView view = guide.view();
+    for (size_t i = 0; i < relative.size(); ++i)
+      result.data()[i] = odisGetShadowRayProbability(&view, relative(i));
+  });
+  return result;
+}
+
+}  // namespace
+
+void bindLookups(nb::class_<Guide>& guide) {
+  guide
+      .def("find_cells", findCells, "positions"_a, "normals"_a,
+           R"(The finest cell that there is for each vertex: (count,), uint32; NO_CELL where there is none.
+
+positions, normals: float32 of shape (count, 3); shading normals, unit, on wo's side.)")
+      .def("sample", sample, "cells"_a, "normals"_a, "uv"_a, "both_sides"_a = false,
+           R"(Samples the cells' maps times the cosine: directions (count, 3), densities (count,), float32.
+
+cells: uint32 of shape (count,). normals: float32 of shape (count, 3), unit. uv: float32 of shape (count, 2),
+uniform in [0, 1). both_sides: bool, or bool of shape (count,): whether the surface scatters to both sides.
+Densities are with respect to solid angle; 0, with the direction 0, where there is no map to sample.)")
+      .def("pdf", pdf, "cells"_a, "normals"_a, "directions"_a, "both_sides"_a = false,
+           R"(The densities of `sample`, with respect to solid angle: (count,), float32; 0 without a map.
+
+directions: float32 of shape (count, 3), unit.)")
+      .def("bsdf_fraction", bsdfFraction, "cells"_a, "roughness"_a,
+           R"(Probabilities that draws that may be guided stay with the BSDF: (count,), float32 in (0, 1].
+
+roughness: float32 of shape (count,): alpha of a microfacet distribution, 1 for diffuse. 1 without a cell.)")
+      .def("survival_probability", survivalProbability, "cells"_a, "throughput"_a,
+           R"(Probabilities with which paths should go on: (count,), float32 in (0, 1].
+
+throughput: float32 of shape (count,): of the path over the pixel's value, both as luminance.)")
+      .def("shadow_ray_probability", shadowRayProbability, "contribution"_a,
+           R"(Probabilities with which shadow rays should be traced: (count,), float32 in (0, 1].
+
+contribution: float32 of shape (count,): what the light adds to the pixel if nothing hides it, over the
+pixel's value, as luminance.)");
+}
+
+}  // namespace odis::python

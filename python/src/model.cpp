@@ -1,0 +1,34 @@
+#include <nanobind/stl/filesystem.h>
+
+#include <odis/odis.hpp>
+
+#include "bindings.h"
+#include "context.h"
+
+namespace odis::python {
+
+void bindModel(nb::module_& module) {
+  nb::class_<Model>(module, "Model", "What turns statistics of cells into decisions: networks, or formulas.")
+      .def(
+          "__init__",
+          [](Model* self, const LoggingContext* context) { new (self) Model(contextOrShared(context)); },
+          "context"_a = nb::none(), "The networks that come with the library.")
+      .def_static(
+          "from_file",
+          [](const std::filesystem::path& path, const LoggingContext* context) {
+            return Model::load(path.string(), contextOrShared(context));
+          },
+          "path"_a, "context"_a = nb::none(), "The networks of a file of weights. Raises Error (FILE).")
+      .def_static(
+          "from_bytes",
+          [](const nb::bytes& data, const LoggingContext* context) {
+            return Model(odisNewModelFromMemory(contextOrShared(context).get(), data.data(), data.size()));
+          },
+          "data"_a, "context"_a = nb::none(), "The networks of a file's bytes. Raises Error (FILE).")
+      .def("with_direction_formula", &Model::withDirectionFormula,
+           "This model with a formula in the place of the network for directions.")
+      .def("with_light_formula", &Model::withLightFormula,
+           "This model with a formula in the place of the network for the choice of lights.");
+}
+
+}  // namespace odis::python

@@ -1,0 +1,151 @@
+// GuideOptions and FrameOptions, whose fields are keyword arguments and attributes.
+#include <nanobind/stl/array.h>
+#include <nanobind/stl/optional.h>
+#include <nanobind/stl/pair.h>
+#include <nanobind/stl/vector.h>
+
+#include <array>
+#include <odis/odis.hpp>
+
+#include "bindings.h"
+
+namespace odis::python {
+
+namespace {
+
+using PriorSamples = std::array<float, ODIS_CELL_LEVELS>;
+using Ranges = std::vector<std::pair<uint32_t, uint32_t>>;
+
+PriorSamples priorSamples(const GuideOptions& options) {
+  return std::to_array(options.priorSamples);
+}
+void setPriorSamples(GuideOptions& options, const PriorSamples& samples) {
+  std::copy(samples.begin(), samples.end(), options.priorSamples);
+}
+
+Ranges lightParts(const GuideOptions& options) {
+  Ranges ranges;
+  for (const LightParts& parts : options.lightParts) ranges.emplace_back(parts.first, parts.count);
+  return ranges;
+}
+void setLightParts(GuideOptions& options, const Ranges& ranges) {
+  options.lightParts.clear();
+  for (const auto& [first, count] : ranges) options.lightParts.push_back({first, count});
+}
+
+constexpr const char* kGuideOptions = R"(How guides are made of vertices; all fields are optional.
+
+model: Model, by default the networks that come with the library
+cells_per_diagonal: int >= 1 (32): the finest cells have an edge of (diagonal of what the first vertices
+    span) / this
+prior_samples: four floats >= 0 (250, 250, 120, 30): weight of the coarser level when the formula blends its
+    map with a finer one's, in samples, finest level first; the last is for the uniform map
+floor: float in [0, 1] (0.03): share of the uniform distribution in every map
+clamp: float > 0 (20): a sample counts at most this many times its neighbourhood's mean in maps
+fixed_bsdf_fraction: float in [0, 1] (0): above 0 this BSDF sampling fraction everywhere, in place of the one
+    by variance and cost
+control_variate: bool (True): whether the mean outgoing radiance stands in for paths that roulette ends
+light_groups: int <= 32 (0): groups of lights that the vertices tell apart; 0: learn nothing about lights
+light_parts: list of (first, count) ([]): groups that are equal parts of one light
+
+Values out of their range raise Error (INVALID_ARGUMENT) where the options are used.)";
+
+constexpr const char* kFrameOptions = R"(How an image is made; all fields but the size are optional.
+
+width, height: int, of the image in pixels; below 2^31 pixels
+samples_per_pixel: int >= 1 (4), pilot included
+refinement_samples: int (3): guided samples per pixel that the guide learns from as well: it is rebuilt after
+    1, 3, 7, ... if as many are left
+seed: int (0), in [0, 2^64): chooses the pilot's pixels; the host's random numbers come from FramePass.seed
+pilot_samples_per_pixel: float >= 0 (0): of the pilot; 0.25 is one sample in each 2 x 2 pixels; 0: 0.25 where
+    that is enough to learn from, else 1
+pilot_weight: float >= 0 (0.6): weight of a pilot sample relative to a guided one
+oracle_samples: int (0): further samples per pixel that the guide is made from instead of the pilot's, and
+    that are no part of the image
+guided: bool (True); False: plain path tracing, without a pilot
+adaptive: bool (True): whether pixels whose first samples differ more get more samples; from 4 samples per
+    pixel on
+guide: GuideOptions
+
+Values out of their range raise Error (INVALID_ARGUMENT) where the options are used.)";
+
+void bindGuideOptions(nb::module_& module) {
+  const OdisGuideOptions defaults;
+  nb::class_<GuideOptions>(module, "GuideOptions", kGuideOptions)
+      .def(
+          "__init__",
+          [](GuideOptions* self, std::optional<Model> model, int32_t cellsPerDiagonal,
+             const PriorSamples& samples, float floor, float clamp, float fixedBsdfFraction,
+             bool controlVariate, uint32_t lightGroups, const Ranges& parts) {
+            new (self) GuideOptions{{}, model ? *model : Model(), {}};
+            self->cellsPerDiagonal = cellsPerDiagonal;
+            setPriorSamples(*self, samples);
+            self->floor = floor;
+            self->clamp = clamp;
+            self->fixedBsdfFraction = fixedBsdfFraction;
+            self->controlVariate = controlVariate;
+            self->lightGroups = lightGroups;
+            setLightParts(*self, parts);
+          },
+          nb::kw_only(), "model"_a = nb::none(), "cells_per_diagonal"_a = defaults.cellsPerDiagonal,
+          "prior_samples"_a = std::to_array(defaults.priorSamples), "floor"_a = defaults.floor,
+          "clamp"_a = defaults.clamp, "fixed_bsdf_fraction"_a = defaults.fixedBsdfFraction,
+          "control_variate"_a = defaults.controlVariate, "light_groups"_a = defaults.lightGroups,
+          "light_parts"_a = Ranges())
+      .def_rw("model", &GuideOptions::model)
+      .def_rw("cells_per_diagonal", &GuideOptions::cellsPerDiagonal)
+      .def_prop_rw("prior_samples", priorSamples, setPriorSamples)
+      .def_rw("floor", &GuideOptions::floor)
+      .def_rw("clamp", &GuideOptions::clamp)
+      .def_rw("fixed_bsdf_fraction", &GuideOptions::fixedBsdfFraction)
+      .def_rw("control_variate", &GuideOptions::controlVariate)
+      .def_rw("light_groups", &GuideOptions::lightGroups)
+      .def_prop_rw("light_parts", lightParts, setLightParts);
+}
+
+void bindFrameOptions(nb::module_& module) {
+  const OdisFrameOptions defaults;
+  nb::class_<FrameOptions>(module, "FrameOptions", kFrameOptions)
+      .def(
+          "__init__",
+          [](FrameOptions* self, uint32_t width, uint32_t height, uint32_t samplesPerPixel,
+             uint32_t refinementSamples, uint64_t seed, double pilotSamplesPerPixel, float pilotWeight,
+             uint32_t oracleSamples, bool guided, bool adaptive, std::optional<GuideOptions> guide) {
+            new (self) FrameOptions{{}, guide ? *guide : GuideOptions()};
+            self->width = width;
+            self->height = height;
+            self->samplesPerPixel = samplesPerPixel;
+            self->refinementSamples = refinementSamples;
+            self->seed = seed;
+            self->pilotSamplesPerPixel = pilotSamplesPerPixel;
+            self->pilotWeight = pilotWeight;
+            self->oracleSamples = oracleSamples;
+            self->guided = guided;
+            self->adaptive = adaptive;
+          },
+          "width"_a, "height"_a, nb::kw_only(), "samples_per_pixel"_a = defaults.samplesPerPixel,
+          "refinement_samples"_a = defaults.refinementSamples, "seed"_a = defaults.seed,
+          "pilot_samples_per_pixel"_a = defaults.pilotSamplesPerPixel,
+          "pilot_weight"_a = defaults.pilotWeight, "oracle_samples"_a = defaults.oracleSamples,
+          "guided"_a = defaults.guided, "adaptive"_a = defaults.adaptive, "guide"_a = nb::none())
+      .def_rw("width", &FrameOptions::width)
+      .def_rw("height", &FrameOptions::height)
+      .def_rw("samples_per_pixel", &FrameOptions::samplesPerPixel)
+      .def_rw("refinement_samples", &FrameOptions::refinementSamples)
+      .def_rw("seed", &FrameOptions::seed)
+      .def_rw("pilot_samples_per_pixel", &FrameOptions::pilotSamplesPerPixel)
+      .def_rw("pilot_weight", &FrameOptions::pilotWeight)
+      .def_rw("oracle_samples", &FrameOptions::oracleSamples)
+      .def_rw("guided", &FrameOptions::guided)
+      .def_rw("adaptive", &FrameOptions::adaptive)
+      .def_rw("guide", &FrameOptions::guide);
+}
+
+}  // namespace
+
+void bindOptions(nb::module_& module) {
+  bindGuideOptions(module);
+  bindFrameOptions(module);
+}
+
+}  // namespace odis::python
