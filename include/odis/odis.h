@@ -142,8 +142,8 @@ ODIS_API void odisRetainFrame(OdisFrame frame);
 ODIS_API void odisReleaseFrame(OdisFrame frame);
 // Begins the next pass; false when the image is complete or a pass was interrupted, which is no error.
 ODIS_API bool odisBeginPass(OdisFrame frame, OdisFramePass* pass);
-// The samples of a pixel in the pass under way, none where all of its tile of 16 x 16 pixels are in. They do not
-// depend on what samples of that pixel brought. Thread-safe.
+// The samples of a pixel in the pass under way, none where all of its tile of 16 x 16 pixels are in. They do
+// not depend on what samples of that pixel brought. Thread-safe.
 ODIS_API OdisSampleRange odisGetSamples(OdisFrame frame, uint32_t pixel);
 // An estimate of each pixel's luminance, from the pilot; NULL before the pilot has ended. Valid as long as
 // the frame.

@@ -103,6 +103,9 @@ class Model : public Handle<OdisModel, odisRetainModel, odisReleaseModel> {
   static Model load(const std::string& path, const Context& context = Context::shared()) {
     return Model(odisNewModelFromFile(context.get(), path.c_str()));
   }
+  static Model parse(const void* bytes, size_t size, const Context& context = Context::shared()) {
+    return Model(odisNewModelFromMemory(context.get(), bytes, size));
+  }
   // This model with a formula for directions, or for the choice of lights.
   Model withDirectionFormula() const { return Model(odisNewModelWithFormulas(get(), true, false)); }
   Model withLightFormula() const { return Model(odisNewModelWithFormulas(get(), false, true)); }

@@ -24,7 +24,7 @@ constexpr size_t kFewPixels = 1024;
 constexpr uint64_t kGuideSeed = 0x9e3779b97f4a7c15ull;
 
 void requireOption(bool holds, const char* message) {
-  if (!holds) throw std::invalid_argument(std::string("FrameOptions::") + message);
+  if (!holds) throw std::invalid_argument(std::string("OdisFrameOptions.") + message);
 }
 void requireOrder(bool holds, const char* message) {
   if (!holds) throw std::logic_error(message);
@@ -226,7 +226,7 @@ Frame& Frame::operator=(Frame&&) noexcept = default;
 
 const FramePass* Frame::beginPass() {
   Data& d = *m_data;
-  requireOrder(!d.inPass, "Frame::beginPass: expected endPass() before the next pass");
+  requireOrder(!d.inPass, "odisBeginPass: expected odisEndPass before the next pass");
   if (d.finished || (d.next == ODIS_PASS_GUIDED && d.done >= d.schedule.mostRemaining())) return nullptr;
   d.describePass();
   d.tiles.beginPass([&d](uint32_t pixel) { return d.samples(pixel); },
@@ -238,8 +238,8 @@ const FramePass* Frame::beginPass() {
 }
 
 SampleRange Frame::samples(uint32_t pixel) const {
-  requireOrder(m_data->inPass, "Frame::samples: expected a pass under way");
-  if (pixel >= m_data->pilot.size()) throw std::out_of_range("Frame::samples: expected a pixel of the frame");
+  requireOrder(m_data->inPass, "odisGetSamples: expected a pass under way");
+  if (pixel >= m_data->pilot.size()) throw std::out_of_range("odisGetSamples: expected a pixel of the frame");
   return m_data->tiles.isDone(pixel) ? SampleRange() : m_data->samples(pixel);
 }
 
@@ -248,13 +248,13 @@ ArrayView<const float> Frame::pixelValues() const {
 }
 
 void Frame::add(ArrayView<const FrameSample> samples, ArrayView<const PathVertex> vertices) {
-  requireOrder(m_data->inPass, "Frame::add: expected a pass under way");
+  requireOrder(m_data->inPass, "odisAddSamples: expected a pass under way");
   m_data->tiles.add(samples, m_data->pass.wantsVertices ? vertices : ArrayView<const PathVertex>());
 }
 
 void Frame::endPass(bool interrupted) {
   Data& d = *m_data;
-  requireOrder(d.inPass, "Frame::endPass: expected a pass under way");
+  requireOrder(d.inPass, "odisEndPass: expected a pass under way");
   d.outsideFrame += d.tiles.endPass();
   d.inPass = false;
   d.finished = true;  // unless what follows succeeds

@@ -20,7 +20,7 @@ namespace odis::core {
 namespace {
 
 void require(bool holds, const char* message) {
-  if (!holds) throw std::invalid_argument(std::string("GuideOptions::") + message);
+  if (!holds) throw std::invalid_argument(std::string("OdisGuideOptions.") + message);
 }
 
 void check(const GuideOptions& options) {
@@ -185,7 +185,7 @@ Guide GuideBuilder::build(VertexParts parts, ArrayView<const float> pixelValues)
 
 Guide GuideBuilder::rebuild(const Guide& previous) const {
   if (!previous.m_data || previous.m_data->builder != m_data.get())
-    throw std::invalid_argument("GuideBuilder::rebuild: expected a guide that this builder built");
+    throw std::invalid_argument("odisRebuildGuide: expected a guide that this builder built");
   const Progress& progress = m_data->progress;
   progress.report(0);
   const std::vector<CellStatistics>& cells = m_data->store.rollUp();

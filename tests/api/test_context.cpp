@@ -189,6 +189,15 @@ TEST(ApiContext, MemoryIsCounted) {
   EXPECT_TRUE(heard.messages.empty());
 }
 
+TEST(ApiContext, TheLogTellsWhatWasBuilt) {
+  Heard heard;
+  ContextOptions options = heardBy(heard);
+  options.logLevel = ODIS_LOG_INFO;
+  const Guide guide = guideIn(Context(options));
+  ASSERT_EQ(heard.messages.size(), 1u);
+  EXPECT_NE(heard.messages[0].find(std::to_string(guide.view().cellCount) + " cells"), std::string::npos);
+}
+
 TEST(ApiContext, AMemoryLimitMakesGuidesCoarser) {
   const uint32_t cells = guideIn(Context()).view().cellCount;
   for (const uint64_t limit : {uint64_t(4) << 20, uint64_t(1) << 20}) {

@@ -15,6 +15,8 @@ OdisGuideOptions adoptGuideOptions(const OdisGuideOptions& given) {
 OdisGuideImpl::OdisGuideImpl(OdisContext owner, odis::core::Guide content)
     : memory(owner), guide(std::move(content)) {
   memory.set(guide.bytes());
+  owner->log(ODIS_LOG_INFO, "a guide of " + std::to_string(guide.view().cellCount) + " cells, " +
+                                std::to_string(guide.bytes()) + " bytes");
 }
 
 OdisGuideBuilderImpl::OdisGuideBuilderImpl(OdisContext owner, const OdisGuideOptions& options)

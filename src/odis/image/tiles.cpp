@@ -73,9 +73,9 @@ bool TileCollector::allIn(uint32_t tile, ArrayView<const FrameSample> samples,
 void TileCollector::add(ArrayView<const FrameSample> samples, ArrayView<const PathVertex> vertices) {
   for (const FrameSample& s : samples)
     if (!isDue(s.pixel, s.sample))
-      throw std::out_of_range("Frame::add: sample " + std::to_string(s.sample) + " of pixel " +
+      throw std::out_of_range("odisAddSamples: sample " + std::to_string(s.sample) + " of pixel " +
                               std::to_string(s.pixel) +
-                              " is not due in this pass: Frame::samples() says which are");
+                              " is not due in this pass: odisGetSamples says which are");
   // Whatever is of one tile needs no sorting by tile.
   if (!samples.empty())
     if (const uint32_t tile = tileOf(samples[0].pixel); allIn(tile, samples, vertices))
@@ -99,7 +99,7 @@ void TileCollector::addToTile(uint32_t index, ArrayView<const FrameSample> sampl
   Tile& tile = m_tiles[index];
   const std::lock_guard lock(tile.mutex);
   if (tile.done)
-    throw std::logic_error("Frame::add: a sample or vertex came twice, or after its tile was complete");
+    throw std::logic_error("odisAddSamples: a sample or vertex came twice, or after its tile was complete");
   if (tile.due == 0) tile.due = samplesDue(index);
   const bool nothingWaits = tile.samples.empty() && tile.vertices.empty();
   tile.done = tile.samples.size() + samples.size() == tile.due;

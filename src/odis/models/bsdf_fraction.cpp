@@ -26,7 +26,7 @@ class PixelScale {
   // Throws where a vertex has no pixel value.
   void check(const PathVertex& v) const {
     if (!m_values.empty() && v.pixel >= m_values.size())
-      throw std::out_of_range("GuideBuilder::build: a vertex has pixel " + std::to_string(v.pixel) +
+      throw std::out_of_range("odisBuildGuide: a vertex has pixel " + std::to_string(v.pixel) +
                               ", expected less than the number of pixel values, " +
                               std::to_string(m_values.size()));
   }

@@ -80,9 +80,10 @@ class ThreadTasks : public Tasks {
 }  // namespace
 
 std::shared_ptr<const Tasks> libraryTasks(uint32_t threads) {
-  const uint32_t cores = std::max(1u, std::thread::hardware_concurrency());
-  static const auto unlimited = std::make_shared<ThreadTasks>(cores);
-  return threads == 0 ? unlimited : std::make_shared<ThreadTasks>(threads);
+  if (threads > 0) return std::make_shared<ThreadTasks>(threads);
+  static const auto oneACore =
+      std::make_shared<ThreadTasks>(std::max(1u, std::thread::hardware_concurrency()));
+  return oneACore;
 }
 
 }  // namespace odis::core
