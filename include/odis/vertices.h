@@ -91,7 +91,7 @@ typedef enum OdisFormat {
 typedef struct OdisVertexField {
   const void* data ODIS_DEFAULT(NULL);
   size_t stride ODIS_DEFAULT(0);  // 0: one after another, without gaps
-  OdisFormat format ODIS_DEFAULT(ODIS_FORMAT_DEFAULT);
+  int32_t format ODIS_DEFAULT(ODIS_FORMAT_DEFAULT);  // an OdisFormat
 } OdisVertexField;
 
 // Many vertices as they lie in the host's memory, as arrays of structs or of numbers: fields of

@@ -131,7 +131,7 @@ TEST(ApiVertices, WhatCannotBeIsRefusedByName) {
   bad.normal.stride = 11;
   expectRefused(bad, "normal: expected a stride of at least 12");
   bad = describe(plain);
-  bad.pdf.format = OdisFormat(7);
+  bad.pdf.format = 7;
   expectRefused(bad, "pdf: expected a format");
   bad = describe(plain);
   bad.pixel.format = ODIS_FORMAT_HALF;
