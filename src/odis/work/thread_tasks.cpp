@@ -79,10 +79,11 @@ class ThreadTasks : public Tasks {
 
 }  // namespace
 
-std::shared_ptr<const Tasks> libraryTasks(uint32_t threads) {
-  const uint32_t cores = std::max(1u, std::thread::hardware_concurrency());
-  static const auto unlimited = std::make_shared<ThreadTasks>(cores);
-  return threads == 0 ? unlimited : std::make_shared<ThreadTasks>(threads);
+std::shared_ptr<const Tasks> threadTasks(uint32_t threads) {
+  if (threads > 0) return std::make_shared<ThreadTasks>(threads);
+  static const auto oneEachCore =
+      std::make_shared<ThreadTasks>(std::max(1u, std::thread::hardware_concurrency()));
+  return oneEachCore;
 }
 
 }  // namespace odis::core
