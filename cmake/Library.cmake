@@ -8,6 +8,8 @@ add_library(odis_objects OBJECT ${ODIS_SOURCES})
 target_include_directories(odis_objects PRIVATE include src)
 target_compile_definitions(odis_objects PRIVATE ODIS_SHARED ODIS_BUILDING $<$<BOOL:${ODIS_TBB}>:ODIS_TBB>)
 target_link_libraries(odis_objects PRIVATE odis_compiler odis_version $<$<BOOL:${ODIS_TBB}>:TBB::tbb>)
+# No fused multiplication and addition, which only some processors have: results are the same on all.
+target_compile_options(odis_objects PRIVATE -ffp-contract=off)
 set_target_properties(odis_objects PROPERTIES CXX_VISIBILITY_PRESET hidden VISIBILITY_INLINES_HIDDEN ON)
 # What was learned comes with it.
 odis_embed_bytes(odis_objects odis::core builtInWeights ${PROJECT_SOURCE_DIR}/weights/odis.weights)

@@ -49,7 +49,8 @@ int main() {
   map.prepare(view.maps, int32_t(cell), place.normal, 0);
   const odis::Float3 wi{0.6f, 0, 0.8f};
   const float inHeaders = map.pdf(wi), inLibrary = odisGetMapPdf(&view, cell, &place.normal, false, &wi);
-  std::printf("ODIS %s: %u cells, density %g and %g\n", odisGetVersionText(), view.cellCount, double(inHeaders),
-              double(inLibrary));
-  return inHeaders > 0 && inHeaders == inLibrary && odisGetVersion() == ODIS_VERSION && throwsErrors() ? 0 : 1;
+  std::printf("ODIS %s: %u cells, density %g and %g\n", odisGetVersionText(), view.cellCount,
+              double(inHeaders), double(inLibrary));
+  return inHeaders > 0 && inHeaders == inLibrary && odisGetVersion() == ODIS_VERSION && throwsErrors() ? 0
+                                                                                                       : 1;
 }

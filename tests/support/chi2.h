@@ -8,7 +8,6 @@
 #include <numbers>
 #include <optional>
 #include <random>
-#include <type_traits>
 #include <vector>
 
 namespace odis::test {
@@ -61,7 +60,7 @@ struct Chi2Options {
 // expected to hold fewer than five.
 template <class Sample, class Pdf>
 ::testing::AssertionResult chi2Test(Sample&& sample, Pdf&& pdf, const Chi2Options& options = {}) {
-  using Direction = typename std::invoke_result_t<Sample, float, float, float>::value_type;
+  using Direction = typename decltype(std::optional(sample(0.0f, 0.0f, 0.0f)))::value_type;
   constexpr float kPi = std::numbers::pi_v<float>;
   const int cells = options.thetaCells * options.phiCells;
   std::vector<double> observed(cells + 1, 0.0), expected(cells + 1, 0.0);
@@ -70,7 +69,7 @@ template <class Sample, class Pdf>
   const auto draw = [&] { return std::min(uniform(engine), kOneMinusEpsilon); };
   for (int i = 0; i < options.samples; ++i) {
     const float u0 = draw(), u1 = draw(), u2 = draw();
-    const std::optional<Direction> w = sample(u0, u1, u2);
+    const std::optional w = sample(u0, u1, u2);
     if (!w) {
       observed[cells] += 1;
       continue;
