@@ -1,5 +1,5 @@
-# `cmake --install`, in the components `library` (what programs need to run), `development` (what they are built with)
-# and `command`. The tree may be moved afterwards.
+# `cmake --install`, in the components `library` (what programs need to run), `development` (what they are
+# built with), `command`, and `training`, which needs libtorch. The tree may be moved afterwards.
 include(GNUInstallDirs)
 include(CMakePackageConfigHelpers)
 set(package ${CMAKE_INSTALL_LIBDIR}/cmake/odis)
@@ -24,8 +24,8 @@ write_basic_package_version_file(${PROJECT_BINARY_DIR}/generated/odis-config-ver
 install(FILES ${PROJECT_BINARY_DIR}/generated/odis-config.cmake ${PROJECT_BINARY_DIR}/generated/odis-config-version.cmake
   DESTINATION ${package} COMPONENT development)
 
-# For pkg-config. With --static it adds what the static library needs: threads, the C++ runtime and oneTBB. The latter is
-# no Requires.private, which would ask users of the shared library for oneTBB's headers.
+# For pkg-config. With --static it adds what the static library needs: threads, the C++ runtime and oneTBB.
+# The latter is no Requires.private, which would ask users of the shared library for oneTBB's headers.
 file(RELATIVE_PATH ODIS_PC_TO_PREFIX ${CMAKE_INSTALL_FULL_LIBDIR}/pkgconfig ${CMAKE_INSTALL_PREFIX})
 string(REGEX REPLACE "/$" "" ODIS_PC_TO_PREFIX "${ODIS_PC_TO_PREFIX}")
 set(runtime ${CMAKE_CXX_IMPLICIT_LINK_LIBRARIES})
@@ -46,7 +46,7 @@ if(TARGET odis_app)
   install(TARGETS odis_app RUNTIME COMPONENT command)
 endif()
 if(TARGET odis_app AND TARGET odis_learner)
-  install(TARGETS odis_learner LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR}/odis COMPONENT command)
+  install(TARGETS odis_learner LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR}/odis COMPONENT training)
   file(RELATIVE_PATH learner ${CMAKE_INSTALL_FULL_BINDIR} ${CMAKE_INSTALL_FULL_LIBDIR}/odis)
   set_target_properties(odis_app PROPERTIES INSTALL_RPATH $ORIGIN/${learner})
   # libtorch may lie in a wheel, outside of where the loader looks.

@@ -1,5 +1,5 @@
-# The library, which knows nothing of the renderer: shared for those who install it, static for those who want it inside
-# of their program and for all that is built here, whose tests and trainings look inside.
+# The library, which knows nothing of the renderer: shared for those who install it, static for those who want
+# it inside of their program and for all that is built here, whose tests and trainings look inside.
 file(GLOB_RECURSE ODIS_SOURCES CONFIGURE_DEPENDS src/odis/*.cpp)
 if(NOT ODIS_TBB)
   list(FILTER ODIS_SOURCES EXCLUDE REGEX "/tbb_tasks\\.cpp$")

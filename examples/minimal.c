@@ -1,5 +1,6 @@
-// The smallest host there is: it makes up what paths saw on a floor under a bright spot of sky, lets ODIS learn from
-// that, and asks for a direction. A renderer does the same with the vertices of its own first paths.
+// The smallest host there is: it makes up what paths saw on a floor under a bright spot of sky, lets ODIS
+// learn from that, and asks for a direction. A renderer does the same with the vertices of its own first
+// paths.
 //
 //   cc -std=c99 minimal.c $(pkg-config --cflags --libs odis) -lm -o minimal && ./minimal
 #include <math.h>
@@ -21,15 +22,16 @@ static void require(bool succeeded, const char* call) {
   exit(1);
 }
 
-// A number in [0, 1): Numerical Recipes' linear congruential generator, whose upper 24 bits are good enough here.
+// A number in [0, 1): Numerical Recipes' linear congruential generator, whose upper 24 bits are good enough
+// here.
 static float randomNumber(void) {
   static uint32_t state = 1;
   state = state * 1664525u + 1013904223u;
   return (float)(state >> 8) / 16777216.0f;
 }
 
-// What a path tracer would record where a path met the floor: where that was, the direction in which the path went
-// on, the density with which the BSDF sampled it, and the radiance that came back from there.
+// What a path tracer would record where a path met the floor: where that was, the direction in which the path
+// went on, the density with which the BSDF sampled it, and the radiance that came back from there.
 static void makeVertex(OdisPathVertex* vertex, uint32_t sample) {
   const float radius = sqrtf(randomNumber()), phi = 2 * PI * randomNumber();
   const OdisFloat3 normal = {0, 0, 1};
@@ -54,8 +56,8 @@ static OdisGuide buildGuide(OdisContext context, const OdisPathVertex* array) {
   OdisPathVertices vertices;
   OdisVertexCounts counts;
 
-  // The vertices lie in an array of the library's own struct. Others may lie as they like: see odis/vertices.h. The
-  // size tells a newer library which fields this program knows.
+  // The vertices lie in an array of the library's own struct. Others may lie as they like: see
+  // odis/vertices.h. The size tells a newer library which fields this program knows.
   odisInitPathVertices(&vertices, sizeof vertices);
   odisDescribeVertices(&vertices, array, VERTEX_COUNT);
 
@@ -90,7 +92,8 @@ static void guidePath(const OdisGuideView* view) {
     return;
   }
 
-  // With this probability the renderer samples its BSDF, else the map. 1 stands for the roughness of a diffuse surface.
+  // With this probability the renderer samples its BSDF, else the map. 1 stands for the roughness of a
+  // diffuse surface.
   const float bsdfFraction = odisGetBsdfFraction(view, cell, 1);
 
   // Samples a direction from the map times the cosine to the normal.
@@ -99,11 +102,13 @@ static void guidePath(const OdisGuideView* view) {
     return;
   }
 
-  // Whichever of the two the direction came from, its density is that of the mixture, which is what the path's weight
-  // is divided by. All of a diffuse BSDF may be guided: that part's density is the BSDF's, and its probability is 1.
+  // Whichever of the two the direction came from, its density is that of the mixture, which is what the
+  // path's weight is divided by. All of a diffuse BSDF may be guided: that part's density is the BSDF's, and
+  // its probability is 1.
   const float bsdfPdf = wi.z / PI;
   const float pdf = odisGetMixturePdf(bsdfPdf, bsdfPdf, 1, bsdfFraction, mapPdf);
-  printf("cell %u of %u, BSDF sampling fraction %.2f\n", (unsigned)cell, (unsigned)view->cellCount, bsdfFraction);
+  printf("cell %u of %u, BSDF sampling fraction %.2f\n", (unsigned)cell, (unsigned)view->cellCount,
+         bsdfFraction);
   printf("direction (%.3f, %.3f, %.3f), cosine to the bright spot %.3f\n", wi.x, wi.y, wi.z,
          wi.x * BRIGHT.x + wi.y * BRIGHT.y + wi.z * BRIGHT.z);
   printf("density: BSDF %.3f, map %.3f, mixture %.3f\n", bsdfPdf, mapPdf, pdf);

@@ -1,5 +1,6 @@
-# What was built here is installed into a folder, the folder is moved, and projects that know nothing of this one are
-# built against it: one that finds ODIS by CMake, and a program compiled by hand with what pkg-config says.
+# What was built here is installed into a folder, the folder is moved, and projects that know nothing of this
+# one are built against it: one that finds ODIS by CMake, and a program compiled by hand with what pkg-config
+# says.
 set(folder ${CMAKE_CURRENT_BINARY_DIR}/consumer)
 add_test(NAME Consumer.Install COMMAND ${CMAKE_COMMAND} -DBUILD=${PROJECT_BINARY_DIR} -DFOLDER=${folder}
   -P ${CMAKE_CURRENT_LIST_DIR}/install.cmake)

@@ -1,6 +1,6 @@
-// Prints a number for each array of a guide that is built from made-up vertices: equal numbers mean equal bits.
-// scripts/cross compares what it prints on different machines. The vertices are made without a mathematical library,
-// so that they are equal everywhere.
+// Prints a number for each array of a guide that is built from made-up vertices: equal numbers mean equal
+// bits. scripts/cross compares what it prints on different machines. The vertices are made without a
+// mathematical library, so that they are equal everywhere.
 #include <odis/odis.hpp>
 
 #include <cinttypes>

@@ -55,9 +55,9 @@ struct Chi2Options {
   uint64_t seed = 1;
 };
 
-// `sample(u)` gives a direction (or nothing, if it fails) from three uniform numbers, of any type with x, y and
-// z; `pdf(w)` its solid-angle density. Failed samples count against a total probability of less than one. Pools cells
-// expected to hold fewer than five.
+// `sample(u)` gives a direction (of any type with x, y and z), or nothing if it fails, from three uniform
+// numbers; `pdf(w)` its solid-angle density. Failed samples count against a total probability of less than
+// one. Pools cells expected to hold fewer than five.
 template <class Sample, class Pdf>
 ::testing::AssertionResult chi2Test(Sample&& sample, Pdf&& pdf, const Chi2Options& options = {}) {
   using Direction = typename decltype(std::optional(sample(0.0f, 0.0f, 0.0f)))::value_type;
