@@ -16,7 +16,7 @@ add_test(NAME Consumer.FindsItByCMake COMMAND ${CMAKE_CTEST_COMMAND}
   --build-options -Dodis_ROOT=${folder}/moved -DCMAKE_BUILD_TYPE=${CMAKE_BUILD_TYPE} ${toolchain}
     -DCMAKE_C_COMPILER=${CMAKE_C_COMPILER} -DCMAKE_CXX_COMPILER=${CMAKE_CXX_COMPILER}
     "-DCMAKE_C_FLAGS=${CMAKE_CXX_FLAGS}" "-DCMAKE_CXX_FLAGS=${CMAKE_CXX_FLAGS}"
-  --test-command ${CMAKE_CTEST_COMMAND} --output-on-failure)
+  --test-command ${CMAKE_CTEST_COMMAND} --output-on-failure --timeout 60)
 set_tests_properties(Consumer.FindsItByCMake PROPERTIES FIXTURES_REQUIRED installed_odis LABELS consumer)
 
 find_program(ODIS_PKG_CONFIG pkg-config)

@@ -81,9 +81,17 @@ class ThreadTasks : public Tasks {
 
 std::shared_ptr<const Tasks> threadTasks(uint32_t threads) {
   if (threads > 0) return std::make_shared<ThreadTasks>(threads);
-  static const auto oneEachCore =
-      std::make_shared<ThreadTasks>(std::max(1u, std::thread::hardware_concurrency()));
-  return oneEachCore;
+  // Shared by all who use it, and ended by the last of them: a DLL that joins threads when the process ends
+  // waits forever.
+  static std::mutex mutex;
+  static std::weak_ptr<const Tasks> oneEachCore;
+  const std::lock_guard lock(mutex);
+  std::shared_ptr<const Tasks> tasks = oneEachCore.lock();
+  if (!tasks) {
+    tasks = std::make_shared<ThreadTasks>(std::max(1u, std::thread::hardware_concurrency()));
+    oneEachCore = tasks;
+  }
+  return tasks;
 }
 
 }  // namespace odis::core
