@@ -2,12 +2,12 @@
 #pragma once
 
 #include <gtest/gtest.h>
-#include <tbb/parallel_for.h>
 
 #include <functional>
 #include <vector>
 
 #include "frame/toy_host.h"
+#include "odis/work/tasks.h"
 
 namespace odis::test {
 
@@ -105,12 +105,12 @@ struct Estimate {
 inline Estimate estimate(const FrameOptions& options, const ToyRoom& room, int seeds, uint64_t first,
                          const std::function<ChangeVertices(uint64_t seed)>& makeChange = {}) {
   std::vector<std::vector<float>> images(static_cast<size_t>(seeds));
-  tbb::parallel_for(0, seeds, [&](int i) {
+  core::libraryTasks()->forEach(images.size(), [&](size_t i) {
     FrameOptions own = options;
-    own.seed = first + uint64_t(i);
+    own.seed = first + i;
     Frame frame(own);
     runFrame(frame, own, room, makeChange ? makeChange(own.seed) : ChangeVertices());
-    images[size_t(i)] = luminances(frame, own);
+    images[i] = luminances(frame, own);
   });
   Estimate result;
   for (const std::vector<float>& image : images) result.add(image, options.width);

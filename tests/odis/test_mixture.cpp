@@ -2,6 +2,7 @@
 #include <odis/mixture.h>
 #include <odis/sampling_map.h>
 
+#include <numbers>
 #include <ostream>
 #include <random>
 
@@ -53,7 +54,8 @@ class ToyHost {
       return {{0, 0, 1}, m_lobes.mirror, 0.9f / m_lobes.mirror, Lobe::mirror};
     const bool diffuse = m_uLobe < m_lobes.diffuse;
     // Power lobes, of exponent one about the normal, and of exponent 30 about the tilted axis.
-    const float cosine = std::pow(1 - u, diffuse ? 0.5f : 1 / (kExponent + 1)), phi = 2 * render::kPi * v;
+    const float cosine = std::pow(1 - u, diffuse ? 0.5f : 1 / (kExponent + 1)),
+                phi = 2 * std::numbers::pi_v<float> * v;
     const float sine = std::sqrt(std::max(0.0f, 1 - cosine * cosine));
     const Float3 local{sine * std::cos(phi), sine * std::sin(phi), cosine};
     const Float3 wi =
@@ -81,7 +83,7 @@ class ToyHost {
     return 0.5f * guidablePdf(wi) + (m_lobes.glossy > 0 ? glossyPdf(wi) : 0);
   }
   float guidablePdf(const Float3& wi) const {
-    return m_lobes.diffuse * std::max(wi.z, 0.0f) * render::kInvPi;
+    return m_lobes.diffuse * std::max(wi.z, 0.0f) * std::numbers::inv_pi_v<float>;
   }
   float bsdfPdf(const Float3& wi) const { return guidablePdf(wi) + m_lobes.glossy * glossyPdf(wi); }
   // The integral of value().
@@ -92,7 +94,7 @@ class ToyHost {
   // The glossy lobe reaches below the horizon, as real ones do.
   static float glossyPdf(const Float3& wi) {
     const float cosine = std::max(dot(wi, Float3{0.6f, 0, 0.8f}), 0.0f);
-    return (kExponent + 1) / (2 * render::kPi) * std::pow(cosine, kExponent);
+    return (kExponent + 1) / (2 * std::numbers::pi_v<float>)*std::pow(cosine, kExponent);
   }
   LobeProbabilities m_lobes;
   float m_uLobe;
@@ -126,16 +128,13 @@ TEST_P(MixtureTest, SampleHasTheDensityOfPdf) {
   options.quadrature = 48;
   options.testCount = kMixtureCases;
   EXPECT_TRUE(test::chi2Test(
-      [&](float uLobe, float u, float v) -> std::optional<render::Vec3> {
+      [&](float uLobe, float u, float v) -> std::optional<Float3> {
         const ToyHost host(c.lobes, uLobe);
         const ToyHost::Sample s = mixture.sample(map, u, v, host);
         if (host.isDiscrete(s)) return {};
-        return render::Vec3(s.wi.x, s.wi.y, s.wi.z);
+        return s.wi;
       },
-      [&](const render::Vec3& w) {
-        return densityOf(c, map, {w.x, w.y, w.z});
-      },
-      options));
+      [&](const Float3& w) { return densityOf(c, map, w); }, options));
 }
 
 TEST_P(MixtureTest, DensityIntegratesToOne) {
@@ -147,7 +146,7 @@ TEST_P(MixtureTest, DensityIntegratesToOne) {
   for (int i = 0; i < n; ++i)
     for (int j = 0; j < n; ++j)
       integral += densityOf(c, map, squareToDirection(Float2{(i + 0.5f) / n, (j + 0.5f) / n}));
-  EXPECT_NEAR(integral * 4 * M_PI / (double(n) * n) + c.lobes.mirror, 1, 1e-3);
+  EXPECT_NEAR(integral * 4 * std::numbers::pi / (double(n) * n) + c.lobes.mirror, 1, 1e-3);
 }
 
 TEST_P(MixtureTest, SamplesCarryTheirDensityAndTheBsdfOverIt) {
@@ -157,7 +156,7 @@ TEST_P(MixtureTest, SamplesCarryTheirDensityAndTheBsdfOverIt) {
   const Mixture<float> mixture(c.fraction, c.lobes.diffuse);
   std::mt19937 engine(5);
   std::uniform_real_distribution<float> uniform(0, 1);
-  const auto draw = [&] { return std::min(uniform(engine), render::kOneMinusEpsilon); };
+  const auto draw = [&] { return std::min(uniform(engine), test::kOneMinusEpsilon); };
   constexpr int kSamples = 200000;
   int fromMap = 0, discrete = 0, different = 0;
   double sum = 0, squares = 0;
@@ -211,14 +210,14 @@ TEST(Mixture, IntegratesToOneAndKeepsSharpLobes) {
   for (int i = 0; i < n; ++i)
     for (int j = 0; j < n; ++j) {
       const Float3 w = squareToDirection(Float2{(i + 0.5f) / n, (j + 0.5f) / n});
-      const float cosine = std::max(w.z, 0.0f) * render::kInvPi;
-      const float sharp = w.z > 0.9f ? 1 / (2 * render::kPi * 0.1f) : 0;
+      const float cosine = std::max(w.z, 0.0f) * std::numbers::inv_pi_v<float>;
+      const float sharp = w.z > 0.9f ? 1 / (2 * std::numbers::pi_v<float> * 0.1f) : 0;
       const float mixed =
           mixturePdf(0.7f * cosine + 0.3f * sharp, 0.7f * cosine, guidable, fraction, map.pdf(w));
       EXPECT_GE(mixed, 0.3f * sharp * 0.999f);
       integral += mixed;
     }
-  EXPECT_NEAR(integral * 4 * M_PI / (double(n) * n), 1, 2e-3);
+  EXPECT_NEAR(integral * 4 * std::numbers::pi / (double(n) * n), 1, 2e-3);
 }
 
 TEST(Mixture, IsTheBsdfAloneByDefault) {
@@ -242,7 +241,7 @@ TEST(Mixture, OneNumberChoosesAndIsStretchedAgain) {
   for (const float fraction : {0.15f, 0.25f, 0.4f, 0.6f, 0.8f, 0.999f}) {
     const Mixture<float> mixture(fraction, 1);
     const Mixture<float>::Choice first = mixture.choose(0), at = mixture.choose(fraction),
-                                 last = mixture.choose(render::kOneMinusEpsilon);
+                                 last = mixture.choose(test::kOneMinusEpsilon);
     EXPECT_FALSE(first.fromMap);
     EXPECT_EQ(first.u, 0);
     EXPECT_TRUE(at.fromMap);

@@ -5,6 +5,7 @@
 #include <functional>
 
 #include "odis/floor_under_patch.h"
+#include "odis/models/second_moments.h"
 #include "odis/record/vertex_check.h"
 #include "odis/same_guide.h"
 #include "support/models.h"

@@ -1,6 +1,7 @@
 // The octahedral map and sampling maps: sample and density must be the same distribution.
 #include <odis/sampling_map.h>
 
+#include <numbers>
 #include <random>
 
 #include "odis/maps/pack.h"
@@ -8,12 +9,6 @@
 
 namespace odis::core {
 namespace {
-
-using render::Vec3;
-
-Vec3 toVec3(const Float3& w) {
-  return {w.x, w.y, w.z};
-}
 
 TEST(Octahedral, InvertsItself) {
   std::mt19937 engine(1);
@@ -38,12 +33,13 @@ TEST(Octahedral, PolynomialsKeepTheirPromise) {
     // The azimuth, in its quadrant, in double precision.
     const double u = std::abs(2.0 * s.x - 1), v = std::abs(2.0 * s.y - 1);
     const double r = 1 - std::abs(1 - (u + v));
-    const double phi = ((v - u) / r + 1) * M_PI / 4, sinTheta = r * std::sqrt(2 - r * r);
+    const double phi = ((v - u) / r + 1) * std::numbers::pi / 4, sinTheta = r * std::sqrt(2 - r * r);
     direction = std::max(direction, std::abs(std::abs(w.x) - std::cos(phi) * sinTheta));
     direction = std::max(direction, std::abs(std::abs(w.y) - std::sin(phi) * sinTheta));
     // And back, from that very direction.
     if (w.z < 0.5f) continue;
-    const double back = std::sqrt(1.0 - w.z) * std::atan2(std::abs(w.y), std::abs(w.x)) * 2 / M_PI;
+    const double back =
+        std::sqrt(1.0 - w.z) * std::atan2(std::abs(w.y), std::abs(w.x)) * 2 / std::numbers::pi;
     square = std::max(square, std::abs(std::abs(2.0 * directionToSquare(w).y - 1) - back));
   }
   EXPECT_LT(direction, 4e-7);
@@ -51,10 +47,8 @@ TEST(Octahedral, PolynomialsKeepTheirPromise) {
 }
 
 TEST(Octahedral, KeepsAreas) {
-  const auto sample = [](float, float u, float v) {
-    return std::optional(toVec3(squareToDirection(Float2{u, v})));
-  };
-  EXPECT_TRUE(test::chi2Test(sample, [](const Vec3&) { return 1 / (4 * render::kPi); }));
+  const auto sample = [](float, float u, float v) { return std::optional(squareToDirection(Float2{u, v})); };
+  EXPECT_TRUE(test::chi2Test(sample, [](const Float3&) { return 1 / (4 * std::numbers::pi_v<float>); }));
 }
 
 TEST(Octahedral, PolesAndSeamsAreFinite) {
@@ -115,8 +109,8 @@ TEST_P(VertexMapTest, SampleHasTheDensityOfPdf) {
   std::uniform_real_distribution<float> uniform(0, 1);
   const int samples = 400000;
   for (int i = 0; i < samples; ++i) {
-    const VertexMap<float>::Sample s = map.sample(std::min(uniform(engine), render::kOneMinusEpsilon),
-                                                  std::min(uniform(engine), render::kOneMinusEpsilon));
+    const VertexMap<float>::Sample s = map.sample(std::min(uniform(engine), test::kOneMinusEpsilon),
+                                                  std::min(uniform(engine), test::kOneMinusEpsilon));
     ASSERT_NEAR(dot(s.wi, s.wi), 1, 1e-4);
     ASSERT_GT(s.pdf, 0);
     observed[texelOf(s.wi)] += 1;
@@ -125,7 +119,7 @@ TEST_P(VertexMapTest, SampleHasTheDensityOfPdf) {
   int degrees = -1;
   double pooledExpected = 0, pooledObserved = 0;
   for (int t = 0; t < kMapTexels; ++t) {
-    const double probability = map.texelPdf(t) * 4 * M_PI / kMapTexels;
+    const double probability = map.texelPdf(t) * 4 * std::numbers::pi / kMapTexels;
     total += probability;
     if (probability == 0) {
       // Rounding of the direction may carry a sample across a texel's border.
@@ -187,7 +181,7 @@ TEST(VertexMap, IsTheProductAwayFromTheHorizon) {
     map.prepare(texels.arrays(), 0, normal, belowSign);
     double found = 0, largest = 0;
     for (int t = 0; t < kMapTexels; ++t) {
-      const double probability = map.texelPdf(t) * 4 * M_PI / kMapTexels;
+      const double probability = map.texelPdf(t) * 4 * std::numbers::pi / kMapTexels;
       if (!std::isfinite(probability)) continue;  // an empty block
       found += probability;
       largest = std::max(largest, std::abs(probability - product[t] / total));
@@ -202,9 +196,9 @@ TEST(VertexMap, ABrightTexelBelowTheHorizonDrawsLittle) {
   const Float3 bright = texelDirection(137);
   VertexMap<float> map;
   map.prepare(texels.arrays(), 0, bright * -1.0f, kReflects);
-  EXPECT_LT(map.texelPdf(137) * 4 * M_PI / kMapTexels, 0.15);
+  EXPECT_LT(map.texelPdf(137) * 4 * std::numbers::pi / kMapTexels, 0.15);
   map.prepare(texels.arrays(), 0, bright, kReflects);
-  EXPECT_GT(map.texelPdf(137) * 4 * M_PI / kMapTexels, 0.99);
+  EXPECT_GT(map.texelPdf(137) * 4 * std::numbers::pi / kMapTexels, 0.99);
 }
 
 TEST(VertexMap, NothingToSampleIsEmpty) {

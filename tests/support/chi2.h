@@ -3,16 +3,17 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
-#include <functional>
+#include <numbers>
 #include <optional>
 #include <random>
-#include <string>
 #include <vector>
 
-#include "render/math/vec.h"
-
 namespace odis::test {
+
+// The greatest number below 1.
+inline constexpr float kOneMinusEpsilon = 0x1.fffffep-1f;
 
 // Upper regularised incomplete gamma function Q(a, x) by series or continued fraction (Abramowitz and
 // Stegun 6.5).
@@ -54,32 +55,33 @@ struct Chi2Options {
   uint64_t seed = 1;
 };
 
-// `sample(u)` gives a direction (or nothing, if it fails) from three uniform numbers; `pdf(w)` its
-// solid-angle density. Failed samples count against a total probability of less than one. Pools cells
-// expected to hold fewer than five.
+// `sample(u)` gives a direction (of any type with x, y and z), or nothing if it fails, from three uniform
+// numbers; `pdf(w)` its solid-angle density. Failed samples count against a total probability of less than
+// one. Pools cells expected to hold fewer than five.
 template <class Sample, class Pdf>
 ::testing::AssertionResult chi2Test(Sample&& sample, Pdf&& pdf, const Chi2Options& options = {}) {
-  using render::Vec3;
+  using Direction = typename decltype(std::optional(sample(0.0f, 0.0f, 0.0f)))::value_type;
+  constexpr float kPi = std::numbers::pi_v<float>;
   const int cells = options.thetaCells * options.phiCells;
   std::vector<double> observed(cells + 1, 0.0), expected(cells + 1, 0.0);
   std::mt19937_64 engine(options.seed);
   std::uniform_real_distribution<float> uniform(0.0f, 1.0f);
-  const auto draw = [&] { return std::min(uniform(engine), render::kOneMinusEpsilon); };
+  const auto draw = [&] { return std::min(uniform(engine), kOneMinusEpsilon); };
   for (int i = 0; i < options.samples; ++i) {
     const float u0 = draw(), u1 = draw(), u2 = draw();
-    const std::optional<Vec3> w = sample(u0, u1, u2);
+    const std::optional w = sample(u0, u1, u2);
     if (!w) {
       observed[cells] += 1;
       continue;
     }
     const int row = std::clamp(int((w->z + 1) / 2 * options.thetaCells), 0, options.thetaCells - 1);
     float phi = std::atan2(w->y, w->x);
-    if (phi < 0) phi += 2 * render::kPi;
-    const int column = std::clamp(int(phi / (2 * render::kPi) * options.phiCells), 0, options.phiCells - 1);
+    if (phi < 0) phi += 2 * kPi;
+    const int column = std::clamp(int(phi / (2 * kPi) * options.phiCells), 0, options.phiCells - 1);
     observed[row * options.phiCells + column] += 1;
   }
   const int q = options.quadrature;
-  const double cellMeasure = 4 * M_PI / cells;
+  const double cellMeasure = 4 * std::numbers::pi / cells;
   double total = 0;
   for (int row = 0; row < options.thetaCells; ++row)
     for (int column = 0; column < options.phiCells; ++column) {
@@ -87,9 +89,9 @@ template <class Sample, class Pdf>
       for (int i = 0; i < q; ++i)
         for (int j = 0; j < q; ++j) {
           const double z = -1 + 2 * (row + (i + 0.5) / q) / options.thetaCells;
-          const double phi = 2 * M_PI * (column + (j + 0.5) / q) / options.phiCells;
+          const double phi = 2 * std::numbers::pi * (column + (j + 0.5) / q) / options.phiCells;
           const double r = std::sqrt(std::max(0.0, 1 - z * z));
-          sum += pdf(Vec3(float(r * std::cos(phi)), float(r * std::sin(phi)), float(z)));
+          sum += pdf(Direction{float(r * std::cos(phi)), float(r * std::sin(phi)), float(z)});
         }
       const double probability = sum / (q * q) * cellMeasure;
       total += probability;

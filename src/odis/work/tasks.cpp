@@ -20,6 +20,14 @@ class HostTasks : public Tasks {
 
 }  // namespace
 
+std::shared_ptr<const Tasks> libraryTasks(uint32_t threads) {
+#ifdef ODIS_TBB
+  return tbbTasks(threads);
+#else
+  return threadTasks(threads);
+#endif
+}
+
 std::shared_ptr<const Tasks> hostTasks(OdisTaskFunction function, void* user) {
   return std::make_shared<HostTasks>(function, user);
 }

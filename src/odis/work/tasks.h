@@ -46,7 +46,10 @@ class Tasks {
   };
 };
 
-// The library's own: oneTBB's, or plain threads where it is built without (ODIS_TBB). 0: one a core.
+// By oneTBB, where the library is built with it (ODIS_TBB), and by plain threads. 0: one thread a core.
+std::shared_ptr<const Tasks> tbbTasks(uint32_t threads = 0);
+std::shared_ptr<const Tasks> threadTasks(uint32_t threads = 0);
+// The library's own: oneTBB's if it is built with it, else plain threads.
 std::shared_ptr<const Tasks> libraryTasks(uint32_t threads = 0);
 std::shared_ptr<const Tasks> hostTasks(OdisTaskFunction function, void* user);
 

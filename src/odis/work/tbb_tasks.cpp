@@ -31,9 +31,10 @@ class TbbTasks : public Tasks {
 
 }  // namespace
 
-std::shared_ptr<const Tasks> libraryTasks(uint32_t threads) {
+std::shared_ptr<const Tasks> tbbTasks(uint32_t threads) {
+  if (threads > 0) return std::make_shared<TbbTasks>(threads);
   static const auto unlimited = std::make_shared<TbbTasks>(0u);
-  return threads == 0 ? unlimited : std::make_shared<TbbTasks>(threads);
+  return unlimited;
 }
 
 }  // namespace odis::core

@@ -79,11 +79,19 @@ class ThreadTasks : public Tasks {
 
 }  // namespace
 
-std::shared_ptr<const Tasks> libraryTasks(uint32_t threads) {
+std::shared_ptr<const Tasks> threadTasks(uint32_t threads) {
   if (threads > 0) return std::make_shared<ThreadTasks>(threads);
-  static const auto oneACore =
-      std::make_shared<ThreadTasks>(std::max(1u, std::thread::hardware_concurrency()));
-  return oneACore;
+  // Shared by all who use it, and ended by the last of them: a DLL that joins threads when the process ends
+  // waits forever.
+  static std::mutex mutex;
+  static std::weak_ptr<const Tasks> oneEachCore;
+  const std::lock_guard lock(mutex);
+  std::shared_ptr<const Tasks> tasks = oneEachCore.lock();
+  if (!tasks) {
+    tasks = std::make_shared<ThreadTasks>(std::max(1u, std::thread::hardware_concurrency()));
+    oneEachCore = tasks;
+  }
+  return tasks;
 }
 
 }  // namespace odis::core

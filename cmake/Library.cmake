@@ -1,0 +1,38 @@
+# The library, which knows nothing of the renderer: shared for those who install it, static for those who want
+# it inside of their program and for all that is built here, whose tests and trainings look inside.
+file(GLOB_RECURSE ODIS_SOURCES CONFIGURE_DEPENDS src/odis/*.cpp)
+if(NOT ODIS_TBB)
+  list(FILTER ODIS_SOURCES EXCLUDE REGEX "/tbb_tasks\\.cpp$")
+endif()
+add_library(odis_objects OBJECT ${ODIS_SOURCES})
+target_include_directories(odis_objects PRIVATE include src)
+target_compile_definitions(odis_objects PRIVATE ODIS_SHARED ODIS_BUILDING $<$<BOOL:${ODIS_TBB}>:ODIS_TBB>)
+target_link_libraries(odis_objects PRIVATE odis_compiler odis_version $<$<BOOL:${ODIS_TBB}>:TBB::tbb>)
+# No fused multiplication and addition, which only some processors have: results are the same on all.
+target_compile_options(odis_objects PRIVATE -ffp-contract=off)
+set_target_properties(odis_objects PROPERTIES CXX_VISIBILITY_PRESET hidden VISIBILITY_INLINES_HIDDEN ON)
+# What was learned comes with it.
+odis_embed_bytes(odis_objects odis::core builtInWeights ${PROJECT_SOURCE_DIR}/weights/odis.weights)
+odis_unity_by_folder(odis_objects)
+
+add_library(odis SHARED $<TARGET_OBJECTS:odis_objects>)
+target_compile_definitions(odis INTERFACE ODIS_SHARED)
+set_target_properties(odis PROPERTIES VERSION ${PROJECT_VERSION} SOVERSION ${ODIS_ABI})
+# Visibility is not enough: templates of the standard library and resolvers of function clones are exported by
+# themselves.
+if(UNIX AND NOT APPLE)
+  set(symbols ${PROJECT_SOURCE_DIR}/src/odis/api/exported_symbols.map)
+  target_link_options(odis PRIVATE LINKER:--version-script=${symbols})
+  set_target_properties(odis PROPERTIES LINK_DEPENDS ${symbols})
+endif()
+
+add_library(odis_static STATIC $<TARGET_OBJECTS:odis_objects>)
+# On Windows the library that imports from odis.dll may have the name that this one has elsewhere.
+set_target_properties(odis_static PROPERTIES OUTPUT_NAME $<IF:$<BOOL:${WIN32}>,odis_static,odis>)
+
+foreach(library odis odis_static)
+  add_library(odis::${library} ALIAS ${library})
+  target_include_directories(${library} PUBLIC
+    $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}/include> $<INSTALL_INTERFACE:include>)
+  target_link_libraries(${library} PRIVATE $<$<BOOL:${ODIS_TBB}>:TBB::tbb> Threads::Threads)
+endforeach()

@@ -1,1 +1,0 @@
-target_link_libraries(test_api PRIVATE TBB::tbb)
