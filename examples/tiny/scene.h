@@ -14,6 +14,16 @@ constexpr float kPi = 3.14159265f, kInfinity = INFINITY;
 struct Vec3 {
   float x = 0, y = 0, z = 0;
 
+  Vec3() = default;
+  Vec3(float x, float y, float z) : x(x), y(y), z(z) {}
+  // From and to the vectors of other libraries.
+  template <class Other, class = decltype(Other::z)>
+  Vec3(const Other& v) : x(v.x), y(v.y), z(v.z) {}
+  template <class Other, class = decltype(Other::z)>
+  operator Other() const {
+    return {x, y, z};
+  }
+
   friend Vec3 operator+(const Vec3& a, const Vec3& b) { return {a.x + b.x, a.y + b.y, a.z + b.z}; }
   friend Vec3 operator-(const Vec3& a, const Vec3& b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
   friend Vec3 operator*(const Vec3& a, const Vec3& b) { return {a.x * b.x, a.y * b.y, a.z * b.z}; }
@@ -103,8 +113,9 @@ struct Shape {
 struct Hit {
   const Shape* shape = nullptr;  // null: the ray left the scene
   float distance = kInfinity;
-  Vec3 position, normal;  // a little off the surface, so that rays may start there; on the side of the ray
-  Vec3 emission;
+  Vec3 p, n;  // a little off the surface, so that rays may start there; on the side of the ray
+  Vec3 color, emission;
+  float roughness = 1;
 };
 
 struct LightSample {
@@ -153,12 +164,15 @@ class Scene {
     for (const Shape& shape : m_shapes)
       if (const float t = shape.intersect(ray); t < hit.distance) hit.distance = t, hit.shape = &shape;
     if (!hit.shape) return hit;
-    hit.position = ray.origin + ray.direction * hit.distance;
-    hit.normal = hit.shape->normal(hit.position);
-    const bool front = dot(hit.normal, ray.direction) < 0;
-    if (front) hit.emission = hit.shape->material.emission;
-    if (!front) hit.normal = hit.normal * -1;
-    hit.position = hit.position + hit.normal * 1e-4f;
+    hit.p = ray.origin + ray.direction * hit.distance;
+    hit.n = hit.shape->normal(hit.p);
+    const Material& material = hit.shape->material;
+    hit.color = material.color;
+    hit.roughness = material.roughness;
+    const bool front = dot(hit.n, ray.direction) < 0;
+    if (front) hit.emission = material.emission;
+    if (!front) hit.n = hit.n * -1;
+    hit.p = hit.p + hit.n * 1e-4f;
     return hit;
   }
   bool isHidden(const Ray& ray, float distance) const {
@@ -187,8 +201,8 @@ class Scene {
 
 // ---- the three scenes ----
 
-constexpr Vec3 kWhite{0.75f, 0.73f, 0.7f}, kWood{0.45f, 0.28f, 0.15f}, kBlue{0.25f, 0.35f, 0.55f};
-constexpr Vec3 kRed{0.6f, 0.16f, 0.12f}, kGreen{0.28f, 0.42f, 0.2f}, kGold{0.95f, 0.7f, 0.35f};
+const Vec3 kWhite{0.75f, 0.73f, 0.7f}, kWood{0.45f, 0.28f, 0.15f}, kBlue{0.25f, 0.35f, 0.55f};
+const Vec3 kRed{0.6f, 0.16f, 0.12f}, kGreen{0.28f, 0.42f, 0.2f}, kGold{0.95f, 0.7f, 0.35f};
 
 // The room [0, size], without its wall at the greatest y, and with two coloured walls.
 inline Scene emptyRoom(const Vec3& size, const Vec3& left, const Vec3& right, const Vec3& floor) {

@@ -11,17 +11,11 @@
 
 #include "scene.h"
 
-// Which sample of which pixel is traced, and with which seed.
-struct SampleName {
-  uint32_t pixel, sample;
-  uint64_t seed;
-};
-
 // Independent random numbers in [0, 1) for one sample (SplitMix64).
 class Random {
  public:
-  explicit Random(const SampleName& name)
-      : m_state(mix(mix(name.seed * 0x9e3779b97f4a7c15ull + name.pixel) + name.sample)) {}
+  Random(uint64_t seed, uint32_t pixel, uint32_t sample)
+      : m_state(mix(mix(seed * 0x9e3779b97f4a7c15ull + pixel) + sample)) {}
   float next() { return float(mix(m_state += 0x9e3779b97f4a7c15ull) >> 40) * 0x1p-24f; }
 
  private:
@@ -35,19 +29,18 @@ class Random {
 
 // The weight of a sample drawn with density `pdf` where another strategy would have had the density `other`.
 float powerHeuristic(float pdf, float other) {
-  return pdf * pdf / (pdf * pdf + other * other);
+  return pdf > 0 ? 1 / (1 + other / pdf * (other / pdf)) : 0;
 }
 
 // Diffuse reflection, or that of rough metal: GGX with the visible normals sampled (Dupuy and Benyoub 2023).
 class Bsdf {
  public:
-  // `normal` is on the side of the outgoing direction `wo`.
-  Bsdf(const Material& material, const Vec3& normal, const Vec3& wo)
-      : m_material(material), m_frame(normal), m_wo(m_frame.toLocal(wo)) {}
+  // `wo` is the direction towards where the path came from.
+  Bsdf(const Hit& hit, const Vec3& wo) : m_hit(hit), m_frame(hit.n), m_wo(m_frame.toLocal(wo)) {}
 
   // Samples a direction from u, v uniform in [0, 1).
   Vec3 sample(float u, float v) const {
-    const float phi = 2 * kPi * v, a = m_material.roughness;
+    const float phi = 2 * kPi * v, a = m_hit.roughness;
     if (a == 1) {
       const float r = std::sqrt(u);
       return m_frame.toWorld({r * std::cos(phi), r * std::sin(phi), std::sqrt(1 - u)});
@@ -66,13 +59,12 @@ class Bsdf {
   Value evaluate(const Vec3& direction) const {
     const Vec3 wi = m_frame.toLocal(direction);
     if (!(wi.z > 0) || !(m_wo.z > 0)) return {};
-    if (m_material.roughness == 1) return {m_material.color * (wi.z / kPi), wi.z / kPi};
+    if (m_hit.roughness == 1) return {m_hit.color * (wi.z / kPi), wi.z / kPi};
     const Vec3 h = normalize(wi + m_wo);
-    const float a2 = m_material.roughness * m_material.roughness, d = 1 + h.z * h.z * (a2 - 1);
+    const float a2 = m_hit.roughness * m_hit.roughness, d = 1 + h.z * h.z * (a2 - 1);
     const float normals = a2 / (kPi * d * d) / (4 * m_wo.z), out = lambda(m_wo, a2);
     const Vec3 white{1, 1, 1},
-        fresnel =
-            m_material.color + (white - m_material.color) * std::pow(1 - std::min(dot(wi, h), 1.0f), 5.0f);
+        fresnel = m_hit.color + (white - m_hit.color) * std::pow(1 - std::min(dot(wi, h), 1.0f), 5.0f);
     return {fresnel * (normals / (1 + out + lambda(wi, a2))), normals / (1 + out)};
   }
 
@@ -81,7 +73,7 @@ class Bsdf {
   static float lambda(const Vec3& w, float a2) {
     return (std::sqrt(1 + a2 * (w.x * w.x + w.y * w.y) / (w.z * w.z)) - 1) / 2;
   }
-  const Material& m_material;
+  const Hit& m_hit;
   Frame m_frame;
   Vec3 m_wo;
 };
@@ -101,26 +93,32 @@ struct Traced {
   uint32_t rays = 0;  // shadow rays included
 };
 
-// Traces one path.
-Traced trace(const Scene& scene, const Settings& settings, const SampleName& name) {
-  Random random(name);
-  const float x = float(name.pixel % settings.width) + random.next() - 0.5f * float(settings.width);
-  const float y = float(name.pixel / settings.width) + random.next() - 0.5f * float(settings.height);
+// One sample of one pixel.
+struct Sample {
+  uint32_t pixel, sample;
+  uint64_t seed;
+};
+
+// Traces the path of a sample.
+Traced trace(const Scene& scene, const Settings& settings, const Sample& of) {
+  Random random(of.seed, of.pixel, of.sample);
+  const float x = float(of.pixel % settings.width) + random.next() - 0.5f * float(settings.width);
+  const float y = float(of.pixel / settings.width) + random.next() - 0.5f * float(settings.height);
   Ray ray = scene.cameraRay(2 * x / float(settings.width), -2 * y / float(settings.width));
   Traced traced;
   Vec3 throughput{1, 1, 1};
-  float rayPdf = 0;  // of the ray's direction
-  // Next-event estimation chooses all lights alike.
-  const auto lightProbability = [&](size_t) { return 1 / float(scene.lightCount()); };
+  float rayPdf = 0;                                                              // of the ray's direction
+  std::vector<float> lights(scene.lightCount(), 1 / float(scene.lightCount()));  // the probability of each
   for (int depth = 1;; ++depth) {
     const Hit hit = scene.intersect(ray);
+    const Vec3 wo = ray.direction * -1;
     ++traced.rays;
     if (!hit.shape) break;
 
     // Emission counts in full where the camera sees it, later by its weight against next-event estimation.
     if (maxComponent(hit.emission) > 0) {
       const float lightPdf = hit.shape->directionPdf(ray.origin, ray.direction, hit.distance) *
-                             lightProbability(scene.lightIndex(hit.shape));
+                             lights[scene.lightIndex(hit.shape)];
       const float weight = depth > 1 ? powerHeuristic(rayPdf, lightPdf) : 1;
       traced.radiance = traced.radiance + throughput * hit.emission * weight;
     }
@@ -132,30 +130,31 @@ Traced trace(const Scene& scene, const Settings& settings, const SampleName& nam
     throughput = throughput / survival;
 
     // Next-event estimation: a shadow ray towards a light.
-    const Bsdf bsdf(hit.shape->material, hit.normal, ray.direction * -1);
+    const Bsdf bsdf(hit, wo);
     size_t chosen = 0;
-    for (float u = random.next(); chosen + 1 < scene.lightCount() && u >= lightProbability(chosen); ++chosen)
-      u -= lightProbability(chosen);
-    const float u = random.next(), v = random.next();
-    const LightSample light = scene.sampleLight(chosen, lightProbability(chosen), hit.position, u, v);
+    for (float u = random.next(); chosen + 1 < lights.size() && u >= lights[chosen]; ++chosen)
+      u -= lights[chosen];
+    const float u1 = random.next(), u2 = random.next();
+    LightSample light = scene.sampleLight(chosen, lights[chosen], hit.p, u1, u2);
     const Bsdf::Value toLight = bsdf.evaluate(light.wi);
-    if (light.pdf > 0 && toLight.pdf > 0) {
-      const Vec3 unweighted = toLight.value * light.radiance / light.pdf;
-      const Vec3 direct = unweighted * powerHeuristic(light.pdf, toLight.pdf);
+    if (maxComponent(toLight.value) > 0) {
       ++traced.rays;
-      if (!scene.isHidden({hit.position, light.wi}, light.distance))
-        traced.radiance = traced.radiance + throughput * direct;
+      if (scene.isHidden({hit.p, light.wi}, light.distance)) light = LightSample();
+      const Vec3 unweighted = light.pdf > 0 ? toLight.value * light.radiance / light.pdf : Vec3();
+      float bouncePdf = toLight.pdf;  // with which the path might go on in this direction
+      const Vec3 direct = unweighted * powerHeuristic(light.pdf, bouncePdf);
+      traced.radiance = traced.radiance + throughput * direct;
     }
 
     // The path goes on in a direction of the BSDF.
-    const float u1 = random.next(), u2 = random.next();
-    const Vec3 wi = bsdf.sample(u1, u2);
-    const Bsdf::Value next = bsdf.evaluate(wi);
+    const float v1 = random.next(), v2 = random.next();
+    Vec3 wi = bsdf.sample(v1, v2);
+    Bsdf::Value next = bsdf.evaluate(wi);
     const Vec3 weight = next.pdf > 0 ? next.value / next.pdf : Vec3();
     throughput = throughput * weight;
-    if (maxComponent(throughput) == 0) break;
     rayPdf = next.pdf;
-    ray = {hit.position, wi};
+    ray = {hit.p, wi};
+    if (maxComponent(throughput) == 0) break;
   }
   return traced;
 }
@@ -189,15 +188,17 @@ void forEachTile(const Settings& settings, const std::function<void(const std::v
 
 // Renders the image.
 void render(const Scene& scene, const Settings& settings, Image& image) {
-  forEachTile(settings, [&](const std::vector<uint32_t>& pixels) {
+  const auto renderTile = [&](const std::vector<uint32_t>& pixels) {
     for (const uint32_t pixel : pixels) {
       for (uint32_t sample = 0; sample < settings.spp; ++sample) {
-        const Traced traced = trace(scene, settings, {pixel, sample, settings.seed});
+        const Sample of{pixel, sample, settings.seed};
+        const Traced traced = trace(scene, settings, of);
         image.pixels[pixel] = image.pixels[pixel] + traced.radiance / float(settings.spp);
         image.rays += traced.rays;
       }
     }
-  });
+  };
+  forEachTile(settings, renderTile);
 }
 
 // Writes PFM (linear 32-bit floats, bottom row first), or PPM (8 bits, sRGB) for any other ending.
