@@ -1,5 +1,5 @@
-// What tiny.cpp and tiny_odis.cpp render: rectangles and spheres, and three scenes made of them. Lengths are in
-// metres, z points up, colours are linear.
+// What tiny.cpp and tiny_odis.cpp render: rectangles and spheres, and three scenes made of them. Lengths are
+// in metres, z points up, colours are linear.
 #pragma once
 
 #include <algorithm>

@@ -1,6 +1,6 @@
-// A path tracer on nothing but the standard library: diffuse surfaces and rough metal, next-event estimation with
-// multiple importance sampling, Russian roulette. tiny_odis.cpp is the same program guided by ODIS; README.md shows
-// both.
+// A path tracer on nothing but the standard library: diffuse surfaces and rough metal, next-event estimation
+// with multiple importance sampling, Russian roulette. tiny_odis.cpp is the same program guided by ODIS.
+// README.md shows both.
 #include <atomic>
 #include <chrono>
 #include <cstdint>

@@ -1,5 +1,6 @@
 // The path tracer of tiny.cpp, guided by ODIS: diffuse surfaces and rough metal, next-event estimation with
-// multiple importance sampling, Russian roulette. README.md shows both.
+// multiple importance sampling, Russian roulette; nothing but the standard library beside.
+// README.md shows both.
 #include <atomic>
 #include <chrono>
 #include <cstdint>
@@ -136,7 +137,8 @@ Traced trace(const Scene& scene, const Settings& settings, const Sample& of) {
     const uint32_t cell = odis::findCell(of.guide, {hit.p, hit.n});
     const odis::CellDecisions told = cell != odis::kNoCell ? of.guide.decisions[cell] : odis::CellDecisions();
 
-    // Russian roulette ends paths that have lost most of their throughput, or that the guide expects little of.
+    // Russian roulette ends paths that have lost most of their throughput; where there is a guide, those that it
+    // expects little of.
     float survival = depth >= kRouletteDepth ? std::min(maxComponent(throughput), 0.95f) : 1;
     if (cell != odis::kNoCell && depth > 1)
       survival = odis::survivalProbability(of.guide.rules, told.survivalFactor,
@@ -217,7 +219,7 @@ void forEachTile(const Settings& settings, const std::function<void(const std::v
 
 // Renders the image.
 void render(const Scene& scene, const Settings& settings, Image& image) {
-  odis::FrameOptions options{{.width = settings.width, .height = settings.height, .seed = settings.seed}};
+  odis::FrameOptions options{{.width = settings.width, .height = settings.height, .seed = settings.seed}, {}};
   options.samplesPerPixel = settings.spp, options.guide.lightGroups = uint32_t(scene.lightCount());
   odis::Frame frame(options, odis::Context({.threads = settings.threads}));
   const odis::FramePass* pass;
