@@ -139,10 +139,10 @@ Traced trace(const Scene& scene, const Settings& settings, const Sample& of) {
     const Bsdf::Value toLight = bsdf.evaluate(light.wi);
     if (maxComponent(toLight.value) > 0) {
       ++traced.rays;
-      if (scene.isHidden({hit.p, light.wi}, light.distance)) light = LightSample();
+      if (scene.isHidden({hit.p, light.wi}, light.distance)) light.pdf = 0;
       const Vec3 unweighted = light.pdf > 0 ? toLight.value * light.radiance / light.pdf : Vec3();
-      float bouncePdf = toLight.pdf;  // with which the path might go on in this direction
-      const Vec3 direct = unweighted * powerHeuristic(light.pdf, bouncePdf);
+      float other = toLight.pdf;  // with which the path might go on in this direction
+      const Vec3 direct = unweighted * powerHeuristic(light.pdf, other);
       traced.radiance = traced.radiance + throughput * direct;
     }
 

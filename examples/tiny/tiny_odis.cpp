@@ -137,7 +137,7 @@ Traced trace(const Scene& scene, const Settings& settings, const Sample& of) {
     const uint32_t cell = odis::findCell(of.guide, {hit.p, hit.n});
     const odis::CellDecisions told = cell != odis::kNoCell ? of.guide.decisions[cell] : odis::CellDecisions();
 
-    // Russian roulette ends paths that have lost most of their throughput; where there is a guide, those that it
+    // Russian roulette ends paths that have lost most of their throughput; under a guide those that it
     // expects little of.
     float survival = depth >= kRouletteDepth ? std::min(maxComponent(throughput), 0.95f) : 1;
     if (cell != odis::kNoCell && depth > 1)
@@ -164,17 +164,17 @@ Traced trace(const Scene& scene, const Settings& settings, const Sample& of) {
     const Bsdf::Value toLight = bsdf.evaluate(light.wi);
     if (maxComponent(toLight.value) > 0) {
       ++traced.rays;
-      if (scene.isHidden({hit.p, light.wi}, light.distance)) light = LightSample();
+      if (scene.isHidden({hit.p, light.wi}, light.distance)) light.pdf = 0;
       const Vec3 unweighted = light.pdf > 0 ? toLight.value * light.radiance / light.pdf : Vec3();
-      float bouncePdf = toLight.pdf;  // with which the path might go on in this direction
-      if (mixture.guides()) bouncePdf = mixture.pdf(toLight.pdf, toLight.pdf, map.pdf(light.wi));
-      const Vec3 direct = unweighted * powerHeuristic(light.pdf, bouncePdf);
+      float other = toLight.pdf;  // with which the path might go on in this direction
+      if (light.pdf > 0 && mixture.guides()) other = mixture.pdf(toLight.pdf, toLight.pdf, map.pdf(light.wi));
+      const Vec3 direct = unweighted * powerHeuristic(light.pdf, other);
       traced.radiance = traced.radiance + throughput * direct;
       recorder.light(path, {sizeof(odis::LightEvent), unweighted, direct, light.wi, light.pdf, toLight.pdf,
                             toLight.pdf, uint32_t(chosen), lights[chosen]});
     }
 
-    // The path goes on in a direction of the BSDF.
+    // The path goes on in a direction of the BSDF, or of the map.
     const float v1 = random.next(), v2 = random.next();
     Vec3 wi = bsdf.sample(v1, v2);
     if (random.next() >= mixture.bsdfFraction()) wi = map.sample(v1, v2).wi;
