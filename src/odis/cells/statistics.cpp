@@ -290,8 +290,7 @@ void CellStore::fillSurroundings(const LightPoints& points, std::span<const uint
           m_index.find(CellGrid::neighbour(m_links[c].key, i % 3 - 1, i / 3 % 3 - 1, i / 9 - 1));
       if (near != kNoCell) points.addTo(seen, pointsOf[near], cell.centroid);
     }
-    thread_local LightPoints around;
-    around.clear();
+    LightPoints around;
     around.add(seen, cell.centroid);
     const auto look = [&](size_t from, size_t map) {
       clear(from, map);

@@ -50,12 +50,6 @@ void LightField::add(const CellSample& sample, float value, const Float3& middle
   inverse[texel] += value * nearness;
 }
 
-void LightPoints::clear() {
-  m_middle.clear();
-  m_begin.resize(1);
-  for (std::vector<float>* numbers : {&m_x, &m_y, &m_z, &m_inverse, &m_value}) numbers->clear();
-}
-
 uint32_t LightPoints::add(const LightField& field, const Float3& middle) {
   const TexelDirections& directions = texelDirections();
   for (size_t t = 0; t < kMapTexels; ++t) {

@@ -20,7 +20,6 @@ struct LightField {
 // Light fields as points: one for each texel that is not dark, at the mean distance of its light.
 class LightPoints {
  public:
-  void clear();
   // Adds the points of a field; returns its number.
   uint32_t add(const LightField& field, const Float3& middle);
 
