@@ -90,7 +90,7 @@ typedef enum OdisFormat {
 // field's default. No alignment is asked for.
 typedef struct OdisVertexField {
   const void* data ODIS_DEFAULT(NULL);
-  size_t stride ODIS_DEFAULT(0);  // 0: one after another, without gaps
+  size_t stride ODIS_DEFAULT(0);                     // 0: one after another, without gaps
   int32_t format ODIS_DEFAULT(ODIS_FORMAT_DEFAULT);  // an OdisFormat
 } OdisVertexField;
 
