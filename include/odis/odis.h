@@ -10,7 +10,7 @@
 //   OdisFramePass pass = {sizeof pass};
 //   while (odisBeginPass(frame, &pass)) {
 //     for each pixel, in any order, on any number of threads:
-//       for each sample of odisGetSamples(frame, pixel):
+//       for each sample that odisGetSamples names:
 //         trace a path, guided by pass.guide; record its vertices if pass.wantsVertices
 //     odisAddSamples(frame, ...);   // of one path, of a tile, of everything
 //     odisEndPass(frame, false);
@@ -144,7 +144,7 @@ ODIS_API void odisReleaseFrame(OdisFrame frame);
 ODIS_API bool odisBeginPass(OdisFrame frame, OdisFramePass* pass);
 // The samples of a pixel in the pass under way, none where all of its tile of 16 x 16 pixels are in. They do
 // not depend on what samples of that pixel brought. Thread-safe.
-ODIS_API OdisSampleRange odisGetSamples(OdisFrame frame, uint32_t pixel);
+ODIS_API bool odisGetSamples(OdisFrame frame, uint32_t pixel, OdisSampleRange* range);
 // An estimate of each pixel's luminance, from the pilot; NULL before the pilot has ended. Valid as long as
 // the frame.
 ODIS_API const float* odisGetPixelValues(OdisFrame frame);

@@ -235,8 +235,8 @@ class Frame : public Handle<OdisFrame, odisRetainFrame, odisReleaseFrame> {
     return nullptr;
   }
   SampleRange samples(uint32_t pixel) const {
-    const SampleRange range = odisGetSamples(get(), pixel);
-    if (range.count == 0) throwError();
+    SampleRange range;
+    if (!odisGetSamples(get(), pixel, &range)) throwError();
     return range;
   }
   ArrayView<const float> pixelValues() const {

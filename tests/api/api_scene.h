@@ -44,7 +44,8 @@ inline bool runFrame(OdisFrame frame, uint32_t pixels) {
     std::vector<OdisFrameSample> samples;
     std::vector<OdisPathVertex> vertices;
     for (uint32_t pixel = 0; pixel < pixels; ++pixel) {
-      const OdisSampleRange range = odisGetSamples(frame, pixel);
+      OdisSampleRange range;
+      if (!odisGetSamples(frame, pixel, &range)) return false;
       for (uint32_t i = range.first; i < range.first + range.count; ++i) {
         samples.push_back({pixel, i, {1, 1, 1}, 2});
         vertices.push_back(apiVertices()[(pixel * 7 + i) % apiVertices().size()]);

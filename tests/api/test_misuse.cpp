@@ -48,7 +48,7 @@ TEST(ApiMisuse, NullIsAnError) {
   REFUSED(odisFinishPaths(nullptr, &count));
   REFUSED(odisNewFrame(nullptr, nullptr));
   REFUSED(odisBeginPass(nullptr, &pass));
-  REFUSED(odisGetSamples(nullptr, 0).count);
+  REFUSED(odisGetSamples(nullptr, 0, nullptr));
   REFUSED(odisGetPixelValues(nullptr));
   REFUSED(odisAddSamples(nullptr, nullptr, 0, &vertices));
   REFUSED(odisEndPass(nullptr, false));
@@ -94,6 +94,7 @@ TEST(ApiMisuse, NullArgumentsOfObjectsAreErrors) {
   options.width = options.height = 4;
   Frame frame(options, context);
   REFUSED(odisBeginPass(frame.get(), nullptr));
+  REFUSED(odisGetSamples(frame.get(), 0, nullptr));
   frame.beginPass();
   REFUSED(odisAddSamples(frame.get(), nullptr, 3, nullptr));
   REFUSED(odisGetPixelMean(frame.get(), 0, nullptr));

@@ -109,9 +109,9 @@ bool odisBeginPass(OdisFrame frame, OdisFramePass* pass) {
   });
 }
 
-OdisSampleRange odisGetSamples(OdisFrame frame, uint32_t pixel) {
-  return guardedForFrame(frame, "odisGetSamples", OdisSampleRange(),
-                         [&](const Frame& f) { return f.samples(pixel); });
+bool odisGetSamples(OdisFrame frame, uint32_t pixel, OdisSampleRange* range) {
+  return odis::core::fillFromFrame(frame, "odisGetSamples", range,
+                                   [&](const Frame& f) { *range = f.samples(pixel); });
 }
 
 const float* odisGetPixelValues(OdisFrame frame) {
