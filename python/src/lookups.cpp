@@ -59,11 +59,10 @@ std::pair<Vectors, Numbers> sample(const Guide& guide, const Array& cells, const
     for (size_t i = 0; i < count; ++i) {
       const Float3 n = vectorAt(normal, i);
       const float numbers[2] = {random(i, 0), random(i, 1)};
-      Float3 wi;
-      float pdf = 0;
-      odisSampleMap(&view, cell(i), &n, both(i), numbers, &wi, &pdf);
-      std::memcpy(directions.data() + 3 * i, &wi, sizeof wi);
-      pdfs.data()[i] = pdf;
+      OdisMapSample drawn;
+      odisSampleMap(&view, cell(i), &n, both(i), numbers, &drawn);
+      std::memcpy(directions.data() + 3 * i, &drawn.wi, sizeof drawn.wi);
+      pdfs.data()[i] = drawn.pdf;
     }
   });
   return {directions, pdfs};

@@ -120,6 +120,7 @@ TEST(ApiContext, MemoryThatEndsIsAnError) {
   const OdisGuideOptions guide = options.guide.flat();
   OdisFrameOptions flat = options;
   flat.guide = &guide;
+  const OdisPathVertex* vertices = apiVertices().data();  // made before memory ends
   int failures = 0;
   for (int n = 0;; n += 1 + n / 40) {
     allocationsLeft = n;
@@ -128,7 +129,7 @@ TEST(ApiContext, MemoryThatEndsIsAnError) {
     if (frame && odisBeginPass(frame, &pass)) {
       const OdisFrameSample sample{5, 0, {1, 1, 1}, 2};
       OdisPathVertices described;
-      odisDescribeVertices(&described, apiVertices().data(), 500);
+      odisDescribeVertices(&described, vertices, 500);
       if (odisAddSamples(frame, &sample, 1, &described)) odisEndPass(frame, false);
     }
     const bool allMade = allocationsLeft > 0;
