@@ -1,6 +1,7 @@
 #include "learn/data/vertex_columns.h"
 
 #include <fmt/format.h>
+#include <odis/guide_view.h>
 #include <odis/octahedral.h>
 
 #include <algorithm>
