@@ -140,10 +140,11 @@ void Frame::save(ArchiveWriter& file) const {
   file.add("frame.pixelValues", d.pixelValues);
   saveTiles(file, "frame.pilotVertices", d.pilotVertices);
   saveTiles(file, "frame.oracleVertices", d.oracleVertices);
-  if (d.inPass) {
-    file.add("pass.tilesDone", d.tiles.done());
-    saveTiles(file, "pass.vertices", d.passVertices);
-    SavedCellSamples::save(file, d.cellSamples);
+  // A pass that was loaded and has not begun again is what it was.
+  if (d.inPass || d.resumed) {
+    file.add("pass.tilesDone", d.resumed ? d.resumed->tilesDone : d.tiles.done());
+    saveTiles(file, "pass.vertices", d.resumed ? d.resumed->vertices : d.passVertices);
+    SavedCellSamples::save(file, d.resumed ? d.resumed->cellSamples : d.cellSamples);
   }
   if (d.builder) d.builder->save(file);
   d.guide.save(file);

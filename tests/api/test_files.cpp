@@ -92,6 +92,8 @@ TEST(ApiFiles, ASavedFrameGoesOnWithTheSameBits) {
       tracePartOfPass(frame, *pass, host, pixels * 2 / 3);
       frame.save(path);
       frame = Frame::load(path, options.guide.model);
+      frame.save(path);  // once more, before the rest of the pass begins
+      frame = Frame::load(path, options.guide.model);
       pass = frame.beginPass();
       ASSERT_NE(pass, nullptr);
       uint32_t done = 0;

@@ -65,11 +65,7 @@ namespace {
 
 template <class MakeModel>
 OdisModel newModel(OdisContext context, const char* function, const MakeModel& make) {
-  if (!context) {
-    setError(nullptr, ODIS_ERROR_INVALID_ARGUMENT, (std::string(function) + ": found NULL").c_str());
-    return nullptr;
-  }
-  return guarded(context, OdisModel(nullptr), [&] { return new ContextModel(context, make()); });
+  return guardedFor(context, function, OdisModel(nullptr), [&] { return new ContextModel(context, make()); });
 }
 
 }  // namespace
