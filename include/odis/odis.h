@@ -82,7 +82,7 @@ ODIS_API OdisModel odisNewModel(OdisContext context);
 // The networks of a file of weights, or of its bytes.
 ODIS_API OdisModel odisNewModelFromFile(OdisContext context, const char* path);
 ODIS_API OdisModel odisNewModelFromMemory(OdisContext context, const void* bytes, size_t size);
-// This model with a formula in the place of the network for directions, or for the choice of lights.
+// Makes a model like this one in which a formula replaces the network for directions, for lights, or both.
 ODIS_API OdisModel odisNewModelWithFormulas(OdisModel model, bool directions, bool lights);
 ODIS_API void odisRetainModel(OdisModel model);
 ODIS_API void odisReleaseModel(OdisModel model);

@@ -214,7 +214,7 @@ typedef struct OdisVertexCounts {
 
 // ---- the events of a path ----
 
-// Which sample of which pixel a path belongs to.
+// A path belongs to this sample of this pixel.
 typedef struct OdisPathIdentity {
   uint32_t pixel ODIS_DEFAULT(0), sample ODIS_DEFAULT(0);
   float sampleWeight ODIS_DEFAULT(1);  // by the reconstruction filter

@@ -70,7 +70,7 @@ typedef struct OdisPathVertex {
   // whole shutter time.
   float time ODIS_DEFAULT(0);
 
-  // Which vertex this is. Sums are ordered by these three numbers, whatever the order of delivery.
+  // These three numbers identify the vertex. Sums are ordered by them, whatever the order of delivery.
   uint32_t pixel ODIS_DEFAULT(0);   // index within the frame
   uint32_t sample ODIS_DEFAULT(0);  // of the pixel
   uint16_t depth ODIS_DEFAULT(0);   // 1 for the first vertex

@@ -14,7 +14,7 @@ class LoggingContext : public Context {
   uint32_t m_threads;
 };
 
-// That context, or the one for all that are told of none.
+// The given context, or the shared one where none is given.
 const Context& contextOrShared(const LoggingContext* context);
 
 }  // namespace odis::python
