@@ -20,6 +20,10 @@ class CellGrid {
   ODIS_HOST_DEVICE explicit CellGrid(const OdisCellGrid& grid)
       : m_origin(grid.origin), m_inverseEdge(grid.inverseEdge) {}
   OdisCellGrid flat() const { return {m_origin, m_inverseEdge}; }
+  bool operator==(const CellGrid& other) const {
+    return m_origin.x == other.m_origin.x && m_origin.y == other.m_origin.y &&
+           m_origin.z == other.m_origin.z && m_inverseEdge == other.m_inverseEdge;
+  }
   Float3 origin() const { return m_origin; }
   float finestEdge() const { return 1 / m_inverseEdge; }
 

@@ -189,6 +189,11 @@ ODIS_API bool odisSaveFrame(OdisFrame frame, const char* path);
 // bits as if nothing had happened. `model` must be the one that the frame had; NULL: the networks that come
 // with the library.
 ODIS_API OdisFrame odisLoadFrame(OdisContext context, const char* path, OdisModel model);
+// Keeps a copy of bytes of the host's with the frame, in place of those before: odisSaveFrame writes them,
+// and a loaded frame has them. For what the host sums up by itself, say, and for what it was asked to render.
+ODIS_API bool odisSetFrameHostData(OdisFrame frame, const void* bytes, size_t size);
+// Valid until they are set again; NULL and a size of 0 if there are none.
+ODIS_API const void* odisGetFrameHostData(OdisFrame frame, size_t* size);
 // Tells another function of progress from now on: a loaded frame has none.
 ODIS_API bool odisSetFrameProgress(OdisFrame frame, OdisProgressFunction function, void* user);
 
@@ -210,8 +215,18 @@ ODIS_API bool odisAddVertices(OdisGuideBuilder builder, const OdisPathVertices* 
 ODIS_API OdisGuide odisBuildGuide(OdisGuideBuilder builder, const OdisPathVertices* vertices,
                                   const float* pixelValues, size_t pixelCount);
 // Builds all but BSDF sampling fractions anew, from all that was added by now. Those are taken from
-// `previous`, which must come from this builder; cells that are new have their parents' fractions.
+// `previous`, which this builder must have built since its cells were faded, forgotten or moved; cells that
+// are new have their parents' fractions.
 ODIS_API OdisGuide odisRebuildGuide(OdisGuideBuilder builder, OdisGuide previous);
+// From frame to frame of an animation, between two frames that learn into the builder (OdisFrameOptions):
+// what was added counts `weight` times from now on, in [0, 1]. Cells that are left with next to nothing are
+// forgotten, so memory follows what the last frames saw. Give each frame a seed of its own.
+ODIS_API bool odisFadeVertices(OdisGuideBuilder builder, float weight);
+// Forgets all that was added, and the extent of the cells.
+ODIS_API bool odisForgetVertices(OdisGuideBuilder builder);
+// Fixes the extent of the cells in place of what the first vertices span. What cells have seen moves with
+// them, to the cell around the mean of its vertices' positions.
+ODIS_API bool odisSetBounds(OdisGuideBuilder builder, const OdisFloat3* lower, const OdisFloat3* upper);
 ODIS_API bool odisGetVertexCounts(OdisGuideBuilder builder, OdisVertexCounts* counts);
 // Held at most while guides are built, the vertices themselves not included, in bytes.
 ODIS_API uint64_t odisGetGuideBuilderBytes(OdisGuideBuilder builder);

@@ -17,6 +17,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <stdexcept>
 #include <string>
 #include <utility>
@@ -126,11 +127,6 @@ struct GuideOptions : OdisGuideOptions {
   }
 };
 
-// `guide` takes the place of the field of the same name in C.
-struct FrameOptions : OdisFrameOptions {
-  GuideOptions guide;
-};
-
 // Describes vertices that lie side by side.
 inline OdisPathVertices describe(ArrayView<const PathVertex> vertices) {
   OdisPathVertices described;
@@ -209,16 +205,34 @@ class GuideBuilder : public Handle<OdisGuideBuilder, odisRetainGuideBuilder, odi
   }
   uint64_t bytes() const { return odisGetGuideBuilderBytes(get()); }
 
+  // From frame to frame.
+  void fade(float weight) {
+    if (!odisFadeVertices(get(), weight)) throwError();
+  }
+  void forget() {
+    if (!odisForgetVertices(get())) throwError();
+  }
+  void setBounds(const Float3& lower, const Float3& upper) {
+    if (!odisSetBounds(get(), &lower, &upper)) throwError();
+  }
+
  private:
   static OdisGuideBuilder make(const OdisGuideOptions& options, const Context& context) {
     return odisNewGuideBuilder(context.get(), &options);
   }
 };
 
+// `guide` and `builder` take the place of the fields of the same names in C. With a builder its own options
+// hold, not `guide`.
+struct FrameOptions : OdisFrameOptions {
+  GuideOptions guide;
+  std::optional<GuideBuilder> builder;
+};
+
 class Frame : public Handle<OdisFrame, odisRetainFrame, odisReleaseFrame> {
  public:
   explicit Frame(const FrameOptions& options, const Context& context = Context::shared())
-      : Frame(make(options, options.guide.flat(), context)) {}
+      : Frame(make(options, context)) {}
 
   // A frame that was saved, with the model that it had; it goes on where it was.
   static Frame load(const std::string& path, const Model& model, const Context& context = Context::shared()) {
@@ -226,6 +240,21 @@ class Frame : public Handle<OdisFrame, odisRetainFrame, odisReleaseFrame> {
   }
   void save(const std::string& path) const {
     if (!odisSaveFrame(get(), path.c_str())) throwError();
+  }
+
+  // Bytes of the host's that are saved with the frame; valid until they are set again.
+  void setHostData(ArrayView<const uint8_t> bytes) {
+    if (!odisSetFrameHostData(get(), bytes.data(), bytes.size())) throwError();
+  }
+  ArrayView<const uint8_t> hostData() const {
+    size_t size = 0;
+    const void* bytes = odisGetFrameHostData(get(), &size);
+    return {static_cast<const uint8_t*>(bytes), size};
+  }
+
+  // Tells another function of progress from now on.
+  void setProgress(OdisProgressFunction function, void* user = nullptr) {
+    if (!odisSetFrameProgress(get(), function, user)) throwError();
   }
 
   // Null when the image is complete, or a pass was interrupted. Valid until the pass ends.
@@ -290,9 +319,15 @@ class Frame : public Handle<OdisFrame, odisRetainFrame, odisReleaseFrame> {
 
  private:
   explicit Frame(OdisFrame frame)
-      : Handle(frame), m_pixels(statistics().pixels), m_pass(std::make_shared<FramePass>()) {}
-  static OdisFrame make(OdisFrameOptions options, const OdisGuideOptions& guide, const Context& context) {
-    options.guide = &guide;
+      : Handle(frame), m_pixels(pixelsOf(statistics())), m_pass(std::make_shared<FramePass>()) {}
+  static size_t pixelsOf(const FrameStatistics& s) { return size_t(s.width) * s.height; }
+  static OdisFrame make(const FrameOptions& given, const Context& context) {
+    OdisFrameOptions options = given;
+    const OdisGuideOptions guide = given.guide.flat();
+    if (given.builder)
+      options.builder = given.builder->get();
+    else
+      options.guide = &guide;
     return odisNewFrame(context.get(), &options);
   }
 

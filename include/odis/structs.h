@@ -151,6 +151,9 @@ typedef struct OdisFrameOptions {
   bool adaptive ODIS_DEFAULT(true);
   bool keepPilotVertices ODIS_DEFAULT(false);  // whether the pilot's vertices stay after the guide is built
   const OdisGuideOptions* guide ODIS_DEFAULT(NULL);  // NULL: the defaults; copied
+  // The builder to learn into, with its own options (`guide` must be NULL), which may know of earlier frames;
+  // nobody else uses it until the frame has ended. NULL: one of the frame's own.
+  OdisGuideBuilder builder ODIS_DEFAULT(NULL);
 } OdisFrameOptions;
 
 // ---- what a frame asks for and gets ----
@@ -189,7 +192,7 @@ typedef struct OdisPixelSums {
 
 typedef struct OdisFrameStatistics {
   size_t size ODIS_DEFAULT(sizeof(OdisFrameStatistics));
-  uint64_t pixels ODIS_DEFAULT(0);
+  uint32_t width ODIS_DEFAULT(0), height ODIS_DEFAULT(0);  // in pixels
   uint64_t samples ODIS_DEFAULT(0), pilotSamples ODIS_DEFAULT(0);
   uint64_t notFinite ODIS_DEFAULT(0);  // samples that counted as black
   uint64_t pilotVertices ODIS_DEFAULT(0);

@@ -1,13 +1,12 @@
 // Frame: an image from its first sample to its last.
+#include <nanobind/stl/filesystem.h>
 #include <nanobind/stl/optional.h>
 #include <nanobind/stl/pair.h>
 #include <nanobind/stl/variant.h>
 
 #include <optional>
 
-#include "calls.h"
-#include "context.h"
-#include "vertices.h"
+#include "guide_builder.h"
 
 namespace odis::python {
 
@@ -23,17 +22,39 @@ struct Pass {
   Guide guide;
 };
 
-FrameOptions interruptible(FrameOptions options) {
+FrameOptions interruptible(FrameOptions options, const Builder* builder) {
   options.guide.progressFunction = goOn;
+  if (builder) options.builder = builder->handle();
   return options;
 }
 
 class ImageFrame {
  public:
-  ImageFrame(const FrameOptions& options, const LoggingContext* context)
-      : m_frame(interruptible(options), contextOrShared(context)),
-        m_width(options.width),
-        m_height(options.height) {}
+  ImageFrame(const FrameOptions& options, const LoggingContext* context, const Builder* builder)
+      : ImageFrame(Frame(interruptible(options, builder), contextOrShared(context))) {}
+  explicit ImageFrame(Frame frame)
+      : m_frame(std::move(frame)),
+        m_width(m_frame.statistics().width),
+        m_height(m_frame.statistics().height) {}
+
+  static ImageFrame* load(const std::filesystem::path& path, const std::optional<Model>& model,
+                          const LoggingContext* context) {
+    Frame frame = withoutLock(
+        [&] { return Frame::load(path.string(), model ? *model : Model(), contextOrShared(context)); });
+    frame.setProgress(goOn);
+    return new ImageFrame(std::move(frame));
+  }
+  void save(const std::filesystem::path& path) {
+    callAlone(m_calls, [&] { m_frame.save(path.string()); });
+  }
+  void setHostData(const nb::bytes& bytes) {
+    const ArrayView<const uint8_t> view(static_cast<const uint8_t*>(bytes.data()), bytes.size());
+    callAlone(m_calls, [&] { m_frame.setHostData(view); });
+  }
+  nb::bytes hostData() {
+    const ArrayView<const uint8_t> bytes = callAlone(m_calls, [&] { return m_frame.hostData(); });
+    return nb::bytes(bytes.data(), bytes.size());
+  }
 
   std::optional<Pass> beginPass() {
     return callAlone(m_calls, [&]() -> std::optional<Pass> {
@@ -208,6 +229,21 @@ pixel, sample: uint32 of shape (count,). To be asked for after the last pass.)")
                    "Whether all further samples will be guided by the guide of today.");
 }
 
+void bindFiles(nb::class_<ImageFrame>& frame) {
+  frame
+      .def("save", &ImageFrame::save, "path"_a,
+           R"(Writes all that the frame is, between two passes or within one. Raises Error (FILE).
+
+What a tile of 16 x 16 pixels has that is not complete is left out: it is to be traced again.)")
+      .def_static(
+          "load", &ImageFrame::load, "path"_a, "model"_a = nb::none(), "context"_a = nb::none(),
+          R"(The frame of a file, which goes on where it was; begin_pass() begins the rest of the pass.
+
+model: the Model that the frame had; None: the networks that come with the library. Raises Error (FILE).)")
+      .def_prop_rw("host_data", &ImageFrame::hostData, &ImageFrame::setHostData,
+                   "bytes of the host's that are saved with the frame.");
+}
+
 }  // namespace
 
 void bindFrame(nb::module_& module) {
@@ -224,10 +260,16 @@ void bindFrame(nb::module_& module) {
 
 Calls in the wrong order raise Error (INVALID_OPERATION). add_samples and samples may be called by several
 threads at once, everything else by one at a time.)");
-  frame.def(nb::init<const FrameOptions&, const LoggingContext*>(), "options"_a, "context"_a = nb::none(),
-            "Raises Error (INVALID_ARGUMENT) for an option out of its range.");
+  frame.def(
+      nb::init<const FrameOptions&, const LoggingContext*, const Builder*>(), "options"_a,
+      "context"_a = nb::none(), "builder"_a = nb::none(),
+      R"(builder: the GuideBuilder to learn into, whose options hold in the place of options.guide; it may
+    know of earlier frames, and is used by nobody else until the frame has ended. None: one of its own.
+
+Raises Error (INVALID_ARGUMENT) for an option out of its range.)");
   bindPasses(frame);
   bindResults(frame);
+  bindFiles(frame);
 }
 
 }  // namespace odis::python

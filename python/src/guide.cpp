@@ -1,7 +1,10 @@
 // Guide: its arrays, shown where they lie. Look-ups are in lookups.cpp.
+#include <nanobind/stl/filesystem.h>
+
 #include <odis/odis.hpp>
 
 #include "arrays.h"
+#include "context.h"
 #include "lookups.h"
 
 namespace odis::python {
@@ -119,6 +122,15 @@ and keep it alive. About 830 bytes a cell.)");
       .def(
           "__len__", [](const Guide& self) { return self.view().cellCount; }, "Number of cells.")
       .def_prop_ro("bytes", &Guide::bytes, "What it holds.")
+      .def(
+          "save", [](const Guide& self, const std::filesystem::path& path) { self.save(path.string()); },
+          "path"_a, "Writes a file, which `odis inspect` shows. Raises Error (FILE).")
+      .def_static(
+          "load",
+          [](const std::filesystem::path& path, const LoggingContext* context) {
+            return Guide::load(path.string(), contextOrShared(context));
+          },
+          "path"_a, "context"_a = nb::none(), "The guide of a file. Raises Error (FILE).")
       .def_prop_ro("predicted_variance_ratio", &Guide::predictedVarianceRatio,
                    "The variance of a guided sample that the pilot predicts, as a ratio to an unguided one.")
       .def_prop_ro(

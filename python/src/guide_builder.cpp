@@ -1,61 +1,16 @@
+#include <nanobind/stl/array.h>
 #include <nanobind/stl/optional.h>
 #include <nanobind/stl/variant.h>
 
-#include <optional>
-
-#include "calls.h"
-#include "context.h"
-#include "vertices.h"
+#include "guide_builder.h"
 
 namespace odis::python {
-
-namespace {
-
-GuideOptions interruptible(const std::optional<GuideOptions>& given) {
-  GuideOptions options = given ? *given : GuideOptions();
-  options.progressFunction = goOn;
-  return options;
-}
-
-class Builder {
- public:
-  Builder(const std::optional<GuideOptions>& options, const LoggingContext* context)
-      : m_builder(interruptible(options), contextOrShared(context)) {}
-
-  void add(const VerticesArgument& given) {
-    const VertexArrays vertices = vertexArrays(given);
-    callAlone(m_calls, [&] { m_builder.add(vertices.described()); });
-  }
-  Guide build(const VerticesArgument& given, const std::optional<Array>& pixelValues) {
-    const VertexArrays vertices = vertexArrays(given);
-    std::vector<float> values;
-    if (pixelValues) {
-      const Rows<float> rows(*pixelValues, "pixel_values");
-      for (size_t i = 0; i < rows.size(); ++i) values.push_back(rows(i));
-    }
-    return callAlone(m_calls, [&] { return m_builder.build(vertices.described(), values); });
-  }
-  Guide rebuild(const Guide& previous) {
-    return callAlone(m_calls, [&] { return m_builder.rebuild(previous); });
-  }
-  VertexCounts vertexCounts() {
-    return callAlone(m_calls, [&] { return m_builder.vertexCounts(); });
-  }
-  uint64_t bytes() {
-    return callAlone(m_calls, [&] { return m_builder.bytes(); });
-  }
-
- private:
-  GuideBuilder m_builder;
-  Calls m_calls;
-};
-
-}  // namespace
 
 void bindGuideBuilder(nb::module_& module) {
   nb::class_<Builder>(module, "GuideBuilder", R"(Gathers path vertices and builds guides from them.
 
-For hosts that keep the order of an image themselves; Frame has a builder of its own. A builder does one
+For hosts that keep the order of an image themselves, and for frames that go on learning where earlier ones
+ended (Frame's `builder`); other frames have builders of their own. A builder does one
 thing at a time: a call while another thread's is under way raises Error (INVALID_OPERATION).)")
       .def(nb::init<const std::optional<GuideOptions>&, const LoggingContext*>(), "options"_a = nb::none(),
            "context"_a = nb::none(), "Raises Error (INVALID_ARGUMENT) for an option out of its range.")
@@ -74,6 +29,17 @@ pixel_values: float32 of shape (pixels,), indexed by the vertices' `pixel`: lumi
            R"(Builds a guide from all that was added by now, with the BSDF sampling fractions of `previous`.
 
 previous: a Guide of this builder. Cells that are new have their parents' fractions.)")
+      .def("fade", &Builder::fade, "weight"_a,
+           R"(Lets what was added count `weight` times from now on, in [0, 1].
+
+Between two frames of an animation that learn into this builder. Cells that are left with next to nothing are
+forgotten, so memory follows what the last frames saw. Give each frame a seed of its own.)")
+      .def("forget", &Builder::forget, "Forgets all that was added, and the extent of the cells.")
+      .def("set_bounds", &Builder::setBounds, "lower"_a, "upper"_a,
+           R"(Fixes the extent of the cells in place of what the first vertices span.
+
+lower, upper: three floats each, corners of a box in world space. What cells have seen moves with them, to the
+cell around the mean of its vertices' positions.)")
       .def_prop_ro("vertex_counts", &Builder::vertexCounts, "VertexCounts of all that was added.")
       .def_prop_ro("bytes", &Builder::bytes, "Held at most while guides are built, vertices not included.");
 }

@@ -1,6 +1,8 @@
 """Frames: a host in numpy, whose paths end at the first vertex, on a floor under light from a patch and a sky."""
 
 import gc
+import pathlib
+import tempfile
 import threading
 import unittest
 
@@ -55,9 +57,15 @@ def samples_of(frame):
     return pixel, first[pixel] + within
 
 
-def render(options, parts=1):
+def render(options, parts=1, builder=None):
     """The frame, and how the passes were; samples are handed over by several threads in `parts`."""
-    frame, passes = odis.Frame(options), []
+    frame = odis.Frame(options, builder=builder)
+    return frame, finish(frame, parts)
+
+
+def finish(frame, parts=1):
+    """Takes a frame through the passes that are left."""
+    passes = []
     while (render_pass := frame.begin_pass()) is not None:
         pixel, sample = samples_of(frame)
         value, vertices = trace(render_pass, pixel, sample)
@@ -76,7 +84,7 @@ def render(options, parts=1):
             thread.join()
         frame.end_pass()
         passes.append((render_pass.kind, len(render_pass.guide)))
-    return frame, passes
+    return passes
 
 
 class Frames(unittest.TestCase):
@@ -136,6 +144,44 @@ class Frames(unittest.TestCase):
         del frame
         gc.collect()
         np.testing.assert_allclose(values, 1.1, rtol=1e-5)
+
+    def test_goes_on_from_a_file(self):
+        frame = odis.Frame(self.OPTIONS)
+        render_pass = frame.begin_pass()
+        pixel, sample = samples_of(frame)
+        value, vertices = trace(render_pass, pixel, sample)
+        frame.add_samples(pixel, sample, value, np.full(len(pixel), 2, np.uint32), vertices)
+        frame.end_pass()
+        frame.host_data = b"what the host knows"
+        with tempfile.TemporaryDirectory() as folder:
+            path = pathlib.Path(folder) / "frame.odis"
+            frame.save(path)
+            loaded = odis.Frame.load(path)
+            frame.guide.save(path)
+            self.assertEqual(made_up.guide_bytes(odis.Guide.load(path)), made_up.guide_bytes(frame.guide))
+            with self.assertRaises(odis.Error) as raised:
+                odis.Frame.load(path)
+            self.assertIn(str(path), str(raised.exception))
+        self.assertEqual(loaded.host_data, b"what the host knows")
+        finish(loaded)
+        for expected, found in zip(self.frame.image(), loaded.image()):
+            np.testing.assert_array_equal(found, expected)
+
+    def test_learns_on_from_frame_to_frame(self):
+        builder = odis.GuideBuilder()
+        cells = []
+        for seed in range(3):
+            frame, _ = render(odis.FrameOptions(WIDTH, HEIGHT, seed=seed), builder=builder)
+            cells.append(len(frame.guide))
+            builder.fade(0.5)
+        self.assertGreater(cells[2], cells[0])
+        builder.set_bounds((0, 0, -1), (4, 4, 1))
+        frame, _ = render(odis.FrameOptions(WIDTH, HEIGHT, seed=3), builder=builder)
+        self.assertLess(len(frame.guide), cells[2])
+        builder.forget()
+        self.assertEqual(builder.vertex_counts.accepted, 0)
+        with self.assertRaises(odis.Error):
+            builder.fade(2)
 
     def test_interrupted(self):
         frame = odis.Frame(odis.FrameOptions(4, 4))

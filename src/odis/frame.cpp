@@ -46,18 +46,6 @@ uint64_t countVertices(const VertexTiles& tiles) {
   return count;
 }
 
-// What the options point to, as far as they do: the builder complains where they don't.
-std::vector<OdisLightParts> copied(const GuideOptions& o) {
-  if (!o.lightParts) return {};
-  return {o.lightParts, o.lightParts + o.lightPartCount};
-}
-
-// The same for models that decide the same.
-uint64_t idOf(const Model& model) {
-  const uint64_t networks = (model.directions ? 1 : 0) + (model.lights ? 2 : 0);
-  return networks << 32 | (networks > 0 ? model.checksum : 0);
-}
-
 const FrameOptions& checked(const FrameOptions& o) {
   requireOption(o.width > 0 && o.height > 0, "width, height: expected at least one pixel");
   requireOption(uint64_t(o.width) * o.height < (uint64_t(1) << 31),
@@ -72,16 +60,21 @@ const FrameOptions& checked(const FrameOptions& o) {
 
 }  // namespace
 
-Frame::Data::Data(const FrameOptions& o, std::shared_ptr<const Tasks> tasks)
+Frame::Data::Data(const FrameOptions& o, std::shared_ptr<const Tasks> tasks,
+                  std::shared_ptr<GuideBuilder> given)
     : options(checked(o)),
-      guideOptions(o.guide ? *o.guide : GuideOptions()),
-      lightParts(copied(guideOptions)),
-      modelId(idOf(modelOf(guideOptions.model))),
+      ownsBuilder(!given),
+      builder(!o.guided ? nullptr
+              : given
+                  ? std::move(given)
+                  : std::make_shared<GuideBuilder>(o.guide ? *o.guide : GuideOptions(), std::move(tasks))),
+      guideOptions(builder ? builder->options() : GuideOptions()),
+      lightParts(guideOptions.lightParts, guideOptions.lightParts + guideOptions.lightPartCount),
+      modelId(builder ? builder->modelId() : 0),
       schedule(o),
       pilot(size_t(o.width) * o.height),
       later(pilot.size()),
       tiles(o.width, o.height),
-      builder(o.guided ? std::make_unique<GuideBuilder>(guideOptions, std::move(tasks)) : nullptr),
       next(o.guided ? ODIS_PASS_PILOT : ODIS_PASS_GUIDED) {}
 
 SampleRange Frame::Data::samples(uint32_t pixel) const {
@@ -218,8 +211,9 @@ void Frame::Data::endGuidedPass() {
     done = end;
 }
 
-Frame::Frame(const FrameOptions& options, std::shared_ptr<const Tasks> tasks)
-    : m_data(std::make_unique<Data>(options, std::move(tasks))) {}
+Frame::Frame(const FrameOptions& options, std::shared_ptr<const Tasks> tasks,
+             std::shared_ptr<GuideBuilder> builder)
+    : m_data(std::make_unique<Data>(options, std::move(tasks), std::move(builder))) {}
 Frame::~Frame() = default;
 Frame::Frame(Frame&&) noexcept = default;
 Frame& Frame::operator=(Frame&&) noexcept = default;
@@ -270,6 +264,14 @@ void Frame::endPass(bool interrupted) {
   d.finished = false;
 }
 
+void Frame::setHostData(ArrayView<const uint8_t> bytes) {
+  m_data->hostData.assign(bytes.begin(), bytes.end());
+}
+
+ArrayView<const uint8_t> Frame::hostData() const {
+  return m_data->hostData;
+}
+
 void Frame::setProgress(OdisProgressFunction function, void* user) {
   if (m_data->builder) m_data->builder->setProgress(function, user);
 }
@@ -287,8 +289,8 @@ uint64_t Frame::samplesLeftOut() const {
 uint64_t Frame::bytes() const {
   const Data& d = *m_data;
   constexpr uint64_t kPerPixel = 2 * sizeof(PixelSums) + sizeof(float) + 2 * sizeof(uint32_t);
-  return d.pilot.size() * kPerPixel + d.tiles.bytes() + d.keptBytes + d.guide.bytes() +
-         (d.builder ? d.builder->heldBytes() : 0);
+  return d.pilot.size() * kPerPixel + d.tiles.bytes() + d.keptBytes + d.guide.bytes() + d.hostData.size() +
+         (d.builder && d.ownsBuilder ? d.builder->heldBytes() : 0);
 }
 
 bool Frame::guideIsFinal() const {
@@ -323,7 +325,8 @@ FrameStatistics Frame::statistics() const {
     result.samples += sampleCount(pixel);
     result.pilotSamples += d.pilot[pixel].count;
   }
-  result.pixels = d.pilot.size();
+  result.width = d.options.width;
+  result.height = d.options.height;
   result.pilotFraction = all > 0 ? pilot / all : 0;
   result.notFinite = d.notFinite;
   result.pilotVertices = d.pilotVertexCount;

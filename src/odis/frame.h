@@ -43,8 +43,10 @@ using FrameStatistics = OdisFrameStatistics;
 // called out of order.
 class Frame {
  public:
-  // Throws std::invalid_argument where an option is out of its range.
-  explicit Frame(const FrameOptions& options, std::shared_ptr<const Tasks> tasks = libraryTasks());
+  // Throws std::invalid_argument where an option is out of its range. `builder` is the one to learn into,
+  // whose options hold then; null: the frame makes its own.
+  explicit Frame(const FrameOptions& options, std::shared_ptr<const Tasks> tasks = libraryTasks(),
+                 std::shared_ptr<GuideBuilder> builder = nullptr);
   ~Frame();
   Frame(Frame&&) noexcept;
   Frame& operator=(Frame&&) noexcept;
@@ -93,6 +95,9 @@ class Frame {
   // Throws FileError.
   static Frame load(const Archive& file, OdisModel model,
                     std::shared_ptr<const Tasks> tasks = libraryTasks());
+  // Bytes of the host's that are saved with the frame.
+  void setHostData(ArrayView<const uint8_t> bytes);
+  ArrayView<const uint8_t> hostData() const;
   // Tells of progress from now on.
   void setProgress(OdisProgressFunction function, void* user);
 
@@ -100,7 +105,7 @@ class Frame {
   void limitBytes(uint64_t most);
   int coarsening() const;
   uint64_t samplesLeftOut() const;
-  // Held now. Thread-safe.
+  // Held now, without a builder that was given. Thread-safe.
   uint64_t bytes() const;
 
  private:

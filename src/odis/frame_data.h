@@ -13,7 +13,7 @@ namespace odis::core {
 using VertexTiles = std::vector<std::vector<PathVertex>>;
 
 struct Frame::Data {
-  Data(const FrameOptions& o, std::shared_ptr<const Tasks> tasks);
+  Data(const FrameOptions& o, std::shared_ptr<const Tasks> tasks, std::shared_ptr<GuideBuilder> given);
 
   // The stages, in their order.
   void describePass();
@@ -41,14 +41,15 @@ struct Frame::Data {
   void loadPass(const Archive& file);
 
   FrameOptions options;
+  bool ownsBuilder;
+  std::shared_ptr<GuideBuilder> builder;  // null once the guide is final
   GuideOptions guideOptions;
   std::vector<OdisLightParts> lightParts;
-  uint64_t modelId;  // tells models apart
+  uint64_t modelId;  // tells models apart; 0 where there is none
   Schedule schedule;
   std::vector<PixelSums> pilot, later;  // of the pilot's samples, and of those after it
   TileCollector tiles;
   std::vector<float> pixelValues;
-  std::unique_ptr<GuideBuilder> builder;
   Guide guide;
   uint64_t guidesBuilt = 0;
 
@@ -66,6 +67,7 @@ struct Frame::Data {
   uint64_t outsideFrame = 0, buildingBytes = 0, pilotVertexCount = 0;
   VertexCounts vertexCounts;
   std::unique_ptr<ResumedPass> resumed;
+  std::vector<uint8_t> hostData;
 };
 
 }  // namespace odis::core

@@ -102,6 +102,29 @@ void GuideBuilder::add(ArrayView<const CellSamples> samples) {
     if (batch.m_data) batches.push_back(&batch.m_data->samples);
   m_data->store.add(batches);
 }
+
+void GuideBuilder::fade(float weight) {
+  if (!(weight >= 0 && weight <= 1))
+    throw std::invalid_argument("odisFadeVertices: weight: expected a number from 0 to 1");
+  m_data->store.fade(weight);
+}
+void GuideBuilder::forget() {
+  m_data->store.forget();
+}
+void GuideBuilder::setBounds(const Float3& lower, const Float3& upper) {
+  const Float3 extent = upper - lower;
+  if (!(extent.x >= 0 && extent.y >= 0 && extent.z >= 0 && std::isfinite(dot(extent, extent))))
+    throw std::invalid_argument("odisSetBounds: expected finite numbers, lower <= upper");
+  const CellGrid grid = gridAround(lower, extent, m_data->options.cellsPerDiagonal);
+  m_data->store.move(CellGrid(grid.origin(), float(coarsening()) * grid.finestEdge()));
+}
+
+const GuideOptions& GuideBuilder::options() const {
+  return m_data->options;
+}
+uint64_t GuideBuilder::modelId() const {
+  return m_data->modelId;
+}
 VertexCounts GuideBuilder::vertexCounts() const {
   return m_data->store.vertexCounts();
 }
@@ -140,6 +163,7 @@ Guide GuideBuilder::Data::buildMaps(const std::vector<CellStatistics>& cells,
   guide.m_data = std::make_shared<Guide::Data>(cells.size());
   Guide::Data& result = *guide.m_data;
   result.builder = this;
+  result.numbering = store.numbering();
   result.grid = store.grid();
   result.index = store.index();
   result.keys = store.keys();
@@ -184,8 +208,11 @@ Guide GuideBuilder::build(VertexParts parts, ArrayView<const float> pixelValues)
 }
 
 Guide GuideBuilder::rebuild(const Guide& previous) const {
-  if (!previous.m_data || previous.m_data->builder != m_data.get())
-    throw std::invalid_argument("odisRebuildGuide: expected a guide that this builder built");
+  if (!previous.m_data || previous.m_data->builder != m_data.get() ||
+      previous.m_data->numbering != m_data->store.numbering())
+    throw std::invalid_argument(
+        "odisRebuildGuide: expected a guide that this builder built since odisFadeVertices, "
+        "odisForgetVertices or odisSetBounds");
   const Progress& progress = m_data->progress;
   progress.report(0);
   const std::vector<CellStatistics>& cells = m_data->store.rollUp();

@@ -85,6 +85,11 @@ class GuideBuilder {
   // for a part of the image each. Empty samples are fine.
   CellSamples take(ArrayView<const PathVertex> vertices) const;
   void add(ArrayView<const CellSamples> samples);
+  // From frame to frame (odis/odis.h). fade() throws std::invalid_argument unless 0 <= weight <= 1,
+  // setBounds() unless all is finite and lower <= upper. Guides of before are not of this builder any more.
+  void fade(float weight);
+  void forget();
+  void setBounds(const Float3& lower, const Float3& upper);
   // Builds maps from all that was added, and BSDF sampling fractions from vertices that should be (a part
   // of) the same, without those of guided paths. `pixelValues`, indexed by PathVertex::pixel, are what the
   // vertices' contributions are divided by; without them contributions are taken as they are. Throws
@@ -112,6 +117,10 @@ class GuideBuilder {
   // Lets rebuild() take a guide that was built before this builder was saved.
   void adopt(Guide& guide) const;
 
+  // As they hold: without the model, and with the builder's own copies of arrays.
+  const GuideOptions& options() const;
+  // The same for models that decide the same.
+  uint64_t modelId() const;
   // How many of the vertices added were taken, and how many refused, by reason.
   VertexCounts vertexCounts() const;
   // Held at most, and held now, the vertices themselves not included.

@@ -37,6 +37,7 @@ struct Guide::Data {
   MapArrays maps() const { return {texels.data(), sums.data(), texelDirections().x}; }
 
   const void* builder = nullptr;  // the one that it comes from
+  uint64_t numbering = 0;         // that its cells had then
   CellGrid grid;
   CellIndex index;
   std::vector<uint64_t> keys;
@@ -59,20 +60,29 @@ struct GuideBuilder::Data {
         progress(o.progressFunction, o.progressUser),
         directions(std::move(model.directions)),
         lights(std::move(model.lights)),
+        modelId(idOf(directions.get(), lights.get(), model.checksum)),
         store(o.clamp, directions && directions->looksAround(), std::move(tasks)) {
     if (!directions) directions = std::make_shared<DirectionFormula>(o);
     if (!lights) lights = std::make_shared<LightFormula>();
+    options.model = nullptr;
+    options.lightParts = lightParts.data();
   }
 
   Guide buildMaps(const std::vector<CellStatistics>& cells,
                   std::vector<DirectionDistribution>& distributions) const;
   void addRouletteAndLights(Guide::Data& guide, const std::vector<CellStatistics>& cells) const;
 
+  static uint64_t idOf(const DirectionModel* directions, const LightModel* lights, uint32_t checksum) {
+    const uint64_t networks = (directions ? 1 : 0) + (lights ? 2 : 0);
+    return networks << 32 | (networks > 0 ? checksum : 0);
+  }
+
   GuideOptions options;
   std::vector<LightParts> lightParts;
   Progress progress;
   std::shared_ptr<const DirectionModel> directions;
   std::shared_ptr<const LightModel> lights;
+  uint64_t modelId;
   CellStore store;
 };
 

@@ -122,6 +122,7 @@ void Frame::save(ArchiveWriter& file) const {
   FrameOptions options = d.options;
   GuideOptions guide = d.guideOptions;
   options.guide = nullptr;
+  options.builder = nullptr;
   guide.model = nullptr;
   guide.lightParts = nullptr;
   guide.progressFunction = nullptr;
@@ -130,6 +131,7 @@ void Frame::save(ArchiveWriter& file) const {
   file.addValue("frame.guideOptions", guide);
   file.add("frame.lightParts", d.lightParts);
   file.addValue("frame.model", d.modelId);
+  file.add("frame.hostData", d.hostData);
   file.addValue("frame.position",
                 Position{d.guidesBuilt, d.notFinite, d.outsideFrame, d.buildingBytes, d.pilotVertexCount,
                          uint32_t(d.next), d.oraclePasses, d.done, d.finished, d.builder != nullptr});
@@ -167,6 +169,7 @@ struct SavedOptions {
         lightParts(file.get<OdisLightParts>("frame.lightParts")) {
     // Pointers of a file mean nothing.
     frame.guide = &guide;
+    frame.builder = nullptr;
     guide.model = model;
     guide.progressFunction = nullptr;
     guide.progressUser = nullptr;
@@ -226,6 +229,7 @@ Frame Frame::load(const Archive& file, OdisModel model, std::shared_ptr<const Ta
   }
   Data& d = *frame->m_data;
   file.require(file.value<uint64_t>("frame.model") == d.modelId, "was saved with another model");
+  d.hostData = file.get<uint8_t>("frame.hostData");
   d.pilot = pilot;
   d.later = file.get<PixelSums>("frame.later", pilot.size());
   d.pixelValues = file.get<float>("frame.pixelValues");

@@ -92,7 +92,9 @@ void GuideBuilder::load(const Archive& file) {
 }
 
 void GuideBuilder::adopt(Guide& guide) const {
-  if (guide.m_data) guide.m_data->builder = m_data.get();
+  if (!guide.m_data) return;
+  guide.m_data->builder = m_data.get();
+  guide.m_data->numbering = m_data->store.numbering();
 }
 
 }  // namespace odis::core

@@ -67,6 +67,9 @@ TEST(ApiMisuse, NullIsAnError) {
   REFUSED(odisAddVertices(nullptr, &vertices));
   REFUSED(odisBuildGuide(nullptr, &vertices, nullptr, 0));
   REFUSED(odisRebuildGuide(nullptr, nullptr));
+  REFUSED(odisFadeVertices(nullptr, 1));
+  REFUSED(odisForgetVertices(nullptr));
+  REFUSED(odisSetBounds(nullptr, nullptr, nullptr));
   REFUSED(odisGetVertexCounts(nullptr, &counts));
   REFUSED(odisGetGuideBuilderBytes(nullptr));
   REFUSED(odisGetGuideBytes(nullptr));
@@ -74,6 +77,8 @@ TEST(ApiMisuse, NullIsAnError) {
   REFUSED(odisGetGuideView(nullptr, &view));
   REFUSED(odisSaveFrame(nullptr, "x"));
   REFUSED(odisLoadFrame(nullptr, "x", nullptr));
+  REFUSED(odisSetFrameHostData(nullptr, "x", 1));
+  REFUSED(odisGetFrameHostData(nullptr, &count));
   REFUSED(odisSetFrameProgress(nullptr, nullptr, nullptr));
   REFUSED(odisSaveGuide(nullptr, "x"));
   REFUSED(odisLoadGuide(nullptr, "x"));
@@ -111,7 +116,10 @@ TEST(ApiMisuse, NullArgumentsOfObjectsAreErrors) {
   REFUSED(odisRebuildGuide(builder.get(), nullptr));
   REFUSED(odisGetVertexCounts(builder.get(), nullptr));
   EXPECT_TRUE(odisAddVertices(builder.get(), &none));
+  REFUSED(odisSetBounds(builder.get(), nullptr, nullptr));
   REFUSED(odisSaveFrame(frame.get(), nullptr));
+  REFUSED(odisSetFrameHostData(frame.get(), nullptr, 3));
+  REFUSED(odisGetFrameHostData(frame.get(), nullptr));
   REFUSED(odisLoadFrame(context.get(), nullptr, nullptr));
   REFUSED(odisLoadGuide(context.get(), nullptr));
   REFUSED(odisSaveVertices(&none, nullptr));

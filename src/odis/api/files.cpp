@@ -28,6 +28,25 @@ OdisFrame odisLoadFrame(OdisContext context, const char* path, OdisModel model) 
   });
 }
 
+bool odisSetFrameHostData(OdisFrame frame, const void* bytes, size_t size) {
+  return guardedFor(frame, "odisSetFrameHostData", false, [&] {
+    if (size > 0) requireArgument(bytes, "odisSetFrameHostData: bytes");
+    frame->requireNotEnding("odisSetFrameHostData");
+    frame->frame.setHostData({static_cast<const uint8_t*>(bytes), size});
+    frame->memory.set(frame->frame.bytes());
+    return true;
+  });
+}
+
+const void* odisGetFrameHostData(OdisFrame frame, size_t* size) {
+  return guardedFor(frame, "odisGetFrameHostData", static_cast<const void*>(nullptr), [&] {
+    requireArgument(size, "odisGetFrameHostData: size");
+    const odis::ArrayView<const uint8_t> bytes = frame->frame.hostData();
+    *size = bytes.size();
+    return static_cast<const void*>(bytes.empty() ? nullptr : bytes.data());
+  });
+}
+
 bool odisSetFrameProgress(OdisFrame frame, OdisProgressFunction function, void* user) {
   return guardedFor(frame, "odisSetFrameProgress", false, [&] {
     frame->requireNotEnding("odisSetFrameProgress");

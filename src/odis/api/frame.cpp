@@ -10,6 +10,8 @@ namespace {
 // The options of a frame, and those of its guide that they point to.
 struct AdoptedFrameOptions {
   explicit AdoptedFrameOptions(const OdisFrameOptions& given) : frame(adopt(given, "OdisFrameOptions")) {
+    if (frame.guide && frame.builder)
+      throw std::invalid_argument("OdisFrameOptions.guide: expected NULL, the builder has its own options");
     if (frame.guide) guide = adoptGuideOptions(*frame.guide);
     frame.guide = &guide;
   }
@@ -45,8 +47,8 @@ using odis::core::Frame;
 using odis::core::guardedFor;
 using odis::core::guardedForFrame;
 
-OdisFrameImpl::OdisFrameImpl(OdisContext owner, odis::core::Frame content)
-    : memory(owner), frame(std::move(content)) {
+OdisFrameImpl::OdisFrameImpl(OdisContext owner, odis::core::Frame content, OdisGuideBuilder learnsInto)
+    : memory(owner), builder(learnsInto), frame(std::move(content)) {
   if (frame.bytes() > owner->memoryLeft()) throw std::bad_alloc();
   memory.set(frame.bytes());
 }
@@ -60,7 +62,10 @@ void OdisFrameImpl::endPass(bool interrupted) {
   if (context.options.memoryLimit > 0) frame.limitBytes(context.memoryLeft());
   frame.endPass(interrupted);
   memory.set(frame.bytes());
-  warnings.report(context, frame.coarsening(), frame.samplesLeftOut());
+  if (builder)
+    builder->takeStock();
+  else
+    warnings.report(context, frame.coarsening(), frame.samplesLeftOut());
 }
 
 // The vertices if there is room for them, otherwise none.
@@ -89,7 +94,12 @@ OdisFrame odisNewFrame(OdisContext context, const OdisFrameOptions* options) {
   return odis::core::guarded(context, OdisFrame(nullptr), [&] {
     odis::core::requireArgument(context, "odisNewFrame: context");
     odis::core::requireArgument(options, "odisNewFrame: options");
-    return new OdisFrameImpl(context, Frame(odis::core::AdoptedFrameOptions(*options).frame, context->tasks));
+    const odis::core::AdoptedFrameOptions adopted(*options);
+    const OdisGuideBuilder host = adopted.frame.builder;
+    // The frame's reference to the handle keeps its content alive.
+    const std::shared_ptr<odis::core::GuideBuilder> builder(std::shared_ptr<void>(),
+                                                            host ? &host->builder : nullptr);
+    return new OdisFrameImpl(context, Frame(adopted.frame, context->tasks, builder), host);
   });
 }
 void odisRetainFrame(OdisFrame frame) {

@@ -22,6 +22,11 @@ OdisGuideImpl::OdisGuideImpl(OdisContext owner, odis::core::Guide content)
 OdisGuideBuilderImpl::OdisGuideBuilderImpl(OdisContext owner, const OdisGuideOptions& options)
     : memory(owner), builder(options, owner->tasks) {}
 
+void OdisGuideBuilderImpl::takeStock() {
+  memory.set(builder.heldBytes());
+  warnings.report(memory.context(), builder.coarsening(), builder.samplesLeftOut());
+}
+
 void odisInitGuideOptions(OdisGuideOptions* options, size_t size) {
   odis::core::initialize(options, size, "OdisGuideOptions");
 }
@@ -49,8 +54,7 @@ bool odisAddVertices(OdisGuideBuilder builder, const OdisPathVertices* vertices)
       builder->builder.limitBytes(context.memoryLeft() + builder->builder.heldBytes(), given.view().size());
     builder->builder.add(given.view());
     builder->memory.set(builder->builder.bytes());
-    builder->memory.set(builder->builder.heldBytes());
-    builder->warnings.report(context, builder->builder.coarsening(), builder->builder.samplesLeftOut());
+    builder->takeStock();
     return true;
   });
 }
@@ -70,6 +74,32 @@ OdisGuide odisRebuildGuide(OdisGuideBuilder builder, OdisGuide previous) {
   return guardedFor(builder, "odisRebuildGuide", OdisGuide(nullptr), [&] {
     odis::core::requireArgument(previous, "odisRebuildGuide: previous");
     return new OdisGuideImpl(&builder->memory.context(), builder->builder.rebuild(previous->guide));
+  });
+}
+
+bool odisFadeVertices(OdisGuideBuilder builder, float weight) {
+  return guardedFor(builder, "odisFadeVertices", false, [&] {
+    builder->builder.fade(weight);
+    builder->takeStock();
+    return true;
+  });
+}
+
+bool odisForgetVertices(OdisGuideBuilder builder) {
+  return guardedFor(builder, "odisForgetVertices", false, [&] {
+    builder->builder.forget();
+    builder->takeStock();
+    return true;
+  });
+}
+
+bool odisSetBounds(OdisGuideBuilder builder, const OdisFloat3* lower, const OdisFloat3* upper) {
+  return guardedFor(builder, "odisSetBounds", false, [&] {
+    odis::core::requireArgument(lower, "odisSetBounds: lower");
+    odis::core::requireArgument(upper, "odisSetBounds: upper");
+    builder->builder.setBounds(*lower, *upper);
+    builder->takeStock();
+    return true;
   });
 }
 

@@ -125,13 +125,16 @@ class MemoryWarnings {
 struct OdisGuideBuilderImpl : odis::core::Object {
   OdisGuideBuilderImpl(OdisContext owner, const OdisGuideOptions& options);
 
+  // Notes what the builder holds after it has learned.
+  void takeStock();
+
   odis::core::MemoryUse memory;
   odis::core::GuideBuilder builder;
   odis::core::MemoryWarnings warnings;
 };
 
 struct OdisFrameImpl : odis::core::Object {
-  OdisFrameImpl(OdisContext owner, odis::core::Frame content);
+  OdisFrameImpl(OdisContext owner, odis::core::Frame content, OdisGuideBuilder learnsInto = nullptr);
   ~OdisFrameImpl() override;
 
   void endPass(bool interrupted);
@@ -139,6 +142,7 @@ struct OdisFrameImpl : odis::core::Object {
   odis::ArrayView<const OdisPathVertex> withinMemory(odis::ArrayView<const OdisPathVertex> vertices);
 
   odis::core::MemoryUse memory;
+  odis::core::Ref<OdisGuideBuilderImpl> builder;  // the host's
   odis::core::Frame frame;
   odis::core::MemoryWarnings warnings;
   std::atomic<bool> verticesLeftOut{false};

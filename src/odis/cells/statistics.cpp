@@ -32,6 +32,14 @@ std::vector<uint64_t> CellStore::keys() const {
   return keys;
 }
 
+CellGrid gridAround(const Float3& low, const Float3& extent, int cellsPerDiagonal) {
+  const float diagonal = std::sqrt(dot(extent, extent));
+  const float edge = diagonal > 0 ? diagonal / float(cellsPerDiagonal) : 1.0f;
+  // An odd offset keeps walls at the ends of the extent off the cells' faces.
+  const float offset = 0.37f * edge;
+  return {low - Float3{offset, offset, offset}, edge};
+}
+
 // The grid spans what the pilot saw, not what the scene holds: a huge ground plane must not make the cells
 // huge. A few vertices far out (0.5 % at either end of each axis) don't count.
 void CellStore::place(VertexParts parts, int cellsPerDiagonal) {
@@ -57,11 +65,7 @@ void CellStore::place(VertexParts parts, int cellsPerDiagonal) {
     std::nth_element(axis[a].begin(), last, axis[a].end());
     extent[a] = *last - low[a];
   }
-  const float diagonal = std::sqrt(extent[0] * extent[0] + extent[1] * extent[1] + extent[2] * extent[2]);
-  const float edge = diagonal > 0 ? diagonal / float(cellsPerDiagonal) : 1.0f;
-  // An odd offset keeps walls at the ends of the extent off the cells' faces.
-  const float offset = 0.37f * edge;
-  place(CellGrid({low[0] - offset, low[1] - offset, low[2] - offset}, edge));
+  place(gridAround({low[0], low[1], low[2]}, {extent[0], extent[1], extent[2]}, cellsPerDiagonal));
 }
 
 // Doubles the edges of the cells until there are few enough. Coarser levels add less than half as many.
@@ -135,10 +139,8 @@ void accumulate(CellStatistics& cell, LightField* field, const Float3& middle, f
 }  // namespace
 
 void CellStore::add(VertexParts parts, int cellsPerDiagonal) {
-  if (!m_placed) {
-    place(parts, cellsPerDiagonal);
-    if (m_mostCells < SIZE_MAX) coarsen(parts);
-  }
+  if (!m_placed) place(parts, cellsPerDiagonal);
+  if (m_cells.empty() && m_mostCells < SIZE_MAX) coarsen(parts);
   const std::vector<VertexBatch> pilot = makeBatches(parts);
   std::vector<BatchSamples> samples(pilot.size());
   m_tasks->forEach(pilot.size(), [&](size_t b) { samples[b] = take(pilot[b]); });
@@ -214,25 +216,20 @@ void CellStore::add(std::span<const BatchSamples* const> batches) {
   });
 }
 
-namespace {
-
-void addChild(CellStatistics& parent, const CellStatistics& child) {
-  parent.count += child.count;
-  if (parent.count > 0)
-    parent.centroid =
-        parent.centroid + (child.centroid - parent.centroid) * float(child.count / parent.count);
-  parent.sum += child.sum;
-  parent.sumSquares += child.sumSquares;
-  for (size_t i = 0; i < 3; ++i) parent.outgoing[i] += child.outgoing[i];
-  parent.outgoingSquares += child.outgoingSquares;
-  parent.rays += child.rays;
-  parent.lightCount += child.lightCount;
-  for (size_t g = 0; g < parent.lightSquares.size(); ++g) parent.lightSquares[g] += child.lightSquares[g];
-  parent.normal = parent.normal + child.normal;
-  for (int t = 0; t < kMapTexels; ++t) parent.histogram[t] += child.histogram[t];
+void addTo(CellStatistics& sum, const CellStatistics& cell) {
+  sum.count += cell.count;
+  if (sum.count > 0)
+    sum.centroid = sum.centroid + (cell.centroid - sum.centroid) * float(cell.count / sum.count);
+  sum.sum += cell.sum;
+  sum.sumSquares += cell.sumSquares;
+  for (size_t i = 0; i < 3; ++i) sum.outgoing[i] += cell.outgoing[i];
+  sum.outgoingSquares += cell.outgoingSquares;
+  sum.rays += cell.rays;
+  sum.lightCount += cell.lightCount;
+  for (size_t g = 0; g < sum.lightSquares.size(); ++g) sum.lightSquares[g] += cell.lightSquares[g];
+  sum.normal = sum.normal + cell.normal;
+  for (int t = 0; t < kMapTexels; ++t) sum.histogram[t] += cell.histogram[t];
 }
-
-}  // namespace
 
 const std::vector<CellStatistics>& CellStore::rollUp() {
   for (int level = 1; level < kCellLevels; ++level)
@@ -242,7 +239,7 @@ const std::vector<CellStatistics>& CellStore::rollUp() {
       cell = {};
       cell.parent = m_links[c].parent;
       cell.level = level;
-      for (const uint32_t child : childrenOf(c)) addChild(cell, m_cells[child]);
+      for (const uint32_t child : childrenOf(c)) addTo(cell, m_cells[child]);
     });
   if (m_looksAround) lookAround();
   return m_cells;

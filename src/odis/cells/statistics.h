@@ -49,6 +49,9 @@ inline Float3 meanNormal(const CellStatistics& cell) {
   return length > 0 ? cell.normal * (1 / length) : Float3{0, 0, 1};
 }
 
+// Adds what a cell has seen to what another one has.
+void addTo(CellStatistics& sum, const CellStatistics& cell);
+
 // A cell and its ancestors, finest first; null beyond the coarsest.
 using CellChain = std::array<const CellStatistics*, kCellLevels>;
 inline CellChain chainOf(std::span<const CellStatistics> cells, size_t cell) {
@@ -79,6 +82,9 @@ void forEachFromCoarse(const Tasks& tasks, std::span<const CellStatistics> cells
     });
 }
 
+// The grid of a box of this extent: its finest cells have an edge of its diagonal / cellsPerDiagonal.
+CellGrid gridAround(const Float3& low, const Float3& extent, int cellsPerDiagonal);
+
 // The cells at every level. A coarser cell's statistics are the sums of its children's, formed by `rollUp`.
 class CellStore {
  public:
@@ -86,6 +92,7 @@ class CellStore {
   explicit CellStore(float clamp, bool looksAround = false,
                      std::shared_ptr<const Tasks> tasks = libraryTasks());
   ~CellStore();
+  CellStore& operator=(CellStore&&) noexcept;
 
   // Keeps the number of cells below a limit: the first call of `add` makes them as much larger as it takes,
   // later ones leave out the samples of cells that there is no more room for.
@@ -96,6 +103,15 @@ class CellStore {
 
   // Places the grid; otherwise the first call of `add` does.
   void place(const CellGrid& grid);
+  // Places the grid anew: what a cell has seen goes to the cell around its centroid.
+  void move(const CellGrid& grid);
+  // Lets each sample that was added count `weight` times, in [0, 1]. Cells that are left with less than a
+  // hundredth of a sample are forgotten.
+  void fade(double weight);
+  // Lets go of all that was added, and of the grid.
+  void forget();
+  // Changes whenever cells get other numbers than they had.
+  uint64_t numbering() const { return m_numbering; }
   // Sorts the vertices into cells and adds them up.
   void add(VertexParts parts, int cellsPerDiagonal);
   // The same in two steps, once there is a grid: many threads take samples, one call adds them up.
@@ -124,6 +140,8 @@ class CellStore {
  private:
   void place(VertexParts parts, int cellsPerDiagonal);
   void coarsen(VertexParts parts);
+  void carryOver(const CellGrid& grid, double weight);
+  void carryFields(CellStore& carried, std::span<const uint32_t> newCell, double weight) const;
   uint32_t insert(uint64_t key);
   void addNewCells();
   void lookAround();
@@ -136,6 +154,7 @@ class CellStore {
   bool m_looksAround;
   std::shared_ptr<const Tasks> m_tasks;
   bool m_placed = false;
+  uint64_t m_numbering = 0;
   size_t m_mostCells = SIZE_MAX;
   int m_coarsening = 1;
   uint64_t m_samplesLeftOut = 0;
