@@ -51,10 +51,10 @@ int InterruptScope::exitCode() {
 
 ConsoleProgress::ConsoleProgress(bool quiet) : m_quiet(quiet), m_terminal(isatty(STDERR_FILENO) == 1) {}
 
-void ConsoleProgress::begin(const std::string& stage, uint64_t totalSamples) {
+void ConsoleProgress::begin(const std::string& stage, uint64_t totalSamples, uint64_t done) {
   m_stage = m_title.empty() ? stage : m_title + ": " + stage;
   m_total = totalSamples;
-  m_done = 0;
+  m_done = m_before = done;
   m_nextShow = std::max<uint64_t>(1, m_total / (m_terminal ? 200 : 10));
   m_start = m_lastShow = std::chrono::steady_clock::now();
 }
@@ -77,6 +77,12 @@ void ConsoleProgress::end() {
   m_total = 0;
 }
 
+void ConsoleProgress::warn(const std::string& message) {
+  if (m_quiet) return;
+  const std::lock_guard lock(m_mutex);
+  say(fmt::format("{}warning: {}\n", m_terminal ? "\r\033[K" : "", message));
+}
+
 void ConsoleProgress::show(uint64_t done, bool last) {
   using namespace std::chrono;
   const auto now = steady_clock::now();
@@ -84,9 +90,10 @@ void ConsoleProgress::show(uint64_t done, bool last) {
   m_lastShow = now;
   const double seconds = std::max(1e-6, duration<double>(now - m_start).count());
   const double share = std::min(1.0, double(done) / double(m_total));
-  const double rate = double(done) / seconds;
+  const double rate = double(done - m_before) / seconds;
   const std::string time =
-      last ? durationText(seconds) : durationText(seconds * (1 - share) / share) + " left";
+      last ? durationText(seconds)
+           : durationText(double(m_total - std::min(done, m_total)) / std::max(rate, 1e-6)) + " left";
   const std::string rateText = fmt::format("{:.2f} Msamples/s, {}", rate * 1e-6, time);
   if (!m_terminal) {
     say(fmt::format("{} {:3.0f} %  {}\n", m_stage, 100 * share, rateText));

@@ -39,9 +39,10 @@ class InterruptScope {
 class ConsoleProgress : public render::Progress {
  public:
   explicit ConsoleProgress(bool quiet);
-  void begin(const std::string& stage, uint64_t totalSamples) override;
+  void begin(const std::string& stage, uint64_t totalSamples, uint64_t done) override;
   void advance(uint64_t samples) override;
   void end() override;
+  void warn(const std::string& message) override;
   bool cancelled() const override { return InterruptScope::interrupted(); }
   // Printed in front of the stage, on lines of its own if that is how progress is shown.
   void setTitle(const std::string& title) { m_title = title; }
@@ -51,7 +52,7 @@ class ConsoleProgress : public render::Progress {
 
   bool m_quiet, m_terminal;
   std::string m_title, m_stage;
-  uint64_t m_total = 0;
+  uint64_t m_total = 0, m_before = 0;  // samples of the stage, and those that an earlier run took
   std::atomic<uint64_t> m_done{0}, m_nextShow{0};
   std::chrono::steady_clock::time_point m_start, m_lastShow;
   std::mutex m_mutex;

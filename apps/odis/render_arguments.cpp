@@ -92,6 +92,12 @@ void RenderArguments::addTo(CLI::App& app) {
   app.add_option("--time-limit", timeLimit, "Stop after so many seconds; 0: no limit")
       ->check(within(0.0, 1e9))
       ->capture_default_str();
+  app.add_option("--save-every", saveMinutes,
+                 "Save all there is every so many minutes to OUTPUT.odis, and when interrupted; 0: never")
+      ->check(within(0.0, 1e6))
+      ->capture_default_str();
+  app.add_option("--resume", resume,
+                 "Go on with a file that --save-every left; the options must be the same otherwise");
   app.add_option("--aov", aov, "Further layers: albedo,normal,position,depth,roughness,guide or all");
   app.add_flag("--variance", variance, "Write each pixel's estimated variance as a layer");
   app.add_flag("--stats", stats, "Print what it cost");

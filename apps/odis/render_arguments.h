@@ -35,11 +35,11 @@ struct SceneArguments {
 
 // The whole of `odis render`.
 struct RenderArguments {
-  std::string scene, output, png, aov, statsFile, recordsFile, tev, replay;
+  std::string scene, output, png, aov, statsFile, recordsFile, tev, replay, resume;
   std::optional<int> spp, maxDepth, rrDepth;
   uint64_t seed = 0;
   int threads = 0;
-  double timeLimit = 0;
+  double timeLimit = 0, saveMinutes = 0;
   float exposure = 0;
   bool variance = false, stats = false, quiet = false, verbose = false;
   MethodArguments method;

@@ -14,6 +14,7 @@
 #include "records.h"
 #include "render/image/tev.h"
 #include "render_arguments.h"
+#include "saved_rendering.h"
 #include "stats.h"
 
 namespace odis::app {
@@ -34,6 +35,7 @@ static RenderOptions renderOptions(const RenderArguments& a, const Scene& scene,
   options.features = layers.any();
   options.guideFeatures = layers.guide;
   options.records = !a.recordsFile.empty();
+  options.saving = savingOf(a, options, scene);
   return options;
 }
 
@@ -74,8 +76,25 @@ static Outputs outputsOf(const RenderArguments& a) {
   if (!a.png.empty()) outputs.add(a.png, {".png"});
   if (!a.statsFile.empty()) outputs.add(a.statsFile, {});
   if (!a.recordsFile.empty()) outputs.add(a.recordsFile, {".npy"});
+  outputs.rejectInputs({a.scene, a.method.weights, a.resume});
+  // A rendering may go on with the file that it is saved to.
+  if (a.saveMinutes > 0) outputs.add(savedFile(a), {});
   outputs.rejectInputs({a.scene, a.method.weights});
   return outputs;
+}
+
+// Whether there is an image; says so where not.
+static bool isWorthWriting(const RenderArguments& a, const RenderStats& stats) {
+  if (stats.spp <= 0) {
+    say("interrupted before there was an image; nothing is written\n");
+    return false;
+  }
+  // Some pixels have no sample yet: better an old image than black ones.
+  if (!InterruptScope::interrupted() || stats.spp >= 1 || !std::filesystem::is_regular_file(a.output))
+    return true;
+  say(fmt::format("interrupted at {:.2f} samples per pixel: {} stays as it was, nothing is written\n",
+                  stats.spp, a.output));
+  return false;
 }
 
 static int runRender(RenderArguments& a) {
@@ -85,6 +104,7 @@ static int runRender(RenderArguments& a) {
   const LoadOptions load = a.part.loadOptions();
   if (!a.recordsFile.empty() && a.method.integrator != "odis")
     throw UsageError("--records: only --integrator odis has a pilot to record");
+  checkSaving(a);
   const Outputs outputs = a.replay.empty() ? outputsOf(a) : Outputs();
 
   const auto start = std::chrono::steady_clock::now();
@@ -105,17 +125,8 @@ static int runRender(RenderArguments& a) {
   const InterruptScope interruptible;
   ConsoleProgress progress(a.quiet);
   const RenderResult result = render::render(*scene, options, progress);
-  if (result.stats.spp <= 0) {
-    say("interrupted before there was an image; nothing is written\n");
-    return InterruptScope::exitCode();
-  }
-
-  // Some pixels have no sample yet: better an old image than black ones.
-  if (InterruptScope::interrupted() && result.stats.spp < 1 && std::filesystem::is_regular_file(a.output)) {
-    say(fmt::format("interrupted at {:.2f} samples per pixel: {} stays as it was, nothing is written\n",
-                    result.stats.spp, a.output));
-    return InterruptScope::exitCode();
-  }
+  if (result.stats.interrupted) tellOfSaved(a);
+  if (!isWorthWriting(a, result.stats)) return InterruptScope::exitCode();
 
   stats.render = result.stats;
   stats.bytesScene = scene->bytes();
@@ -135,6 +146,7 @@ static int runRender(RenderArguments& a) {
   if (!a.tev.empty()) sendToTev(a, result.image);
   if (!a.statsFile.empty()) writeText(a.statsFile, statsJson(stats));
   if (a.stats) fmt::print("{}", statsTable(stats));
+  if (!result.stats.interrupted) removeSaved(a);
   if (a.verbose) say(fmt::format("{}: written\n", a.output));
   return InterruptScope::exitCode();
 }

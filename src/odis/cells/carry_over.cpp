@@ -10,8 +10,8 @@ namespace {
 constexpr double kLeastSamples = 0.01;
 
 CellStatistics weighted(CellStatistics cell, double weight) {
-  for (double* sum : {&cell.count, &cell.lightCount, &cell.sum, &cell.sumSquares, &cell.outgoingSquares,
-                      &cell.rays})
+  for (double* sum :
+       {&cell.count, &cell.lightCount, &cell.sum, &cell.sumSquares, &cell.outgoingSquares, &cell.rays})
     *sum *= weight;
   for (double& sum : cell.outgoing) sum *= weight;
   for (double& sum : cell.lightSquares) sum *= weight;

@@ -67,14 +67,18 @@ void ArchiveWriter::addBytes(const std::string& name, uint32_t elementBytes, std
   ++m_count;
 }
 
-std::string ArchiveWriter::bytes() const {
-  std::string result(kArchiveMagic);
-  putInteger(result, kArchiveFormat);
-  putText(result, m_kind);
-  putInteger(result, m_count);
-  result += m_arrays;
-  putInteger(result, crc32(result));
-  return result;
+std::string ArchiveWriter::head() const {
+  std::string head(kArchiveMagic);
+  putInteger(head, kArchiveFormat);
+  putText(head, m_kind);
+  putInteger(head, m_count);
+  return head;
+}
+
+std::string ArchiveWriter::checksum(std::string_view head) const {
+  std::string bytes;
+  putInteger(bytes, crc32(m_arrays, crc32(head)));
+  return bytes;
 }
 
 void ArchiveWriter::write(const std::string& path) const {
@@ -82,8 +86,8 @@ void ArchiveWriter::write(const std::string& path) const {
   std::error_code error;
   {
     std::ofstream stream(temporary, std::ios::binary);
-    const std::string all = bytes();
-    stream.write(all.data(), std::streamsize(all.size()));
+    const std::string first = head();
+    stream << first << m_arrays << checksum(first);
     stream.close();
     if (!stream) {
       fs::remove(temporary, error);

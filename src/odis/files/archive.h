@@ -46,12 +46,14 @@ class ArchiveWriter {
     add(name, std::span<const T>(&value, 1));
   }
 
-  std::string bytes() const;
   // Replaces the file when all is written. Throws FileError.
   void write(const std::string& path) const;
 
  private:
   void addBytes(const std::string& name, uint32_t elementBytes, std::string_view bytes);
+  // All before the arrays, and what follows them.
+  std::string head() const;
+  std::string checksum(std::string_view head) const;
 
   std::string m_kind, m_arrays;
   uint32_t m_count = 0;

@@ -7,8 +7,9 @@
 
 namespace odis::core {
 
-// As zlib, PNG and gzip have it (polynomial 0xedb88320, reflected).
-inline uint32_t crc32(std::string_view bytes) {
+// As zlib, PNG and gzip have it (polynomial 0xedb88320, reflected). `before` is that of the bytes before
+// these.
+inline uint32_t crc32(std::string_view bytes, uint32_t before = 0) {
   static constexpr auto table = [] {
     std::array<uint32_t, 256> remainders{};
     for (uint32_t byte = 0; byte < 256; ++byte) {
@@ -18,7 +19,7 @@ inline uint32_t crc32(std::string_view bytes) {
     }
     return remainders;
   }();
-  uint32_t crc = ~0u;
+  uint32_t crc = ~before;
   for (const char c : bytes) crc = (crc >> 8) ^ table[(crc ^ uint8_t(c)) & 0xff];
   return ~crc;
 }

@@ -37,7 +37,10 @@ void FrameIntegrator::beginStage(const FramePass& framePass) {
   if (m_stage == stage) return;
   if (m_stage) m_job.progress().end();
   m_stage = stage;
-  m_job.progress().begin(stage, framePass.stageSamples);
+  const FrameStatistics frame = m_frame.statistics();
+  const bool pilot = framePass.kind == ODIS_PASS_PILOT;
+  m_job.progress().begin(stage, framePass.stageSamples,
+                         pilot ? frame.samples : frame.samples - frame.pilotSamples);
 }
 
 Pass FrameIntegrator::passOf(const FramePass& framePass) {
@@ -52,24 +55,36 @@ Pass FrameIntegrator::passOf(const FramePass& framePass) {
   }
   pass.samples = [this](uint32_t pixel) { return m_frame.samples(pixel); };
   pass.deliver = [this](uint32_t, ArrayView<const FrameSample> samples,
-                        ArrayView<const PathVertex> vertices) { m_frame.add(samples, vertices); };
+                        ArrayView<const PathVertex> vertices) {
+    if (samples.empty()) return;  // of a tile that was done before the pass went on
+    m_frame.add(samples, vertices);
+    m_saver.noteNews();
+  };
   pass.wantsVertices = framePass.wantsVertices;
   return pass;
 }
 
-double FrameIntegrator::trace(const FramePass& framePass) {
+// Traces a pass. It ends early to be saved, and goes on where it was.
+void FrameIntegrator::trace(const FramePass& framePass) {
+  RenderStats& stats = m_job.stats;
+  double& seconds = framePass.kind == ODIS_PASS_PILOT    ? stats.secondsPilot
+                    : framePass.kind == ODIS_PASS_ORACLE ? stats.secondsBuild
+                                                         : stats.secondsGuided;
   beginStage(framePass);
-  const Stopwatch tracing;
-  m_job.run(passOf(framePass));
-  return tracing.seconds();
+  for (bool complete = false; !complete;) {
+    const Stopwatch tracing;
+    m_job.count(
+        runPass(passOf(framePass), m_job.progress(), [this] { return m_job.stop() || m_saver.isDue(); }));
+    seconds += tracing.seconds();
+    complete = m_job.stop() || !m_saver.isDue();
+    if (m_job.stop() || m_saver.isDue()) m_saver.save(m_frame);
+  }
 }
 
 void FrameIntegrator::run(const FramePass& framePass) {
   RenderStats& stats = m_job.stats;
   const OdisPassKind kind = framePass.kind;
-  (kind == ODIS_PASS_PILOT    ? stats.secondsPilot
-   : kind == ODIS_PASS_ORACLE ? stats.secondsBuild
-                              : stats.secondsGuided) += trace(framePass);
+  trace(framePass);
   const Stopwatch building;
   m_frame.endPass(m_job.stop());
   if (kind != ODIS_PASS_GUIDED || framePass.wantsVertices) stats.secondsBuild += building.seconds();
@@ -81,7 +96,7 @@ void FrameIntegrator::render() {
 }
 
 void FrameIntegrator::tracePilot() {
-  m_job.stats.secondsPilot = trace(*m_frame.beginPass());
+  trace(*m_frame.beginPass());
   m_frame.endPass(true);
   m_job.progress().end();
 }

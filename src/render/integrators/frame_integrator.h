@@ -3,13 +3,15 @@
 
 #include <odis/odis.hpp>
 
+#include "render/integrators/frame_saver.h"
 #include "render/integrators/integrator.h"
 
 namespace odis::render {
 
 class FrameIntegrator : public Integrator {
  public:
-  FrameIntegrator(RenderJob& job, const FrameOptions& options) : m_job(job), m_frame(options) {}
+  FrameIntegrator(RenderJob& job, const FrameOptions& options)
+      : m_job(job), m_saver(job), m_frame(m_saver.begin(options)) {}
 
   void render() override;
   Pass passBefore(uint32_t pixel, uint32_t sample) override;
@@ -20,13 +22,13 @@ class FrameIntegrator : public Integrator {
   const odis::Frame& frame() const { return m_frame; }
 
  private:
-  // Traces a pass; returns the time that took in seconds.
-  double trace(const FramePass& framePass);
+  void trace(const FramePass& framePass);
   void run(const FramePass& framePass);
   Pass passOf(const FramePass& framePass);
   void beginStage(const FramePass& framePass);
 
   RenderJob& m_job;
+  FrameSaver m_saver;
   odis::Frame m_frame;
   const char* m_stage = nullptr;  // that progress tells of
 };

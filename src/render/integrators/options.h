@@ -16,6 +16,15 @@ enum class LightChoiceKind { hierarchy, formula, network };
 enum class ShadowRayKind { all, roulette };
 enum class SampleSpread { automatic, even, adaptive };
 
+// How a rendering that may be killed is kept. Only `path` and `odis` can be.
+struct SavingOptions {
+  std::string file;         // where all that there is goes to; empty: nowhere
+  double everySeconds = 0;  // how often; when the rendering is interrupted as well
+  std::string resumeFrom;   // a file that the rendering goes on with; empty: it begins
+  // What is rendered: lines of "name: value". A rendering goes on with a file of the same subject only.
+  std::string subject;
+};
+
 struct RenderOptions {
   IntegratorKind integrator = IntegratorKind::odis;
   SamplerKind sampler = SamplerKind::sobol;
@@ -29,6 +38,7 @@ struct RenderOptions {
   // needs 4 samples per pixel.
   SampleSpread samples = SampleSpread::automatic;
   double timeLimit = 0;   // seconds; 0: none. The image then has as many whole passes as fitted in.
+  SavingOptions saving;   // path and odis only
   bool variance = false;  // also estimate the variance of each pixel
   bool features = false;  // also write albedo, normals, position, depth, roughness
 

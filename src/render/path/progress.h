@@ -11,9 +11,12 @@ namespace odis::render {
 class Progress {
  public:
   virtual ~Progress() = default;
-  virtual void begin(const std::string& /*stage*/, uint64_t /*totalSamples*/) {}
+  // `done` of the stage's samples were taken by an earlier run.
+  virtual void begin(const std::string& /*stage*/, uint64_t /*totalSamples*/, uint64_t /*done*/ = 0) {}
   virtual void advance(uint64_t /*samples*/) {}
   virtual void end() {}
+  // Something that was asked for can't be done, but the work goes on.
+  virtual void warn(const std::string& /*message*/) {}
   virtual bool cancelled() const { return false; }
 };
 
