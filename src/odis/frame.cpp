@@ -58,7 +58,9 @@ uint64_t idOf(const Model& model) {
   return networks << 32 | (networks > 0 ? model.checksum : 0);
 }
 
-const FrameOptions& checked(const FrameOptions& o) {
+}  // namespace
+
+const FrameOptions& checkedOptions(const FrameOptions& o) {
   requireOption(o.width > 0 && o.height > 0, "width, height: expected at least one pixel");
   requireOption(uint64_t(o.width) * o.height < (uint64_t(1) << 31),
                 "width, height: expected less than 2^31 pixels");
@@ -70,10 +72,8 @@ const FrameOptions& checked(const FrameOptions& o) {
   return o;
 }
 
-}  // namespace
-
 Frame::Data::Data(const FrameOptions& o, std::shared_ptr<const Tasks> tasks)
-    : options(checked(o)),
+    : options(checkedOptions(o)),
       guideOptions(o.guide ? *o.guide : GuideOptions()),
       lightParts(copied(guideOptions)),
       modelId(idOf(modelOf(guideOptions.model))),

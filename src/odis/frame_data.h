@@ -12,6 +12,18 @@ namespace odis::core {
 // Vertices of each tile.
 using VertexTiles = std::vector<std::vector<PathVertex>>;
 
+// What a saved frame has of a pass: all of the tiles whose samples were in.
+struct ResumedPass {
+  std::vector<uint8_t> tilesDone;
+  VertexTiles vertices;
+  std::vector<CellSamples> cellSamples;
+};
+
+struct FramePosition;
+
+// Throws std::invalid_argument where an option is out of its range.
+const FrameOptions& checkedOptions(const FrameOptions& options);
+
 struct Frame::Data {
   Data(const FrameOptions& o, std::shared_ptr<const Tasks> tasks);
 
@@ -29,16 +41,9 @@ struct Frame::Data {
   bool learns() const { return done < schedule.lastRefinement(); }
   SampleRange samples(uint32_t pixel) const;
 
-  // What a saved frame has of a pass: all of the tiles whose samples were in.
-  struct ResumedPass {
-    std::vector<uint8_t> tilesDone;
-    VertexTiles vertices;
-    std::vector<CellSamples> cellSamples;
-  };
   // Goes on with the pass that was under way when the frame was saved.
   void resume();
-  void loadPosition(const Archive& file);
-  void loadPass(const Archive& file);
+  void moveTo(const FramePosition& position);
 
   FrameOptions options;
   GuideOptions guideOptions;
