@@ -54,8 +54,8 @@ std::vector<OdisLightParts> copied(const GuideOptions& o) {
 
 // The same for models that decide the same.
 uint64_t idOf(const Model& model) {
-  const uint64_t networks = (model.directions ? 1 : 0) + (model.lights ? 2 : 0);
-  return networks << 32 | (networks > 0 ? model.checksum : 0);
+  const uint64_t networks = (model.directions ? kDirectionNetwork : 0) | (model.lights ? kLightNetwork : 0);
+  return networks | (networks > 0 ? model.checksum : 0);
 }
 
 }  // namespace
@@ -297,10 +297,15 @@ bool Frame::guideIsFinal() const {
 
 // All that comes after the pilot depends on it, how many samples a pixel has included. The pilot's share in
 // its pixel must not: it stays what it would be if all pixels had as many samples.
+float pilotWeight(const FrameOptions& options, const Schedule& schedule, uint32_t pixel,
+                  const PixelSums& later) {
+  return later.count > 0 ? options.pilotWeight * schedule.remainingRatio(pixel) : 1;
+}
+
 float Frame::sampleWeight(uint32_t pixel, uint32_t sample) const {
   const Data& d = *m_data;
-  const bool weighed = sample < d.schedule.pilotCount(pixel) && d.later[pixel].count > 0;
-  return weighed ? d.options.pilotWeight * d.schedule.remainingRatio(pixel) : 1;
+  if (sample >= d.schedule.pilotCount(pixel)) return 1;
+  return pilotWeight(d.options, d.schedule, pixel, d.later[pixel]);
 }
 
 PixelMean Frame::mean(uint32_t pixel) const {

@@ -21,6 +21,12 @@ struct ResumedPass {
 
 struct FramePosition;
 
+// A model's id: which networks it has in the upper half, the checksum of their weights in the lower one.
+inline constexpr uint64_t kDirectionNetwork = uint64_t(1) << 32, kLightNetwork = uint64_t(2) << 32;
+
+// What a pilot sample weighs in its pixel in units of a guided one; `later` are the pixel's other samples.
+float pilotWeight(const FrameOptions& options, const Schedule& schedule, uint32_t pixel,
+                  const PixelSums& later);
 // Throws std::invalid_argument where an option is out of its range.
 const FrameOptions& checkedOptions(const FrameOptions& options);
 
@@ -48,7 +54,7 @@ struct Frame::Data {
   FrameOptions options;
   GuideOptions guideOptions;
   std::vector<OdisLightParts> lightParts;
-  uint64_t modelId;  // tells models apart
+  uint64_t modelId;  // the same for models that decide the same
   Schedule schedule;
   std::vector<PixelSums> pilot, later;  // of the pilot's samples, and of those after it
   TileCollector tiles;

@@ -45,9 +45,10 @@ void forEachPart(const Archive& file, const std::string& name, const std::vector
   file.require(begin == all.size(), name + ": is too long");
 }
 
-VertexTiles loadTiles(const Archive& file, const std::string& name) {
+VertexTiles loadTiles(const Archive& file, const std::string& name, size_t pixels) {
   const std::vector<uint64_t> sizes = file.get<uint64_t>(name + ".sizes");
   const std::vector<PathVertex> all = loadVertices(file, name);
+  for (const PathVertex& v : all) file.require(v.pixel < pixels, name + ": are damaged");
   VertexTiles tiles;
   forEachPart(file, name, all, sizes, [&](auto begin, auto end) { tiles.emplace_back(begin, end); });
   return tiles;
@@ -184,8 +185,8 @@ SavedFrame::SavedFrame(const Archive& file)
       pixelValues(file.get<float>("frame.pixelValues")),
       schedule(options.frame),
       vertexCounts(file.value<VertexCounts>("frame.vertexCounts")),
-      pilotVertices(loadTiles(file, "frame.pilotVertices")),
-      oracleVertices(loadTiles(file, "frame.oracleVertices")),
+      pilotVertices(loadTiles(file, "frame.pilotVertices", pilot.size())),
+      oracleVertices(loadTiles(file, "frame.oracleVertices", pilot.size())),
       guide(Guide::load(file)) {
   const auto isFull = [this](size_t size) { return size == 0 || size == pilot.size(); };
   file.require(isFull(pixelValues.size()), "frame.pixelValues: are damaged");
@@ -209,7 +210,7 @@ void SavedFrame::readPass(const Archive& file) {
   const size_t tiles = TileCollector(options.frame.width, options.frame.height).tileCount();
   pass = std::make_unique<ResumedPass>();
   pass->tilesDone = file.get<uint8_t>("pass.tilesDone", tiles);
-  pass->vertices = loadTiles(file, "pass.vertices");
+  pass->vertices = loadTiles(file, "pass.vertices", pilot.size());
   pass->cellSamples = SavedCellSamples::load(file);
   const auto fits = [tiles](size_t size) { return size == 0 || size == tiles; };
   file.require(fits(pass->vertices.size()) && fits(pass->cellSamples.size()), "pass.vertices: are damaged");
