@@ -14,6 +14,7 @@
 #include "console.h"
 #include "eval/image_file.h"
 #include "learn/data/shard_file.h"
+#include "learn/inspect/saved.h"
 #include "learn/scenes/generate.h"
 #include "learn/train/learner.h"
 #include "odis_version.h"
@@ -105,6 +106,8 @@ int runCommandLine(int argc, char** argv) {
   } catch (const learn::GenerateError& error) {
     return fail(kWriteError, error.what());
   } catch (const render::SceneError& error) {
+    return fail(kSceneError, error.what());
+  } catch (const core::FileError& error) {
     return fail(kSceneError, error.what());
   } catch (const learn::ShardError& error) {
     return fail(kSceneError, error.what());

@@ -4,7 +4,7 @@
 #include <optional>
 #include <string>
 
-#include "odis/types.h"
+#include "learn/inspect/map_drawing.h"
 
 namespace odis::app {
 
@@ -13,7 +13,13 @@ struct SavedArguments {
   std::optional<Float3> point, normal;
 };
 
-// Returns an ExitCode.
-int runInspectSaved(const SavedArguments& arguments);
+// Prints what is in the file, and writes what is asked for. Throws UsageError, OptionError, FileError,
+// WriteError.
+void showSaved(const SavedArguments& arguments);
+
+// False colours for .png, values for .exr.
+learn::MapColors mapColorsOf(const std::string& picture);
+// Throws WriteError.
+void writeCanvas(const std::string& path, const learn::Canvas& canvas);
 
 }  // namespace odis::app

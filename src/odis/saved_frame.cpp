@@ -203,6 +203,9 @@ void SavedFrame::readPosition(const Archive& file) {
   file.require(position.next <= ODIS_PASS_GUIDED && position.done <= schedule.mostRemaining() &&
                    (position.builder ? options.frame.guided : !learns),
                "frame.position: is damaged");
+  // A guide is there as soon as something is guided.
+  file.require(!learns || position.next != ODIS_PASS_GUIDED || file.value<uint8_t>("guide.built"),
+               "guide.built: is damaged");
 }
 
 // What the pass under way has already.

@@ -47,9 +47,7 @@ std::vector<ChosenOption> chosenOptions(const core::SavedOptions& saved) {
 
 std::string modelText(uint64_t id) {
   if (id == 0) return "formulas";
-  const auto part = [&](uint64_t network) {
-    return (id & network) != 0 ? "a network" : "a formula";
-  };
+  const auto part = [&](uint64_t network) { return (id & network) != 0 ? "a network" : "a formula"; };
   return fmt::format("directions by {}, lights by {}, weights {:08x}", part(core::kDirectionNetwork),
                      part(core::kLightNetwork), uint32_t(id));
 }
@@ -65,7 +63,7 @@ std::string stateText(const core::SavedFrame& saved) {
   if (at.next == ODIS_PASS_ORACLE)
     return where +
            fmt::format("pass {} of {} of the oracle", at.oraclePasses + 1, saved.options.frame.oracleSamples);
-  return where + fmt::format("a guided pass: samples {} to {} of {} after the pilot", at.done + 1,
+  return where + fmt::format("a guided pass: samples {} to {} of at most {} after the pilot", at.done + 1,
                              saved.schedule.passEnd(at.done), all);
 }
 

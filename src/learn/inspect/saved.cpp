@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
+#include <fstream>
 
 #include "learn/inspect/summaries.h"
 #include "learn/inspect/vertex_integral.h"
@@ -61,6 +63,14 @@ GuideSummary summarizeGuide(core::Guide guide) {
       over([&](uint32_t cell) { return view.decisions[cell].learnedLightFraction; });
   result.guide = std::move(guide);
   return result;
+}
+
+bool isSaved(const std::string& path) {
+  std::error_code error;
+  if (!std::filesystem::is_regular_file(path, error)) return false;
+  std::string begin(core::kArchiveMagic.size(), '\0');
+  std::ifstream(path, std::ios::binary).read(begin.data(), std::streamsize(begin.size()));
+  return begin == core::kArchiveMagic;
 }
 
 SavedInspection inspectSaved(const core::Archive& file) {

@@ -95,6 +95,8 @@ struct SavedInspection {
   std::optional<FrameSummary> frame;
 };
 
+// Whether a file begins as all do that the library saves.
+bool isSaved(const std::string& path);
 // Throws FileError where the file is damaged, or holds something unknown.
 SavedInspection inspectSaved(const core::Archive& file);
 // The map of a cell, and its entropy.

@@ -10,7 +10,7 @@ namespace odis::learn {
 namespace {
 
 constexpr int kSpace = 8, kLine = 11;
-constexpr int kLargeMap = 24 * kMapSize, kSmallMap = 6 * kMapSize;
+constexpr int kLargeMap = 32 * kMapSize, kSmallMap = 6 * kMapSize;
 constexpr size_t kMostOnASheet = 64;
 constexpr int kSheetColumns = 8;
 

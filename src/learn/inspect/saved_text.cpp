@@ -25,7 +25,7 @@ std::string levelsText(const std::array<uint32_t, kCellLevels>& cells) {
     all += count;
     levels += fmt::format("{}{}", levels.empty() ? "" : " + ", count);
   }
-  return fmt::format("{} = {}, finest first", all, levels);
+  return all > 0 ? fmt::format("{} = {}, finest first", all, levels) : "none";
 }
 
 // Counts with their reasons; those that are 0 are left out.
@@ -62,9 +62,10 @@ std::string guideText(const GuideSummary& guide) {
 std::string cellText(const CellSummary& cell) {
   std::string out = "\n" + savedCellWords(cell) + "\n";
   for (const std::string& line : savedDecisionWords(cell)) out += line + "\n";
-  for (size_t group = 0; group < cell.lights.size(); ++group)
-    out += fmt::format("{} {:.3f}", group == 0 ? "learned, by group:" : "", cell.lights[group]);
-  return cell.lights.empty() ? out : out + "\n";
+  if (cell.lights.empty()) return out;
+  out += "learned, by group:";
+  for (const float probability : cell.lights) out += fmt::format(" {:.3f}", probability);
+  return out + "\n";
 }
 
 std::string verticesText(const VertexSummary& v) {

@@ -11,7 +11,6 @@ namespace fs = std::filesystem;
 
 namespace {
 
-constexpr std::string_view kArchiveMagic = "ODISSAVE";
 constexpr uint32_t kArchiveFormat = 1;
 
 template <class Integer>

@@ -22,6 +22,8 @@
 
 namespace odis::core {
 
+inline constexpr std::string_view kArchiveMagic = "ODISSAVE";
+
 // What can't be read or written, or is damaged. Names the file.
 class FileError : public std::runtime_error {
  public:
