@@ -83,7 +83,8 @@ SavedInspection inspectSaved(const core::Archive& file) {
     const ArrayView<const PathVertex> all = vertices;
     result.vertices = summarizeVertices(VertexParts(&all, 1));
   } else {
-    file.requireKind("frame");
+    file.require(result.kind == "frame",
+                 "found a saved \"" + result.kind + "\", expected a guide, vertices or a frame");
     const core::SavedFrame frame(file);
     result.frame = summarizeFrame(frame, file);
     result.guide = summarizeGuide(frame.guide);
