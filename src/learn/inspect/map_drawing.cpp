@@ -24,9 +24,10 @@ render::Rgb mapColor(float value, MapColors colors) {
 
 void drawMap(Canvas& canvas, render::Vec2i at, int size, const SquareMap& map, MapColors colors) {
   for (int y = 0; y < size; ++y)
-    for (int x = 0; x < size; ++x)
-      canvas.set(at.x + x, at.y + y,
-                 mapColor(map.values[size_t(y * map.side / size * map.side + x * map.side / size)], colors));
+    for (int x = 0; x < size; ++x) {
+      const int texel = y * map.side / size * map.side + x * map.side / size;
+      canvas.set(at.x + x, at.y + y, mapColor(map.values[size_t(texel)], colors));
+    }
 }
 
 ColorScale mapScale() {

@@ -164,8 +164,9 @@ class Painter {
   void ratio(const SquareMap& of, const SquareMap& to) {
     for (int y = 0; y < kSide; ++y)
       for (int x = 0; x < kSide; ++x) {
-        const auto texel = size_t(y * of.side / kSide * of.side + x * of.side / kSide);
-        m_canvas.set(m_left + x, m_top + kText + y, ratioColor(of.values[texel], to.values[texel]));
+        const int texel = y * of.side / kSide * of.side + x * of.side / kSide;
+        m_canvas.set(m_left + x, m_top + kText + y,
+                     ratioColor(of.values[size_t(texel)], to.values[size_t(texel)]));
       }
   }
   Rgb ratioColor(float of, float to) const {
