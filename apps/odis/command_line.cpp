@@ -14,6 +14,7 @@
 #include "console.h"
 #include "eval/image_file.h"
 #include "learn/data/shard_file.h"
+#include "learn/inspect/saved.h"
 #include "learn/scenes/generate.h"
 #include "learn/train/learner.h"
 #include "odis_version.h"
@@ -23,7 +24,7 @@
 namespace odis::app {
 
 static constexpr const char* kExitCodes =
-    "Exit codes: 0 all went well, 1 internal error, 2 wrong usage, 3 a scene, image or shard can't be read,\n"
+    "Exit codes: 0 all went well, 1 internal error, 2 wrong usage, 3 an input can't be read,\n"
     "4 an output can't be written, 130 interrupted by Ctrl-C, 143 by SIGTERM (what was rendered is written).";
 
 static int fail(ExitCode code, const std::string& message) {
@@ -105,6 +106,8 @@ int runCommandLine(int argc, char** argv) {
   } catch (const learn::GenerateError& error) {
     return fail(kWriteError, error.what());
   } catch (const render::SceneError& error) {
+    return fail(kSceneError, error.what());
+  } catch (const core::FileError& error) {
     return fail(kSceneError, error.what());
   } catch (const learn::ShardError& error) {
     return fail(kSceneError, error.what());

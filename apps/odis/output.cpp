@@ -7,7 +7,6 @@
 
 #include "command.h"
 #include "render/files/replace_file.h"
-#include "render/image/write.h"
 
 namespace odis::app {
 
@@ -115,6 +114,17 @@ void writeLayers(const std::string& path, const RenderedImage& frame, const Film
 
 void writePreview(const std::string& path, const RenderedImage& frame, float exposure) {
   writePng(path, frame.width, frame.height, frame.color.data(), exposure);
+}
+
+void writeColors(const std::string& path, int width, int height, const std::vector<Rgb>& colors,
+                 ToneMap toneMap) {
+  if (endsWith(path, ".png")) return writePng(path, width, height, colors.data(), 0, toneMap);
+  RenderedImage image;
+  FilmSettings film;
+  film.width = image.width = width;
+  film.height = image.height = height;
+  image.color = colors;
+  writeLayers(path, image, film, {}, {});
 }
 
 void writeText(const std::string& path, const std::string& text) {

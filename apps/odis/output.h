@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "render/files/output_path.h"
+#include "render/image/write.h"
 #include "render/integrators/render.h"
 
 namespace odis::app {
@@ -45,6 +46,9 @@ void writeLayers(const std::string& path, const render::RenderedImage& frame,
                  const std::map<std::string, std::string>& metadata);
 // Each throws WriteError.
 void writePreview(const std::string& path, const render::RenderedImage& frame, float exposure);
+// Linear colours, row by row from the top: .png, or else .exr with values as they are.
+void writeColors(const std::string& path, int width, int height, const std::vector<render::Rgb>& colors,
+                 render::ToneMap toneMap);
 void writeText(const std::string& path, const std::string& text);
 
 }  // namespace odis::app

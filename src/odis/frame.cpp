@@ -4,6 +4,7 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "odis/cells/batches.h"
 #include "odis/image/sample_counts.h"
 #include "odis/models/model.h"
 
@@ -40,13 +41,9 @@ std::vector<ArrayView<const PathVertex>> partsOf(const VertexTiles& tiles) {
   return {tiles.begin(), tiles.end()};
 }
 
-uint64_t countVertices(const VertexTiles& tiles) {
-  uint64_t count = 0;
-  for (const std::vector<PathVertex>& tile : tiles) count += tile.size();
-  return count;
-}
+}  // namespace
 
-const FrameOptions& checked(const FrameOptions& o) {
+const FrameOptions& checkedOptions(const FrameOptions& o) {
   requireOption(o.width > 0 && o.height > 0, "width, height: expected at least one pixel");
   requireOption(uint64_t(o.width) * o.height < (uint64_t(1) << 31),
                 "width, height: expected less than 2^31 pixels");
@@ -58,11 +55,9 @@ const FrameOptions& checked(const FrameOptions& o) {
   return o;
 }
 
-}  // namespace
-
 Frame::Data::Data(const FrameOptions& o, std::shared_ptr<const Tasks> tasks,
                   std::shared_ptr<GuideBuilder> given)
-    : options(checked(o)),
+    : options(checkedOptions(o)),
       ownsBuilder(!given),
       builder(!o.guided ? nullptr
               : given
@@ -133,7 +128,7 @@ void Frame::Data::take(uint32_t tile, ArrayView<const FrameSample> samples,
 void Frame::Data::endPilot() {
   pixelValues = estimatePixelValues(pilot, options.width);
   pilotVertices = std::move(passVertices);
-  pilotVertexCount = countVertices(pilotVertices);
+  pilotVertexCount = countVertices(partsOf(pilotVertices));
   buildingBytes = pilotVertexCount * sizeof(PathVertex);
   next = options.oracleSamples > 0 ? ODIS_PASS_ORACLE : ODIS_PASS_GUIDED;
 }
@@ -198,7 +193,7 @@ void Frame::Data::resume() {
     for (const CellSamples& samples : cellSamples) keptBytes += samples.bytes();
   } else {
     passVertices = std::move(resumed->vertices);
-    keptBytes += countVertices(passVertices) * sizeof(PathVertex);
+    keptBytes += countVertices(partsOf(passVertices)) * sizeof(PathVertex);
   }
   resumed.reset();
 }
@@ -277,7 +272,7 @@ void Frame::setProgress(OdisProgressFunction function, void* user) {
 }
 
 void Frame::limitBytes(uint64_t most) {
-  if (m_data->builder) m_data->builder->limitBytes(most, countVertices(m_data->passVertices));
+  if (m_data->builder) m_data->builder->limitBytes(most, countVertices(partsOf(m_data->passVertices)));
 }
 int Frame::coarsening() const {
   return m_data->builder ? m_data->builder->coarsening() : 1;
@@ -299,10 +294,15 @@ bool Frame::guideIsFinal() const {
 
 // All that comes after the pilot depends on it, how many samples a pixel has included. The pilot's share in
 // its pixel must not: it stays what it would be if all pixels had as many samples.
+float pilotWeight(const FrameOptions& options, const Schedule& schedule, uint32_t pixel,
+                  const PixelSums& later) {
+  return later.count > 0 ? options.pilotWeight * schedule.remainingRatio(pixel) : 1;
+}
+
 float Frame::sampleWeight(uint32_t pixel, uint32_t sample) const {
   const Data& d = *m_data;
-  const bool weighed = sample < d.schedule.pilotCount(pixel) && d.later[pixel].count > 0;
-  return weighed ? d.options.pilotWeight * d.schedule.remainingRatio(pixel) : 1;
+  if (sample >= d.schedule.pilotCount(pixel)) return 1;
+  return pilotWeight(d.options, d.schedule, pixel, d.later[pixel]);
 }
 
 PixelMean Frame::mean(uint32_t pixel) const {
@@ -351,7 +351,7 @@ ArrayView<const PixelSums> Frame::pilotImage() const {
 }
 
 size_t Frame::pilotVertexCount() const {
-  return countVertices(m_data->pilotVertices);
+  return countVertices(partsOf(m_data->pilotVertices));
 }
 
 std::vector<PathVertex> Frame::pilotVertices() const {

@@ -12,6 +12,21 @@ namespace odis::core {
 // Vertices of each tile.
 using VertexTiles = std::vector<std::vector<PathVertex>>;
 
+// What a saved frame has of a pass: all of the tiles whose samples were in.
+struct ResumedPass {
+  std::vector<uint8_t> tilesDone;
+  VertexTiles vertices;
+  std::vector<CellSamples> cellSamples;
+};
+
+struct FramePosition;
+
+// What a pilot sample weighs in its pixel in units of a guided one; `later` are the pixel's other samples.
+float pilotWeight(const FrameOptions& options, const Schedule& schedule, uint32_t pixel,
+                  const PixelSums& later);
+// Throws std::invalid_argument where an option is out of its range.
+const FrameOptions& checkedOptions(const FrameOptions& options);
+
 struct Frame::Data {
   Data(const FrameOptions& o, std::shared_ptr<const Tasks> tasks, std::shared_ptr<GuideBuilder> given);
 
@@ -29,23 +44,16 @@ struct Frame::Data {
   bool learns() const { return done < schedule.lastRefinement(); }
   SampleRange samples(uint32_t pixel) const;
 
-  // What a saved frame has of a pass: all of the tiles whose samples were in.
-  struct ResumedPass {
-    std::vector<uint8_t> tilesDone;
-    VertexTiles vertices;
-    std::vector<CellSamples> cellSamples;
-  };
   // Goes on with the pass that was under way when the frame was saved.
   void resume();
-  void loadPosition(const Archive& file);
-  void loadPass(const Archive& file);
+  void moveTo(const FramePosition& position);
 
   FrameOptions options;
   bool ownsBuilder;
   std::shared_ptr<GuideBuilder> builder;  // null once the guide is final
   GuideOptions guideOptions;
   std::vector<OdisLightParts> lightParts;
-  uint64_t modelId;  // tells models apart; 0 where there is none
+  uint64_t modelId;  // the same for models that decide the same; 0 where there is none
   Schedule schedule;
   std::vector<PixelSums> pilot, later;  // of the pilot's samples, and of those after it
   TileCollector tiles;

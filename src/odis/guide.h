@@ -119,7 +119,7 @@ class GuideBuilder {
 
   // As they hold: without the model, and with the builder's own copies of arrays.
   const GuideOptions& options() const;
-  // The same for models that decide the same.
+  // That of its model (odis/models/model.h).
   uint64_t modelId() const;
   // How many of the vertices added were taken, and how many refused, by reason.
   VertexCounts vertexCounts() const;

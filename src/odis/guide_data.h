@@ -58,9 +58,9 @@ struct GuideBuilder::Data {
       : options(o),
         lightParts(o.lightParts, o.lightParts + o.lightPartCount),
         progress(o.progressFunction, o.progressUser),
+        modelId(idOf(model)),
         directions(std::move(model.directions)),
         lights(std::move(model.lights)),
-        modelId(idOf(directions.get(), lights.get(), model.checksum)),
         store(o.clamp, directions && directions->looksAround(), std::move(tasks)) {
     if (!directions) directions = std::make_shared<DirectionFormula>(o);
     if (!lights) lights = std::make_shared<LightFormula>();
@@ -72,17 +72,12 @@ struct GuideBuilder::Data {
                   std::vector<DirectionDistribution>& distributions) const;
   void addRouletteAndLights(Guide::Data& guide, const std::vector<CellStatistics>& cells) const;
 
-  static uint64_t idOf(const DirectionModel* directions, const LightModel* lights, uint32_t checksum) {
-    const uint64_t networks = (directions ? 1 : 0) + (lights ? 2 : 0);
-    return networks << 32 | (networks > 0 ? checksum : 0);
-  }
-
   GuideOptions options;
   std::vector<LightParts> lightParts;
   Progress progress;
+  uint64_t modelId;
   std::shared_ptr<const DirectionModel> directions;
   std::shared_ptr<const LightModel> lights;
-  uint64_t modelId;
   CellStore store;
 };
 

@@ -1,9 +1,10 @@
 // Frames written to a file and read again.
+#include "odis/saved_frame.h"
+
 #include <array>
 #include <cstddef>
+#include <stdexcept>
 
-#include "odis/files/archive.h"
-#include "odis/frame_data.h"
 #include "odis/guide_data.h"
 #include "odis/saved_vertices.h"
 
@@ -44,19 +45,14 @@ void forEachPart(const Archive& file, const std::string& name, const std::vector
   file.require(begin == all.size(), name + ": is too long");
 }
 
-VertexTiles loadTiles(const Archive& file, const std::string& name) {
+VertexTiles loadTiles(const Archive& file, const std::string& name, size_t pixels) {
   const std::vector<uint64_t> sizes = file.get<uint64_t>(name + ".sizes");
   const std::vector<PathVertex> all = loadVertices(file, name);
+  for (const PathVertex& v : all) file.require(v.pixel < pixels, name + ": are damaged");
   VertexTiles tiles;
   forEachPart(file, name, all, sizes, [&](auto begin, auto end) { tiles.emplace_back(begin, end); });
   return tiles;
 }
-
-// Where a frame is between its first sample and its last.
-struct Position {
-  uint64_t guidesBuilt, notFinite, outsideFrame, buildingBytes, pilotVertices;
-  uint32_t next, oraclePasses, done, finished, builder;
-};
 
 }  // namespace
 
@@ -133,8 +129,8 @@ void Frame::save(ArchiveWriter& file) const {
   file.addValue("frame.model", d.modelId);
   file.add("frame.hostData", d.hostData);
   file.addValue("frame.position",
-                Position{d.guidesBuilt, d.notFinite, d.outsideFrame, d.buildingBytes, d.pilotVertexCount,
-                         uint32_t(d.next), d.oraclePasses, d.done, d.finished, d.builder != nullptr});
+                FramePosition{d.guidesBuilt, d.notFinite, d.outsideFrame, d.buildingBytes, d.pilotVertexCount,
+                              uint32_t(d.next), d.oraclePasses, d.done, d.finished, d.builder != nullptr});
   file.addValue("frame.vertexCounts", d.vertexCounts);
   file.add("frame.counts", d.schedule.counts());
   file.add("frame.pilot", d.pilot);
@@ -152,39 +148,85 @@ void Frame::save(ArchiveWriter& file) const {
   d.guide.save(file);
 }
 
+SavedOptions::SavedOptions(const Archive& file)
+    : frame(readChecked<FrameOptions>(file, "frame.options",
+                                      {offsetof(FrameOptions, guided), offsetof(FrameOptions, adaptive),
+                                       offsetof(FrameOptions, keepPilotVertices)})),
+      guide(readChecked<GuideOptions>(file, "frame.guideOptions", {offsetof(GuideOptions, controlVariate)})),
+      lightParts(file.get<OdisLightParts>("frame.lightParts")) {
+  // Pointers of a file mean nothing.
+  frame.guide = &guide;
+  frame.builder = nullptr;
+  guide.model = nullptr;
+  guide.progressFunction = nullptr;
+  guide.progressUser = nullptr;
+  guide.lightParts = lightParts.data();
+  guide.lightPartCount = lightParts.size();
+  try {
+    checkedOptions(frame);
+  } catch (const std::invalid_argument& error) {
+    file.require(false, error.what());
+  }
+}
+
 namespace {
 
-// The options of a saved frame, and what they point to.
-struct SavedOptions {
-  FrameOptions frame;
-  GuideOptions guide;
-  std::vector<OdisLightParts> lightParts;
-
-  SavedOptions(const Archive& file, OdisModel model)
-      : frame(readChecked<FrameOptions>(file, "frame.options",
-                                        {offsetof(FrameOptions, guided), offsetof(FrameOptions, adaptive),
-                                         offsetof(FrameOptions, keepPilotVertices)})),
-        guide(
-            readChecked<GuideOptions>(file, "frame.guideOptions", {offsetof(GuideOptions, controlVariate)})),
-        lightParts(file.get<OdisLightParts>("frame.lightParts")) {
-    // Pointers of a file mean nothing.
-    frame.guide = &guide;
-    frame.builder = nullptr;
-    guide.model = model;
-    guide.progressFunction = nullptr;
-    guide.progressUser = nullptr;
-    guide.lightParts = lightParts.data();
-    guide.lightPartCount = lightParts.size();
-  }
-};
+// A damaged size must not cost more memory than the file has.
+std::vector<PixelSums> readPilot(const Archive& file, const FrameOptions& options) {
+  std::vector<PixelSums> pilot = file.get<PixelSums>("frame.pilot");
+  file.require(uint64_t(options.width) * options.height == pilot.size(), "frame.options: are damaged");
+  return pilot;
+}
 
 }  // namespace
 
+SavedFrame::SavedFrame(const Archive& file)
+    : options(file),
+      modelId(file.value<uint64_t>("frame.model")),
+      hostData(file.get<uint8_t>("frame.hostData")),
+      pilot(readPilot(file, options.frame)),
+      later(file.get<PixelSums>("frame.later", pilot.size())),
+      pixelValues(file.get<float>("frame.pixelValues")),
+      schedule(options.frame),
+      vertexCounts(file.value<VertexCounts>("frame.vertexCounts")),
+      pilotVertices(loadTiles(file, "frame.pilotVertices", pilot.size())),
+      oracleVertices(loadTiles(file, "frame.oracleVertices", pilot.size())),
+      guide(Guide::load(file)) {
+  const auto isFull = [this](size_t size) { return size == 0 || size == pilot.size(); };
+  file.require(isFull(pixelValues.size()), "frame.pixelValues: are damaged");
+  const std::vector<uint32_t> counts = file.get<uint32_t>("frame.counts");
+  file.require(isFull(counts.size()) && schedule.restore(counts), "frame.counts: are damaged");
+  readPosition(file);
+  if (file.contains("pass.tilesDone")) readPass(file);
+}
+
+void SavedFrame::readPosition(const Archive& file) {
+  position = file.value<FramePosition>("frame.position");
+  // Who learns needs a builder.
+  const bool learns = position.next != ODIS_PASS_GUIDED || position.done < schedule.lastRefinement();
+  file.require(position.next <= ODIS_PASS_GUIDED && position.done <= schedule.mostRemaining() &&
+                   (position.builder ? options.frame.guided : !learns),
+               "frame.position: is damaged");
+  // A guide is there as soon as something is guided.
+  file.require(!learns || position.next != ODIS_PASS_GUIDED || file.value<uint8_t>("guide.built"),
+               "guide.built: is damaged");
+}
+
+// What the pass under way has already.
+void SavedFrame::readPass(const Archive& file) {
+  const size_t tiles = TileCollector(options.frame.width, options.frame.height).tileCount();
+  pass = std::make_unique<ResumedPass>();
+  pass->tilesDone = file.get<uint8_t>("pass.tilesDone", tiles);
+  pass->vertices = loadTiles(file, "pass.vertices", pilot.size());
+  pass->cellSamples = SavedCellSamples::load(file);
+  const auto fits = [tiles](size_t size) { return size == 0 || size == tiles; };
+  file.require(fits(pass->vertices.size()) && fits(pass->cellSamples.size()), "pass.vertices: are damaged");
+  pass->vertices.resize(tiles);
+  pass->cellSamples.resize(tiles);
+}
+
 // Goes to the place between the first sample and the last where the frame was.
-void Frame::Data::loadPosition(const Archive& file) {
-  const auto require = [&file](bool holds) { file.require(holds, "frame.position: is damaged"); };
-  const Position at = file.value<Position>("frame.position");
-  require(at.next <= ODIS_PASS_GUIDED && at.done <= schedule.mostRemaining());
+void Frame::Data::moveTo(const FramePosition& at) {
   guidesBuilt = at.guidesBuilt;
   notFinite = at.notFinite;
   outsideFrame = at.outsideFrame;
@@ -194,56 +236,37 @@ void Frame::Data::loadPosition(const Archive& file) {
   oraclePasses = at.oraclePasses;
   done = at.done;
   finished = at.finished != 0;
-  // Who learns needs a builder.
-  require(at.builder ? builder != nullptr : next == ODIS_PASS_GUIDED && !learns());
-  if (!at.builder) return builder.reset();
-  builder->load(file);
-  builder->adopt(guide);
-}
-
-// Takes up what the pass under way has already.
-void Frame::Data::loadPass(const Archive& file) {
-  resumed = std::make_unique<ResumedPass>();
-  resumed->tilesDone = file.get<uint8_t>("pass.tilesDone", tiles.tileCount());
-  resumed->vertices = loadTiles(file, "pass.vertices");
-  resumed->cellSamples = SavedCellSamples::load(file);
-  const auto fits = [this](size_t size) { return size == 0 || size == tiles.tileCount(); };
-  file.require(fits(resumed->vertices.size()) && fits(resumed->cellSamples.size()),
-               "pass.vertices: are damaged");
-  resumed->vertices.resize(tiles.tileCount());
-  resumed->cellSamples.resize(tiles.tileCount());
 }
 
 Frame Frame::load(const Archive& file, OdisModel model, std::shared_ptr<const Tasks> tasks) {
   file.requireKind("frame");
-  const SavedOptions options(file, model);
-  // A damaged size must not cost more memory than the file has.
-  const std::vector<PixelSums> pilot = file.get<PixelSums>("frame.pilot");
-  file.require(uint64_t(options.frame.width) * options.frame.height == pilot.size(),
-               "frame.options: are damaged");
+  SavedFrame saved(file);
+  saved.options.guide.model = model;
   std::unique_ptr<Frame> frame;
   try {
-    frame = std::make_unique<Frame>(options.frame, std::move(tasks));
+    frame = std::make_unique<Frame>(saved.options.frame, std::move(tasks));
   } catch (const std::invalid_argument& error) {
     file.require(false, error.what());
   }
   Data& d = *frame->m_data;
-  file.require(file.value<uint64_t>("frame.model") == d.modelId, "was saved with another model");
-  d.hostData = file.get<uint8_t>("frame.hostData");
-  d.pilot = pilot;
-  d.later = file.get<PixelSums>("frame.later", pilot.size());
-  d.pixelValues = file.get<float>("frame.pixelValues");
-  file.require(d.pixelValues.empty() || d.pixelValues.size() == pilot.size(),
-               "frame.pixelValues: are damaged");
-  const std::vector<uint32_t> counts = file.get<uint32_t>("frame.counts");
-  file.require((counts.empty() || counts.size() == pilot.size()) && d.schedule.restore(counts),
-               "frame.counts: are damaged");
-  d.vertexCounts = file.value<VertexCounts>("frame.vertexCounts");
-  d.pilotVertices = loadTiles(file, "frame.pilotVertices");
-  d.oracleVertices = loadTiles(file, "frame.oracleVertices");
-  d.guide = Guide::load(file);
-  d.loadPosition(file);
-  if (file.contains("pass.tilesDone")) d.loadPass(file);
+  file.require(saved.modelId == d.modelId, "was saved with another model");
+  d.hostData = std::move(saved.hostData);
+  d.pilot = std::move(saved.pilot);
+  d.later = std::move(saved.later);
+  d.pixelValues = std::move(saved.pixelValues);
+  d.schedule = std::move(saved.schedule);
+  d.vertexCounts = saved.vertexCounts;
+  d.pilotVertices = std::move(saved.pilotVertices);
+  d.oracleVertices = std::move(saved.oracleVertices);
+  d.guide = std::move(saved.guide);
+  d.resumed = std::move(saved.pass);
+  d.moveTo(saved.position);
+  if (saved.position.builder) {
+    d.builder->load(file);
+    d.builder->adopt(d.guide);
+  } else {
+    d.builder.reset();
+  }
   return std::move(*frame);
 }
 

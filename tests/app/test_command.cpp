@@ -140,6 +140,23 @@ TEST_F(Odis, InspectsAPlace) {
   expectFailure("inspect room.xml --pixel 6,4 --integrator path", 2, "--integrator odis");
 }
 
+TEST_F(Odis, InspectsWhatAHostSaved) {
+  const std::string saved = ODIS_SOURCE "/fuzz/corpus/saved/";
+  const Outcome guide = run("inspect '" + saved + "guide' --point 0.5,0.5,0 -o cell.png --json cell.json");
+  ASSERT_EQ(guide.code, 0) << guide.text;
+  EXPECT_NE(guide.text.find("guide: a guide"), std::string::npos) << guide.text;
+  EXPECT_TRUE(exists("cell.png"));
+  std::ifstream stream(file("cell.json"));
+  EXPECT_EQ(nlohmann::json::parse(stream).at("cell").at("map").at("side"), 16);
+  ASSERT_EQ(run("inspect '" + saved + "guide' -o sheet.exr").code, 0);
+  EXPECT_EQ(odis::render::readExr(file("sheet.exr").string()).window.width, 8 + 8 * 104);
+  ASSERT_EQ(run("inspect '" + saved + "frame-guided' -o frame.exr").code, 0);
+  const odis::render::ExrFile image = odis::render::readExr(file("frame.exr").string());
+  EXPECT_EQ(image.window.width, 4);
+  EXPECT_EQ(image.channels.at("G")[5], 1);
+  EXPECT_NE(run("inspect '" + saved + "vertices'").text.find("by depth"), std::string::npos);
+}
+
 TEST_F(Odis, ImageTools) {
   ASSERT_EQ(run("render room.xml --integrator path -o a.exr --aov albedo -q").code, 0);
   ASSERT_EQ(run("render room.xml --integrator path --seed 1 -o b.exr --aov albedo -q").code, 0);

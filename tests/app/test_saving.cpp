@@ -38,8 +38,9 @@ TEST_F(SavedRenderings, KilledAtAnyMomentGoOn) {
 
 TEST_F(SavedRenderings, ATimeLimitLeavesAFileToGoOnWith) {
   ASSERT_EQ(run(kOptions + "-o whole.exr").code, 0);
-  const Outcome limited = run("render room.xml --resolution 150x100 --spp 24 --seed 4 --aov all --variance "
-                              "-o image.exr --save-every 60 --time-limit 0.03");
+  const Outcome limited =
+      run("render room.xml --resolution 150x100 --spp 24 --seed 4 --aov all --variance "
+          "-o image.exr --save-every 60 --time-limit 0.03");
   EXPECT_NE(limited.text.find("image.exr.odis: saved"), std::string::npos) << limited.text;
   ASSERT_TRUE(exists("image.exr.odis"));
   ASSERT_EQ(run(kOptions + "-o image.exr --resume image.exr.odis").code, 0);
@@ -49,9 +50,9 @@ TEST_F(SavedRenderings, ATimeLimitLeavesAFileToGoOnWith) {
 
   // Another rendering is refused, whatever makes it another one.
   const std::string resume = " -q -o other.exr --resume image.exr.odis --resolution 150x100";
-  for (const char* other : {"--spp 25 --seed 4 --aov all", "--spp 24 --seed 5 --aov all", "--spp 24 --seed 4",
-                            "--spp 24 --seed 4 --aov all --set pilot-spp=1",
-                            "--spp 24 --seed 4 --aov all --sampler independent"})
+  for (const char* other :
+       {"--spp 25 --seed 4 --aov all", "--spp 24 --seed 5 --aov all", "--spp 24 --seed 4",
+        "--spp 24 --seed 4 --aov all --set pilot-spp=1", "--spp 24 --seed 4 --aov all --sampler independent"})
     expectFailure("render room.xml " + std::string(other) + resume, 2, "is of another rendering, found \"");
   write("room.xml", "<scene version=\"3.0.0\"><emitter type=\"constant\"/></scene>");
   expectFailure("render room.xml --spp 24 --seed 4 --aov all" + resume, 2, "found \"files of the scene");

@@ -6,7 +6,6 @@
 #include <cmath>
 
 #include "learn/inspect/words.h"
-#include "render/image/magma.h"
 
 namespace odis::learn {
 
@@ -17,14 +16,8 @@ namespace {
 constexpr int kGap = 8, kText = 11, kSide = 6 * kTargetSize, kColumns = 7;
 constexpr int kWidth = kGap + kColumns * (kSide + kGap);
 constexpr int kRow = kText + kSide + kGap;
-constexpr float kLeastStops = -5, kMostStops = 7;  // where false colours begin and end
-constexpr float kSignedStops = 4;                  // likewise, of ratios
-const Rgb kBackground(0.02f), kInk(0.75f), kFrame(0.06f), kUnsampled(0.0f, 0.02f, 0.1f),
-    kMark(0.0f, 0.8f, 1.0f), kCellMark(1.0f, 0.45f, 0.0f);
-
-Rgb stopsColor(float stops) {
-  return render::magma((stops - kLeastStops) / (kMostStops - kLeastStops));
-}
+constexpr float kSignedStops = 4;  // likewise, of ratios
+const Rgb kFrame(0.06f), kMark(0.0f, 0.8f, 1.0f), kCellMark(1.0f, 0.45f, 0.0f);
 
 // Too little is blue, too much is red.
 Rgb signedColor(float stops) {
@@ -157,39 +150,28 @@ class Painter {
     for (const SampleDot& dot : dots) {
       const int x = std::clamp(int(dot.at.x * kSide), 0, kSide - 1),
                 y = std::clamp(int(dot.at.y * kSide), 0, kSide - 1);
-      const float stops = dot.value > 0 ? std::log2(dot.value) : kLeastStops;
+      const float stops = dot.value > 0 ? std::log2(dot.value) : kLeastMapStops;
       const int size = std::clamp(int(std::lround(3 + stops / 2)), 1, 7);
       const int px = std::clamp(x - size / 2, 0, kSide - size),
                 py = std::clamp(y - size / 2, 0, kSide - size);
       m_canvas.fill(m_left + px, m_top + kText + py, size, size,
-                    dot.value > 0 ? color(dot.value) + Rgb(0.03f) : Rgb(0.04f, 0.06f, 0.1f));
+                    dot.value > 0 ? mapColor(dot.value, m_colors) + Rgb(0.03f) : Rgb(0.04f, 0.06f, 0.1f));
     }
     caption(fmt::format("{} samples of the cell", m_in.samples.size()));
   }
 
-  Rgb color(float value) const {
-    if (std::isnan(value)) return kUnsampled;
-    if (m_colors == MapColors::values) return Rgb(value);
-    return value > 0 ? stopsColor(std::log2(value)) : Rgb(0.0f);
-  }
-
-  // Draws kSide x kSide pixels; `colorOf` knows the texel in column x and row y of `side` columns.
-  template <class ColorOf>
-  void square(int side, const ColorOf& colorOf) {
-    for (int y = 0; y < kSide; ++y)
-      for (int x = 0; x < kSide; ++x)
-        m_canvas.set(m_left + x, m_top + kText + y, colorOf(x * side / kSide, y * side / kSide));
-  }
-  void map(const SquareMap& values) {
-    square(values.side, [&](int x, int y) { return color(values.values[size_t(y * values.side + x)]); });
-  }
+  void map(const SquareMap& values) { drawMap(m_canvas, {m_left, m_top + kText}, kSide, values, m_colors); }
   void ratio(const SquareMap& of, const SquareMap& to) {
-    square(of.side, [&](int x, int y) {
-      const auto texel = size_t(y * of.side + x);
-      if (!(to.values[texel] > 0)) return of.values[texel] > 0 ? kFrame : Rgb(0.0f);
-      const float value = of.values[texel] / to.values[texel];
-      return m_colors == MapColors::values ? Rgb(value) : signedColor(std::log2(std::max(value, 1e-6f)));
-    });
+    for (int y = 0; y < kSide; ++y)
+      for (int x = 0; x < kSide; ++x) {
+        const int texel = y * of.side / kSide * of.side + x * of.side / kSide;
+        m_canvas.set(m_left + x, m_top + kText + y,
+                     ratioColor(of.values[size_t(texel)], to.values[size_t(texel)]));
+      }
+  }
+  Rgb ratioColor(float of, float to) const {
+    if (!(to > 0)) return of > 0 ? kFrame : Rgb(0.0f);
+    return m_colors == MapColors::values ? Rgb(of / to) : signedColor(std::log2(std::max(of / to, 1e-6f)));
   }
 
   // Bars: the probability of each group of lights; grey: by the hierarchy, orange: as learned.
@@ -215,17 +197,10 @@ class Painter {
   // What the colours mean.
   void scale() {
     if (m_colors == MapColors::values) return;
-    const auto bar = [&](float from, float to, const auto& colorOf, const std::string& text) {
-      constexpr int kBarWidth = 2 * kSide;
-      for (int x = 0; x < kBarWidth; ++x)
-        m_canvas.fill(m_left + x, m_top, 1, 8, colorOf(from + (to - from) * float(x) / (kBarWidth - 1)));
-      m_canvas.write(m_left + kBarWidth + kGap, m_top + 1, kWidth, text, kInk);
-      m_left += kBarWidth + kGap + kSide + kSide / 2 + kGap;
-    };
-    bar(kLeastStops, kMostStops, stopsColor,
-        fmt::format("{:+.0f} to {:+.0f} stops about an even map", kLeastStops, kMostStops));
-    bar(-kSignedStops, kSignedStops, signedColor,
-        fmt::format("too little, too much: {:+.0f} to {:+.0f} stops", -kSignedStops, kSignedStops));
+    drawScale(m_canvas, {m_left, m_top}, 2 * kSide, mapScale());
+    drawScale(m_canvas, {m_left + 3 * kSide + kSide / 2 + 2 * kGap, m_top}, 2 * kSide,
+              {-kSignedStops, kSignedStops, signedColor,
+               fmt::format("too little, too much: {:+.0f} to {:+.0f} stops", -kSignedStops, kSignedStops)});
   }
 
   const Inspection& m_in;

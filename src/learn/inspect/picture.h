@@ -4,12 +4,9 @@
 #include <nlohmann/json.hpp>
 
 #include "learn/inspect/inspect.h"
-#include "learn/scenes/canvas.h"
+#include "learn/inspect/map_drawing.h"
 
 namespace odis::learn {
-
-// Values of maps over an even one: in false colours of stops, or as they are.
-enum class MapColors { stops, values };
 
 // Everything side by side. The canvas is linear, to be written without a tone curve.
 Canvas drawInspection(const Inspection& inspection, const std::string& title, MapColors colors);

@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "learn/inspect/json_values.h"
 #include "learn/inspect/picture.h"
 #include "learn/inspect/words.h"
 
@@ -26,18 +27,6 @@ std::string lightName(const render::LightGroup& group) {
                      at.z);
 }
 
-// JSON has no infinity and no such thing as not a number.
-nlohmann::ordered_json jsonNumber(double value) {
-  return std::isfinite(value) ? nlohmann::ordered_json(value) : nlohmann::ordered_json();
-}
-nlohmann::ordered_json jsonVector(const Float3& v) {
-  return {jsonNumber(v.x), jsonNumber(v.y), jsonNumber(v.z)};
-}
-nlohmann::ordered_json jsonMap(const SquareMap& map) {
-  nlohmann::ordered_json values = nlohmann::ordered_json::array();
-  for (const float value : map.values) values.push_back(jsonNumber(value));
-  return {{"side", map.side}, {"values", values}};
-}
 nlohmann::ordered_json jsonJudgement(const Judgement& j, const Judgement& truth) {
   return {{"entropy", jsonNumber(j.entropy)},
           {"divergence", jsonNumber(j.divergence)},
@@ -77,8 +66,7 @@ std::string inspectionText(const Inspection& in, const std::string& title) {
     out += judgementRow(fmt::format("histogram of level {}", l.statistics.level), l.judgement, truth);
   out += judgementRow("converged", truth, truth);
   for (const MapView& map : in.maps)
-    out += fmt::format("BSDF fraction by {}: diffuse {:.2g}, rough {:.2g}, glossy {:.2g}\n", map.name,
-                       map.bsdfFraction[0], map.bsdfFraction[1], map.bsdfFraction[2]);
+    out += fmt::format("BSDF fraction by {}: {}\n", map.name, fractionWords(map.bsdfFraction));
 
   if (!in.groups.empty())
     out += fmt::format("\n{:<6} {:<36} {:>9} {:>9} {:>11} {:>11}\n", "group", "lights", "unlearned",

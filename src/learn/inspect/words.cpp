@@ -8,18 +8,27 @@ namespace odis::learn {
 
 namespace {
 
-std::string vectorText(const Float3& v) {
-  return fmt::format("{:.4g},{:.4g},{:.4g}", v.x, v.y, v.z);
-}
 std::string roundedText(float value) {
   return std::isnan(value) ? "-" : fmt::format("{:.3g}", value);
 }
 
 }  // namespace
 
+std::string vectorText(const Float3& v) {
+  return fmt::format("{:.4g},{:.4g},{:.4g}", v.x, v.y, v.z);
+}
+
 const char* className(int roughnessClass) {
   constexpr const char* kNames[kRoughnessClasses] = {"diffuse", "rough", "glossy"};
   return kNames[roughnessClass];
+}
+
+std::string boundsWords(const Bounds& b) {
+  return b.low.x <= b.high.x ? vectorText(b.low) + " to " + vectorText(b.high) : "nowhere";
+}
+
+std::string fractionWords(const float* ofClasses) {
+  return fmt::format("diffuse {:.2g}, rough {:.2g}, glossy {:.2g}", ofClasses[0], ofClasses[1], ofClasses[2]);
 }
 
 std::string placeWords(const Inspection& in) {
@@ -38,10 +47,8 @@ std::string cellWords(const Inspection& in) {
 }
 
 std::vector<std::string> decisionWords(const Inspection& in) {
-  const float* bsdfFraction = in.cell.bsdfFraction;
   return {
-      fmt::format("BSDF fraction: diffuse {:.2g}, rough {:.2g}, glossy {:.2g}; here {:.2g}", bsdfFraction[0],
-                  bsdfFraction[1], bsdfFraction[2], in.bsdfFraction),
+      fmt::format("BSDF fraction: {}; here {:.2g}", fractionWords(in.cell.bsdfFraction), in.bsdfFraction),
       fmt::format("survival {:.2f} at throughput 1, survival factor {:.3g}, pixel {:.3g}", in.survival,
                   in.cell.survivalFactor, in.pixelValue),
       fmt::format("mean outgoing radiance {}", vectorText(in.cell.outgoingRadiance)),
@@ -55,6 +62,20 @@ std::vector<std::string> decisionWords(const Inspection& in) {
                   roundedText(in.converged.judgement.bestMoment))};
 }
 
+std::string savedCellWords(const CellSummary& cell) {
+  return fmt::format("cell {}: level {}, {:.4g} wide around {}, facing {}", cell.cell, cell.level, cell.edge,
+                     vectorText(cell.middle), vectorText(cell.normal));
+}
+
+std::vector<std::string> savedDecisionWords(const CellSummary& cell) {
+  const CellDecisions& d = cell.decisions;
+  return {"BSDF fraction: " + fractionWords(d.bsdfFraction),
+          fmt::format("survival factor {:.3g}; mean outgoing radiance {}", d.survivalFactor,
+                      vectorText(d.outgoingRadiance)),
+          fmt::format("lights: {:.0f} % of the choices are learned", 100 * d.learnedLightFraction),
+          fmt::format("entropy {:.2f} bits", cell.entropy)};
+}
+
 std::vector<std::string> mapWords(const Inspection& in, const MapView& map) {
   const Judgement &own = map.judgement, &truth = in.converged.judgement;
   return {fmt::format("entropy {:.2f} bits (converged: {:.2f})", own.entropy, truth.entropy),
@@ -63,8 +84,7 @@ std::vector<std::string> mapWords(const Inspection& in, const MapView& map) {
                       roundedText(own.moment / truth.moment)),
           fmt::format("at its best BSDF fraction {:.2g}: {}, {} x converged's", own.bestBsdfFraction,
                       roundedText(own.bestMoment), roundedText(own.bestMoment / truth.bestMoment)),
-          fmt::format("BSDF fraction by this map: diffuse {:.2g}, rough {:.2g}, glossy {:.2g}",
-                      map.bsdfFraction[0], map.bsdfFraction[1], map.bsdfFraction[2])};
+          "BSDF fraction by this map: " + fractionWords(map.bsdfFraction)};
 }
 
 }  // namespace odis::learn

@@ -11,7 +11,6 @@ namespace fs = std::filesystem;
 
 namespace {
 
-constexpr std::string_view kArchiveMagic = "ODISSAVE";
 constexpr uint32_t kArchiveFormat = 1;
 
 template <class Integer>
@@ -60,25 +59,28 @@ class Cursor {
 ArchiveWriter::ArchiveWriter(std::string_view kind) : m_kind(kind) {}
 
 void ArchiveWriter::addBytes(const std::string& name, uint32_t elementBytes, std::string_view bytes) {
-  putText(m_arrays, name);
-  putInteger(m_arrays, elementBytes);
-  putInteger(m_arrays, uint64_t(bytes.size() / elementBytes));
-  m_arrays += bytes;
-  ++m_count;
+  std::string& array = m_arrays.emplace_back();
+  array.reserve(name.size() + 2 * sizeof(uint32_t) + sizeof(uint64_t) + bytes.size());
+  putText(array, name);
+  putInteger(array, elementBytes);
+  putInteger(array, uint64_t(bytes.size() / elementBytes));
+  array += bytes;
 }
 
-std::string ArchiveWriter::head() const {
-  std::string head(kArchiveMagic);
+void ArchiveWriter::write(std::ostream& stream) const {
+  uint32_t crc = 0;
+  const auto put = [&](const std::string& bytes) {
+    stream.write(bytes.data(), std::streamsize(bytes.size()));
+    crc = crc32(bytes, crc);
+  };
+  std::string head(kArchiveMagic), checksum;
   putInteger(head, kArchiveFormat);
   putText(head, m_kind);
-  putInteger(head, m_count);
-  return head;
-}
-
-std::string ArchiveWriter::checksum(std::string_view head) const {
-  std::string bytes;
-  putInteger(bytes, crc32(m_arrays, crc32(head)));
-  return bytes;
+  putInteger(head, uint32_t(m_arrays.size()));
+  put(head);
+  for (const std::string& array : m_arrays) put(array);
+  putInteger(checksum, crc);
+  put(checksum);
 }
 
 void ArchiveWriter::write(const std::string& path) const {
@@ -86,8 +88,7 @@ void ArchiveWriter::write(const std::string& path) const {
   std::error_code error;
   {
     std::ofstream stream(temporary, std::ios::binary);
-    const std::string first = head();
-    stream << first << m_arrays << checksum(first);
+    write(stream);
     stream.close();
     if (!stream) {
       fs::remove(temporary, error);

@@ -13,6 +13,7 @@
 #include <cstdint>
 #include <cstring>
 #include <map>
+#include <ostream>
 #include <span>
 #include <stdexcept>
 #include <string>
@@ -21,6 +22,8 @@
 #include <vector>
 
 namespace odis::core {
+
+inline constexpr std::string_view kArchiveMagic = "ODISSAVE";
 
 // What can't be read or written, or is damaged. Names the file.
 class FileError : public std::runtime_error {
@@ -46,17 +49,15 @@ class ArchiveWriter {
     add(name, std::span<const T>(&value, 1));
   }
 
+  void write(std::ostream& stream) const;
   // Replaces the file when all is written. Throws FileError.
   void write(const std::string& path) const;
 
  private:
   void addBytes(const std::string& name, uint32_t elementBytes, std::string_view bytes);
-  // All before the arrays, and what follows them.
-  std::string head() const;
-  std::string checksum(std::string_view head) const;
 
-  std::string m_kind, m_arrays;
-  uint32_t m_count = 0;
+  std::string m_kind;
+  std::vector<std::string> m_arrays;  // each as it is written
 };
 
 class Archive {

@@ -24,6 +24,14 @@ struct Model {
   static Model parse(const std::string& path, std::string_view bytes);
 };
 
+// A number that is the same for models that decide the same: which networks there are in the upper half,
+// the checksum of their weights in the lower one.
+inline constexpr uint64_t kDirectionNetwork = uint64_t(1) << 32, kLightNetwork = uint64_t(2) << 32;
+inline uint64_t idOf(const Model& model) {
+  const uint64_t networks = (model.directions ? kDirectionNetwork : 0) | (model.lights ? kLightNetwork : 0);
+  return networks | (networks > 0 ? model.checksum : 0);
+}
+
 }  // namespace odis::core
 
 // What a handle of a model points to.

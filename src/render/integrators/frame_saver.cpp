@@ -26,13 +26,11 @@ void append(std::vector<uint8_t>& bytes, const std::vector<T>& elements) {
 
 std::vector<uint8_t> hostDataOf(const RenderJob& job) {
   const RenderStats& stats = job.stats;
-  const std::string text = json{{"subject", job.options().saving.subject},
-                                {"rays", stats.rays},
-                                {"shadowRays", stats.shadowRays},
-                                {"secondsPilot", stats.secondsPilot},
-                                {"secondsBuild", stats.secondsBuild},
-                                {"secondsGuided", stats.secondsGuided}}
-                               .dump();
+  const std::string text =
+      json{{"subject", job.options().saving.subject}, {"rays", stats.rays},
+           {"shadowRays", stats.shadowRays},          {"secondsPilot", stats.secondsPilot},
+           {"secondsBuild", stats.secondsBuild},      {"secondsGuided", stats.secondsGuided}}
+          .dump();
   std::vector<uint8_t> bytes;
   for (size_t i = 0; i < kLengthBytes; ++i) bytes.push_back(uint8_t(uint64_t(text.size()) >> (8 * i)));
   bytes.insert(bytes.end(), text.begin(), text.end());

@@ -1,0 +1,134 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "learn/inspect/summaries.h"
+#include "odis/models/model.h"
+
+namespace odis::learn {
+
+namespace {
+
+template <class T>
+void noteOption(std::vector<ChosenOption>& options, const std::string& name, const T& value, const T& usual) {
+  if (value != usual) options.push_back({name, fmt::format("{}", value)});
+}
+
+std::vector<ChosenOption> chosenOptions(const core::SavedOptions& saved) {
+  const core::FrameOptions frame;
+  const core::GuideOptions guide;
+  std::vector<ChosenOption> chosen;
+  const auto ofFrame = [&](const char* name, auto member) {
+    noteOption(chosen, name, saved.frame.*member, frame.*member);
+  };
+  const auto ofGuide = [&](const char* name, auto member) {
+    noteOption(chosen, name, saved.guide.*member, guide.*member);
+  };
+  ofFrame("samplesPerPixel", &core::FrameOptions::samplesPerPixel);
+  ofFrame("refinementSamples", &core::FrameOptions::refinementSamples);
+  ofFrame("seed", &core::FrameOptions::seed);
+  ofFrame("pilotSamplesPerPixel", &core::FrameOptions::pilotSamplesPerPixel);
+  ofFrame("pilotWeight", &core::FrameOptions::pilotWeight);
+  ofFrame("oracleSamples", &core::FrameOptions::oracleSamples);
+  ofFrame("guided", &core::FrameOptions::guided);
+  ofFrame("adaptive", &core::FrameOptions::adaptive);
+  ofFrame("keepPilotVertices", &core::FrameOptions::keepPilotVertices);
+  ofGuide("cellsPerDiagonal", &core::GuideOptions::cellsPerDiagonal);
+  for (size_t level = 0; level < kCellLevels; ++level)
+    noteOption(chosen, fmt::format("priorSamples[{}]", level), saved.guide.priorSamples[level],
+               guide.priorSamples[level]);
+  ofGuide("floor", &core::GuideOptions::floor);
+  ofGuide("clamp", &core::GuideOptions::clamp);
+  ofGuide("fixedBsdfFraction", &core::GuideOptions::fixedBsdfFraction);
+  ofGuide("controlVariate", &core::GuideOptions::controlVariate);
+  ofGuide("lightGroups", &core::GuideOptions::lightGroups);
+  ofGuide("lightPartCount", &core::GuideOptions::lightPartCount);
+  return chosen;
+}
+
+std::string modelText(uint64_t id) {
+  if (id == 0) return "formulas";
+  const auto part = [&](uint64_t network) { return (id & network) != 0 ? "a network" : "a formula"; };
+  return fmt::format("directions by {}, lights by {}, weights {:08x}", part(core::kDirectionNetwork),
+                     part(core::kLightNetwork), uint32_t(id));
+}
+
+// Where a frame is between its first sample and its last.
+std::string stateText(const core::SavedFrame& saved) {
+  const core::FramePosition& at = saved.position;
+  const uint32_t all = saved.schedule.mostRemaining();
+  if (at.finished) return "ended before it was complete";
+  if (at.next == ODIS_PASS_GUIDED && at.done >= all) return "complete";
+  const std::string where = saved.pass ? "within " : "before ";
+  if (at.next == ODIS_PASS_PILOT) return where + "the pilot";
+  if (at.next == ODIS_PASS_ORACLE)
+    return where +
+           fmt::format("pass {} of {} of the oracle", at.oraclePasses + 1, saved.options.frame.oracleSamples);
+  return where + fmt::format("a guided pass: samples {} to {} of at most {} after the pilot", at.done + 1,
+                             saved.schedule.passEnd(at.done), all);
+}
+
+std::optional<VertexSummary> keptVertices(const core::VertexTiles& tiles) {
+  const std::vector<ArrayView<const PathVertex>> parts(tiles.begin(), tiles.end());
+  VertexSummary summary = summarizeVertices(parts);
+  if (summary.count == 0) return std::nullopt;
+  return summary;
+}
+
+BuilderSummary summarizeBuilder(const core::Archive& file) {
+  BuilderSummary result;
+  for (const uint64_t key : file.get<uint64_t>("cells.keys")) {
+    file.require(CellGrid::levelOf(key) < kCellLevels, "cells.keys: are damaged");
+    ++result.cells[size_t(CellGrid::levelOf(key))];
+  }
+  result.counts = file.value<VertexCounts>("cells.counts");
+  result.coarsening = file.value<int32_t>("cells.coarsening");
+  result.samplesLeftOut = file.value<uint64_t>("cells.leftOut");
+  return result;
+}
+
+void addImage(FrameSummary& result, const core::SavedFrame& saved) {
+  const auto pixels = uint32_t(saved.pilot.size());
+  result.fewest = UINT64_MAX;
+  for (uint32_t pixel = 0; pixel < pixels; ++pixel) {
+    const PixelSums &pilot = saved.pilot[pixel], &later = saved.later[pixel];
+    const WeightedSums parts[] = {
+        {&pilot, core::pilotWeight(saved.options.frame, saved.schedule, pixel, later)}, {&later, 1}};
+    const Float3 color = weightedMean({parts, 2}).color;
+    result.image.emplace_back(color.x, color.y, color.z);
+    result.luminance += luminance(color) / double(pixels);
+    const uint64_t samples = uint64_t(pilot.count) + later.count;
+    result.samples += samples;
+    result.rays += uint64_t(pilot.rays) + later.rays;
+    result.fewest = std::min(result.fewest, samples);
+    result.most = std::max(result.most, samples);
+  }
+}
+
+}  // namespace
+
+FrameSummary summarizeFrame(const core::SavedFrame& saved, const core::Archive& file) {
+  FrameSummary result;
+  result.width = saved.options.frame.width;
+  result.height = saved.options.frame.height;
+  result.options = chosenOptions(saved.options);
+  result.model = saved.options.frame.guided ? modelText(saved.modelId) : "none";
+  result.state = stateText(saved);
+  if (saved.pass) {
+    result.tiles = saved.pass->tilesDone.size();
+    for (const uint8_t done : saved.pass->tilesDone) result.tilesDone += done != 0;
+    result.passVertices = keptVertices(saved.pass->vertices);
+  }
+  addImage(result, saved);
+  result.notFinite = saved.position.notFinite;
+  result.guides = saved.position.guidesBuilt;
+  result.vertexCounts = saved.vertexCounts;
+  result.vertexCounts.outsideFrame += saved.position.outsideFrame;
+  result.pilotVertices = keptVertices(saved.pilotVertices);
+  result.oracleVertices = keptVertices(saved.oracleVertices);
+  if (saved.position.builder) result.builder = summarizeBuilder(file);
+  result.hostBytes = saved.hostData.size();
+  return result;
+}
+
+}  // namespace odis::learn

@@ -1,0 +1,115 @@
+#include "learn/inspect/json_values.h"
+#include "learn/inspect/saved_output.h"
+
+namespace odis::learn {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json jsonQuantiles(const Quantiles& q) {
+  return {jsonNumber(q.low), jsonNumber(q.middle), jsonNumber(q.high)};
+}
+Json jsonBounds(const Bounds& box) {
+  return {{"low", jsonVector(box.low)}, {"high", jsonVector(box.high)}};
+}
+Json jsonCounts(const VertexCounts& c) {
+  return {{"accepted", c.accepted},        {"discrete", c.discrete}, {"notFinite", c.notFinite},
+          {"noDensity", c.noDensity},      {"notUnit", c.notUnit},   {"noDepth", c.noDepth},
+          {"outsideFrame", c.outsideFrame}};
+}
+
+Json jsonGuide(const GuideSummary& guide) {
+  const GuideView view = guide.guide.view();
+  Json fractions = Json::array();
+  for (const Quantiles& q : guide.bsdfFraction) fractions.push_back(jsonQuantiles(q));
+  return {{"cells", guide.cells},
+          {"finestEdge", jsonNumber(guide.finestEdge)},
+          {"bounds", jsonBounds(guide.bounds)},
+          {"bytes", guide.guide.bytes()},
+          {"lightGroups", view.lightGroups},
+          {"predictedVarianceRatio", jsonNumber(guide.guide.predictedVarianceRatio())},
+          {"quantiles",
+           {{"at", {0.1, 0.5, 0.9}},
+            {"bsdfFraction", fractions},
+            {"entropy", jsonQuantiles(guide.entropy)},
+            {"survivalFactor", jsonQuantiles(guide.survivalFactor)},
+            {"learnedLightFraction", jsonQuantiles(guide.learnedLightFraction)}}}};
+}
+
+Json jsonCell(const CellSummary& cell) {
+  return {{"cell", cell.cell},
+          {"level", cell.level},
+          {"edge", jsonNumber(cell.edge)},
+          {"middle", jsonVector(cell.middle)},
+          {"normal", jsonVector(cell.normal)},
+          {"bsdfFraction", cell.decisions.bsdfFraction},
+          {"survivalFactor", jsonNumber(cell.decisions.survivalFactor)},
+          {"outgoingRadiance", jsonVector(cell.decisions.outgoingRadiance)},
+          {"learnedLightFraction", cell.decisions.learnedLightFraction},
+          {"lights", cell.lights},
+          {"entropy", cell.entropy},
+          {"map", jsonMap(cell.map)}};
+}
+
+Json jsonVertices(const VertexSummary& v) {
+  return {{"count", v.count},
+          {"counts", jsonCounts(v.counts)},
+          {"depths", v.depth},
+          {"discrete", v.discrete},
+          {"scattersBothSides", v.scattersBothSides},
+          {"bounds", jsonBounds(v.bounds)},
+          {"pixels", {v.firstPixel, v.lastPixel}},
+          {"samples", {v.firstSample, v.lastSample}},
+          {"quantiles",
+           {{"at", {0.1, 0.5, 0.9}},
+            {"distance", jsonQuantiles(v.distance)},
+            {"radiance", jsonQuantiles(v.radiance)},
+            {"pdf", jsonQuantiles(v.pdf)}}}};
+}
+Json jsonKept(const std::optional<VertexSummary>& vertices) {
+  return vertices ? jsonVertices(*vertices) : Json();
+}
+
+Json jsonFrame(const FrameSummary& f) {
+  Json options = Json::object();
+  for (const ChosenOption& option : f.options) options[option.name] = option.value;
+  Json builder;
+  if (f.builder)
+    builder = {{"cells", f.builder->cells},
+               {"counts", jsonCounts(f.builder->counts)},
+               {"coarsening", f.builder->coarsening},
+               {"samplesLeftOut", f.builder->samplesLeftOut}};
+  return {{"size", {f.width, f.height}},
+          {"state", f.state},
+          {"tiles", f.tiles},
+          {"tilesDone", f.tilesDone},
+          {"model", f.model},
+          {"options", options},
+          {"samples", f.samples},
+          {"fewestOfAPixel", f.fewest},
+          {"mostOfAPixel", f.most},
+          {"rays", f.rays},
+          {"luminance", jsonNumber(f.luminance)},
+          {"notFinite", f.notFinite},
+          {"guidesBuilt", f.guides},
+          {"vertexCounts", jsonCounts(f.vertexCounts)},
+          {"pilotVertices", jsonKept(f.pilotVertices)},
+          {"oracleVertices", jsonKept(f.oracleVertices)},
+          {"passVertices", jsonKept(f.passVertices)},
+          {"builder", builder},
+          {"hostBytes", f.hostBytes}};
+}
+
+}  // namespace
+
+Json toJson(const SavedInspection& in) {
+  Json result{{"kind", in.kind}};
+  if (in.frame) result["frame"] = jsonFrame(*in.frame);
+  if (in.guide) result["guide"] = jsonGuide(*in.guide);
+  if (in.cell) result["cell"] = jsonCell(*in.cell);
+  if (in.vertices) result["vertices"] = jsonVertices(*in.vertices);
+  return result;
+}
+
+}  // namespace odis::learn

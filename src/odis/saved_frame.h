@@ -1,0 +1,46 @@
+// What a saved frame says by itself, whatever model it has.
+#pragma once
+
+#include "odis/files/archive.h"
+#include "odis/frame_data.h"
+
+namespace odis::core {
+
+// Where a frame is between its first sample and its last.
+struct FramePosition {
+  uint64_t guidesBuilt, notFinite, outsideFrame, buildingBytes, pilotVertices;
+  uint32_t next, oraclePasses, done, finished, builder;
+};
+
+// The options of a saved frame, and what they point to.
+struct SavedOptions {
+  explicit SavedOptions(const Archive& file);
+  SavedOptions(const SavedOptions&) = delete;
+
+  FrameOptions frame;
+  GuideOptions guide;  // without a model
+  std::vector<OdisLightParts> lightParts;
+};
+
+// All of a frame but what its builder has gathered. Throws FileError.
+struct SavedFrame {
+  explicit SavedFrame(const Archive& file);
+
+  SavedOptions options;
+  uint64_t modelId;
+  std::vector<uint8_t> hostData;
+  std::vector<PixelSums> pilot, later;
+  std::vector<float> pixelValues;
+  Schedule schedule;
+  FramePosition position;
+  VertexCounts vertexCounts;
+  VertexTiles pilotVertices, oracleVertices;
+  Guide guide;
+  std::unique_ptr<ResumedPass> pass;  // null between passes
+
+ private:
+  void readPosition(const Archive& file);
+  void readPass(const Archive& file);
+};
+
+}  // namespace odis::core
