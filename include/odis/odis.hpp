@@ -226,7 +226,7 @@ class GuideBuilder : public Handle<OdisGuideBuilder, odisRetainGuideBuilder, odi
 // hold, not `guide`.
 struct FrameOptions : OdisFrameOptions {
   GuideOptions guide;
-  std::optional<GuideBuilder> builder;
+  std::optional<GuideBuilder> builder = std::nullopt;
 };
 
 class Frame : public Handle<OdisFrame, odisRetainFrame, odisReleaseFrame> {

@@ -111,7 +111,7 @@ void bindFrameOptions(nb::module_& module) {
           [](FrameOptions* self, uint32_t width, uint32_t height, uint32_t samplesPerPixel,
              uint32_t refinementSamples, uint64_t seed, double pilotSamplesPerPixel, float pilotWeight,
              uint32_t oracleSamples, bool guided, bool adaptive, std::optional<GuideOptions> guide) {
-            new (self) FrameOptions{{}, guide ? *guide : GuideOptions(), {}};
+            new (self) FrameOptions{{}, guide ? *guide : GuideOptions()};
             self->width = width;
             self->height = height;
             self->samplesPerPixel = samplesPerPixel;
