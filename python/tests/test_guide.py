@@ -201,6 +201,8 @@ class Threads(unittest.TestCase):
         fields = made_up.vertices(100000)
         builder = odis.GuideBuilder()
         builder.add(fields)
+        # Where a shell started this in the background, Ctrl-C is ignored.
+        self.addCleanup(signal.signal, signal.SIGINT, signal.signal(signal.SIGINT, signal.default_int_handler))
         main = threading.get_ident()
         other = threading.Thread(target=lambda: signal.pthread_kill(main, signal.SIGINT))
         with self.assertRaises(KeyboardInterrupt):

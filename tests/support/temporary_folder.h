@@ -1,10 +1,8 @@
 // A folder of its own for the files of one test, removed at its end.
 #pragma once
 
-#include <unistd.h>
-
 #include <filesystem>
-#include <stdexcept>
+#include <random>
 #include <string>
 
 namespace odis::test {
@@ -12,9 +10,10 @@ namespace odis::test {
 class TemporaryFolder {
  public:
   TemporaryFolder() {
-    std::string pattern = (std::filesystem::temp_directory_path() / "odis-test-XXXXXX").string();
-    if (!mkdtemp(pattern.data())) throw std::runtime_error("cannot make a temporary folder");
-    m_path = pattern;
+    std::random_device random;
+    do {
+      m_path = std::filesystem::temp_directory_path() / ("odis-test-" + std::to_string(random()));
+    } while (!std::filesystem::create_directory(m_path));
   }
   ~TemporaryFolder() {
     std::error_code ignored;
