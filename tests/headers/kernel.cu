@@ -51,8 +51,8 @@ ODIS_HOST_DEVICE float scatterAt(const odis::GuideView& view, const odis::Place&
   return result;
 }
 
-__global__ void scatter(odis::GuideView view, const odis::Place* places, const float2* numbers, uint32_t count,
-                        float* results) {
+__global__ void scatter(odis::GuideView view, const odis::Place* places, const float2* numbers,
+                        uint32_t count, float* results) {
   const uint32_t i = blockIdx.x * blockDim.x + threadIdx.x;
   if (i < count) results[i] = scatterAt(view, places[i], numbers[i].x, numbers[i].y);
 }
