@@ -93,7 +93,7 @@ void RenderArguments::addTo(CLI::App& app) {
       ->check(within(0.0, 1e9))
       ->capture_default_str();
   app.add_option("--save-every", saveMinutes,
-                 "Save all there is every so many minutes to OUTPUT.odis, and when interrupted; 0: never")
+                 "Minutes between saves of the unfinished rendering to OUTPUT.odis, for --resume; 0: none")
       ->check(within(0.0, 1e6))
       ->capture_default_str();
   app.add_option("--resume", resume,

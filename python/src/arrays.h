@@ -24,7 +24,7 @@ std::string describe(const Array& array);
 // Raises ValueError: "NAME: expected EXPECTED, found FOUND".
 [[noreturn]] void refuseArray(const char* name, const std::string& expected, const std::string& found);
 // Raises ValueError unless the array lies in memory that the CPU reads, holds elements of this type, and has
-// one dimension (`columns` is 0) or rows of so many `columns`, `count` elements or rows in all.
+// one dimension (`columns` is 0) or two, rows and `columns`; `count` is the number of elements or rows.
 void requireArray(const Array& array, const char* name, nb::dlpack::dtype type, size_t columns, size_t count);
 
 // The rows of an array with any strides; an array of one dimension has rows of one number.

@@ -28,7 +28,8 @@ inline bool goOn(void*, double) {
   return PyErr_CheckSignals() == 0;
 }
 
-// Which calls of one object are under way: any number that may be made at once, or a single other one.
+// The calls of one object that are under way: several of a kind that may run at once, or one that must run
+// alone.
 class Calls {
  public:
   // A call that others of its kind may be made beside.

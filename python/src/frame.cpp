@@ -263,8 +263,9 @@ threads at once, everything else by one at a time.)");
   frame.def(
       nb::init<const FrameOptions&, const LoggingContext*, const Builder*>(), "options"_a,
       "context"_a = nb::none(), "builder"_a = nb::none(),
-      R"(builder: the GuideBuilder to learn into, whose options hold in the place of options.guide; it may
-    know of earlier frames, and is used by nobody else until the frame has ended. None: one of its own.
+      R"(builder: a GuideBuilder that the frame adds its vertices to, and that may hold those of earlier frames. Its
+    own options apply, options.guide is ignored. Nothing else may use it until the frame has ended. None: the
+    frame makes one.
 
 Raises Error (INVALID_ARGUMENT) for an option out of its range.)");
   bindPasses(frame);

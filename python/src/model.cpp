@@ -26,9 +26,9 @@ void bindModel(nb::module_& module) {
           },
           "data"_a, "context"_a = nb::none(), "The networks of a file's bytes. Raises Error (FILE).")
       .def("with_direction_formula", &Model::withDirectionFormula,
-           "This model with a formula in the place of the network for directions.")
+           "A model like this one, with a formula instead of the network for directions.")
       .def("with_light_formula", &Model::withLightFormula,
-           "This model with a formula in the place of the network for the choice of lights.");
+           "A model like this one, with a formula instead of the network for the choice of lights.");
 }
 
 }  // namespace odis::python

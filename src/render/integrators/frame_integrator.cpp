@@ -76,8 +76,9 @@ void FrameIntegrator::trace(const FramePass& framePass) {
     m_job.count(
         runPass(passOf(framePass), m_job.progress(), [this] { return m_job.stop() || m_saver.isDue(); }));
     seconds += tracing.seconds();
-    complete = m_job.stop() || !m_saver.isDue();
-    if (m_job.stop() || m_saver.isDue()) m_saver.save(m_frame);
+    const bool interrupted = m_job.stop(), due = m_saver.isDue();
+    complete = interrupted || !due;
+    if (interrupted || due) m_saver.save(m_frame);
   }
 }
 
