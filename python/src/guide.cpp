@@ -1,4 +1,5 @@
 // Guide: its arrays, shown where they lie. Look-ups are in lookups.cpp.
+#include <nanobind/stl/array.h>
 #include <nanobind/stl/filesystem.h>
 
 #include <odis/odis.hpp>
@@ -32,6 +33,11 @@ Result shownDecision(const Self& self, size_t offset, size_t columns) {
   if (columns == 0) return shown<Result>(self, data, {view.cellCount}, {kDecisionFloats});
   return shown<Result>(self, data, {view.cellCount, columns}, {kDecisionFloats, 1});
 }
+
+struct Rules {
+  GuideRules decisions;
+  float rim;
+};
 
 using Floats = NumpyArray<const float, -1>;
 using FloatRows = NumpyArray<const float, -1, 3>;
@@ -112,7 +118,28 @@ void bindDecisions(nb::class_<Guide>& guide) {
 
 }  // namespace
 
+void bindRules(nb::module_& module) {
+  nb::class_<Rules>(module, "GuideRules", "The constants of a host's own look-ups (odis/guide_view.h).")
+      .def_prop_ro(
+          "roughness_bounds", [](const Rules& self) { return std::to_array(self.decisions.roughnessBounds); },
+          "Lower bounds of the roughness of the classes: diffuse, rough, glossy.")
+      .def_prop_ro(
+          "least_survival", [](const Rules& self) { return self.decisions.leastSurvival; },
+          "The least probability of survival.")
+      .def_prop_ro(
+          "full_shadow_ray_contribution",
+          [](const Rules& self) { return self.decisions.fullShadowRayContribution; },
+          "Light that adds less than this fraction of the pixel's value gets a shadow ray only sometimes.")
+      .def_prop_ro(
+          "least_shadow_ray_probability",
+          [](const Rules& self) { return self.decisions.leastShadowRayProbability; },
+          "And at least with this probability.")
+      .def_prop_ro(
+          "rim", [](const Rules& self) { return self.rim; }, "What maps add to every cosine.");
+}
+
 void bindGuide(nb::module_& module) {
+  bindRules(module);
   nb::class_<Guide> guide(
       module, "Guide", R"(What was learned: nested cells in world space, a sampling map and decisions in each.
 
@@ -138,7 +165,20 @@ and keep it alive. About 830 bytes a cell.)");
           "Number of groups of lights that it knows of.")
       .def_prop_ro(
           "finest_edge", [](const Guide& self) { return 1 / self.view().grid.inverseEdge; },
-          "Edge of the finest cells, in world space; those of the next levels are twice as long.");
+          "Edge of the finest cells, in world space; those of the next levels are twice as long.")
+      .def_prop_ro(
+          "origin",
+          [](const Guide& self) {
+            const Float3 origin = self.view().grid.origin;
+            return std::array<float, 3>{origin.x, origin.y, origin.z};
+          },
+          "Corner of the cells whose coordinates are 0, in world space.")
+      .def_prop_ro(
+          "rules",
+          [](const Guide& self) {
+            return Rules{self.view().rules, self.view().maps.rim};
+          },
+          "The constants of the rules that a host's own look-ups follow.");
   bindMaps(guide);
   bindDecisions(guide);
   bindLookups(guide);

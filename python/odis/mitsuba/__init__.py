@@ -1,0 +1,28 @@
+"""The integrator `odis` for Mitsuba 3: path tracing that is guided by what its first samples saw. docs/mitsuba.md.
+
+    import mitsuba as mi
+    mi.set_variant("llvm_ad_rgb")
+    import odis.mitsuba
+
+    scene = mi.load_file("scene.xml")
+    image = mi.render(scene, integrator=mi.load_dict({"type": "odis"}), spp=16)
+
+Importing it registers the integrator for the variants of Mitsuba that it works in, also those that are set later.
+"""
+
+import mitsuba as mi
+
+_registered = set()
+
+
+def _register(*_):
+    variant = mi.variant()
+    if variant is None or variant in _registered:
+        return
+    from .integrator import make_integrator
+    mi.register_integrator("odis", make_integrator())
+    _registered.add(variant)
+
+
+_register()
+mi.detail.add_variant_callback(_register)

@@ -1,0 +1,232 @@
+"""The integrator `odis`."""
+
+import time
+from collections import defaultdict
+from contextlib import contextmanager
+
+import drjit as dr
+import mitsuba as mi
+import numpy as np
+
+import odis
+
+from . import path, recording
+from .arrays import array_of
+from .guide_tables import make_guide_tables
+from .lights import make_light_table
+from .materials import make_material_table
+from .random_numbers import generator_of, hash_seed
+
+# Vertices are recorded by so many paths at once at most, into so many rows; paths that need more come in smaller parts.
+RECORDED_PATHS = 1 << 17
+ROWS = 1 << 20
+# Other paths are traced by so many at once at most.
+PATHS = 1 << 22
+# A lane traces this many samples one after the other, and there are at least so many lanes a thread.
+SAMPLES_PER_LANE, LEAST_LANES = 32, 4096
+
+
+FILTER_STEPS = 256
+
+
+def filter_quantiles(rfilter):
+    """Offsets that divide the absolute value of a reconstruction filter into equal parts, [FILTER_STEPS + 1]; None for
+    the box filter; and the filter's integral."""
+    if rfilter.is_box_filter():
+        return None, 1.0
+    x = np.linspace(-rfilter.radius(), rfilter.radius(), 4097)
+    values = np.array(rfilter.eval(mi.Float(x.astype(np.float32))), np.float64)
+    middle = (np.abs(values[1:]) + np.abs(values[:-1])) / 2
+    cdf = np.concatenate([[0], np.cumsum(middle)]) + 1e-9 * np.arange(x.size)
+    quantiles = np.interp(np.linspace(0, cdf[-1], FILTER_STEPS + 1), cdf, x)
+    return array_of(mi.Float, quantiles.astype(np.float32)), float(values.sum() * (x[1] - x[0]))
+
+
+def sample_filter(rfilter, quantiles, integral, rng):
+    """An offset from a pixel's centre, and its weight: the filter over the density of the offset."""
+    if quantiles is None:
+        return rng.next_2d() - 0.5, mi.Float(1)
+    offset, weight = mi.Vector2f(0), mi.Float(1)
+    for axis in range(2):
+        u = rng.next() * FILTER_STEPS
+        step = dr.minimum(mi.UInt32(u), FILTER_STEPS - 1)
+        low, high = dr.gather(mi.Float, quantiles, step), dr.gather(mi.Float, quantiles, step + 1)
+        offset[axis] = dr.lerp(low, high, u - mi.Float(step))
+        weight *= rfilter.eval(offset[axis]) * (high - low) * (FILTER_STEPS / integral)
+    return offset, weight
+
+
+class Camera:
+    """Rays of the samples of a sensor's film."""
+
+    def __init__(self, sensor, seed, quantiles, integral):
+        self.sensor, self.seed, self.quantiles, self.integral = sensor, seed, quantiles, integral
+
+    def __call__(self, pixel, number):
+        sensor, film = self.sensor, self.sensor.film()
+        rng = generator_of(self.seed, pixel, number)
+        width, height = film.crop_size()
+        offset, filter_weight = sample_filter(film.rfilter(), self.quantiles, self.integral, rng)
+        position = mi.Point2f(mi.Float(pixel % width), mi.Float(pixel // width)) + 0.5 + offset
+        aperture = mi.Point2f(0.5)
+        if sensor.needs_aperture_sample():
+            aperture = rng.next_2d()
+        moment = mi.Float(sensor.shutter_open())
+        if sensor.shutter_open_time() > 0:
+            moment += rng.next() * sensor.shutter_open_time()
+        wavelength = rng.next() if mi.is_spectral else mi.Float(0.5)
+        ray, weight = sensor.sample_ray(moment, wavelength, position / mi.ScalarVector2f(width, height), aperture)
+        return rng, ray, weight * filter_weight
+
+
+def trace_samples(scene, sensor, settings, known, tables, recorder, seed, pixel_filter, samples):
+    """Traces samples, and completes what was recorded of their paths."""
+    path.trace(scene, Camera(sensor, seed, *pixel_filter), settings, known, tables, recorder, samples)
+    dr.eval(samples, recorder)
+    if recorder is not None:
+        recording.complete_paths(recorder, samples.last_row, samples.result, path.luminance)
+        dr.eval(recorder)
+
+
+def make_samples(pixel, number, pixel_values, recorded):
+    """path.Samples of these pixels and numbers (numpy's uint32)."""
+    count = pixel.size
+    lanes = min(count, max(LEAST_LANES * dr.thread_count(), count // SAMPLES_PER_LANE))
+    result = path.Samples(
+        pixel=array_of(mi.UInt32, pixel), number=array_of(mi.UInt32, number), count=mi.UInt32(count), lane=dr.arange(mi.UInt32, lanes),
+        lanes=mi.UInt32(lanes), pixel_values=pixel_values, result=dr.zeros(mi.Float, 4 * count), last_row=dr.zeros(mi.UInt32, count) if recorded else None)
+    dr.make_opaque(result)
+    return result
+
+
+def parts_of_pass(frame, recorded):
+    """Pixels and numbers of the samples of a pass, in parts that fit."""
+    first, count = (array.ravel() for array in frame.samples())
+    pixel = np.repeat(np.arange(first.size, dtype=np.uint32), count)
+    begin = np.cumsum(count, dtype=np.uint32) - count
+    number = np.arange(pixel.size, dtype=np.uint32) - (begin - first)[pixel].astype(np.uint32)
+    most = RECORDED_PATHS if recorded else PATHS
+    for i in range(0, pixel.size, most):
+        yield pixel[i:i + most], number[i:i + most]
+
+
+def check_variant():
+    variant = mi.variant()
+    if not variant.startswith(("llvm_ad_", "cuda_ad_")):
+        raise RuntimeError(f"odis: expected a variant that compiles kernels, such as llvm_ad_rgb, found {variant}")
+    if mi.is_polarized or mi.is_monochromatic:
+        raise RuntimeError(f"odis: expected a variant in rgb or spectral without polarisation, found {variant}")
+
+
+def make_integrator():
+    """The class of the integrator for the variant that is set."""
+
+    class OdisIntegrator(mi.SamplingIntegrator):
+        """Parameters: max_depth (-1), rr_depth (5) and hide_emitters (false), as of `path`.
+
+        After a rendering `seconds` holds the time of its stages, `rays` the number of rays, `frame` the odis.Frame.
+        """
+
+        def __init__(self, props):
+            check_variant()
+            super().__init__(props)
+            self.max_depth, self.rr_depth = props.get("max_depth", -1), props.get("rr_depth", 5)
+            if self.max_depth < -1:
+                raise ValueError(f"odis: max_depth: expected -1 (no limit) or a number from 0, found {self.max_depth}")
+            if self.rr_depth <= 0:
+                raise ValueError(f"odis: rr_depth: expected a number from 1, found {self.rr_depth}")
+            self.settings = path.Settings(self.max_depth, self.rr_depth, bool(props.get("hide_emitters", False)))
+            # Kernels are traced and compiled once for each kind of pass.
+            self.trace = dr.freeze(trace_samples, limit=16, warn_after=1 << 30)
+            self.scene, self.known = None, None
+
+        def render(self, scene, sensor=0, seed=0, spp=0, develop=True, evaluate=True):
+            if isinstance(sensor, int):
+                sensor = scene.sensors()[sensor]
+            film = sensor.film()
+            if mi.has_flag(film.flags(), mi.FilmFlags.Special):
+                raise RuntimeError(f"odis: expected a film that stores colours, found {film.class_name()}")
+            with dr.suspend_grad():
+                if self.scene is not scene:
+                    self._meet(scene)
+                image = self._render(sensor, int(dr.slice(seed) if dr.is_array_v(seed) else seed),
+                                     spp or sensor.sampler().sample_count())
+                film.prepare([])
+                film.put_block(mi.ImageBlock(mi.TensorXf(image), film.crop_offset()))
+                return film.develop() if develop else mi.TensorXf()
+
+        def sample(self, scene, sampler, ray, medium=None, active=True):
+            raise NotImplementedError("odis renders whole images: it can't be nested in another integrator")
+
+        def aov_names(self):
+            return []
+
+        def to_string(self):
+            return f"OdisIntegrator[max_depth = {self.max_depth}, rr_depth = {self.rr_depth}]"
+
+        def _meet(self, scene):
+            """Finds out what there is to know of a scene once."""
+            materials, left_out = make_material_table(scene)
+            if left_out:
+                mi.Log(mi.LogLevel.Info, "odis: traced without guidance: " + ", ".join(left_out))
+            self.scene, self.known = scene, path.SceneTables(materials, make_light_table(scene))
+
+        def _render(self, sensor, seed, spp):
+            """The image as the film stores it: colour, alpha if it has it, and weight."""
+            film = sensor.film()
+            self.pixel_filter = filter_quantiles(film.rfilter())
+            width, height = film.crop_size()
+            self.frame = frame = odis.Frame(odis.FrameOptions(
+                width, height, samples_per_pixel=spp, seed=seed,
+                guide=odis.GuideOptions(light_groups=self.known.lights.groups)))
+            valid = np.zeros(width * height, np.int64)  # samples of each pixel
+            self.rays, self.seconds = 0, defaultdict(float)
+            while (frame_pass := frame.begin_pass()) is not None:
+                with self._timed("tables"):
+                    tables, values = None, None
+                    if len(frame_pass.guide):
+                        tables = make_guide_tables(frame_pass.guide, self.known.materials.both_sides)
+                        values = array_of(mi.Float, frame.pixel_values)
+                for pixel, number in parts_of_pass(frame, frame_pass.wants_vertices):
+                    self._trace_part(sensor, frame_pass, tables, values, pixel, number, valid)
+                with self._timed("build"):
+                    frame.end_pass()
+            channels = [frame.image()[0]]
+            if mi.has_flag(film.flags(), mi.FilmFlags.Alpha):
+                alpha = valid.reshape(height, width, 1) / np.maximum(frame.sample_counts(), 1)[..., None]
+                channels.append(alpha.astype(np.float32))
+            return np.concatenate(channels + [np.ones((height, width, 1), np.float32)], axis=2)
+
+        def _trace_part(self, sensor, frame_pass, tables, values, pixel, number, valid):
+            """Traces some samples of a pass and hands them to the frame; in halves if they have too many vertices."""
+            with self._timed("pilot" if frame_pass.kind == odis.PassKind.PILOT else "guided"):
+                recorder = recording.make_recorder(ROWS) if frame_pass.wants_vertices else None
+                samples = make_samples(pixel, number, values, recorder is not None)
+                seed = mi.UInt64(hash_seed(frame_pass.seed))
+                dr.make_opaque(seed)
+                self.trace(self.scene, sensor, self.settings, self.known, tables, recorder, seed,
+                           self.pixel_filter, samples)
+                dr.sync_thread()
+            vertices = None
+            if recorder is not None:
+                count = int(recorder.count[0])
+                if count > ROWS and pixel.size > 1:
+                    for half in (slice(0, pixel.size // 2), slice(pixel.size // 2, None)):
+                        self._trace_part(sensor, frame_pass, tables, values, pixel[half], number[half], valid)
+                    return
+                vertices = recording.path_vertices(recorder, min(count, ROWS))
+            with self._timed("add"):
+                result = np.array(samples.result).reshape(-1, 4)
+                tags = result[:, 3].view(np.uint32)
+                rays = tags & np.uint32(path.VALID - 1)
+                self.rays += int(rays.sum())
+                valid += np.bincount(pixel, weights=tags >> 31, minlength=valid.size).astype(np.int64)
+                self.frame.add_samples(pixel, number, result[:, :3], rays, vertices)
+
+        @contextmanager
+        def _timed(self, stage):
+            begin = time.perf_counter()
+            yield
+            self.seconds[stage] += time.perf_counter() - begin
+
+    return OdisIntegrator

@@ -1,0 +1,126 @@
+"""The choice of an emitter for next-event estimation: as Mitsuba chooses, or by what a guide learned of groups of them."""
+
+from dataclasses import dataclass
+
+import drjit as dr
+import mitsuba as mi
+import numpy as np
+
+import odis
+
+from .arrays import array_of
+
+MOST_GROUPS = 32
+
+
+@dataclass
+class LightTable:
+    """Emitters in the order of their groups. 20 bytes each."""
+
+    emitters: object  # EmitterPtr, by place
+    group: object  # UInt32, by place: (first) group of the emitter
+    probabilities: object  # Float, by place: with which Mitsuba chooses it
+    cdf: object  # Float, [places + 1]: sums of that
+    group_begin: object  # UInt32, [groups + 1]: first place of a group
+    place: object  # UInt32, by number in Dr.Jit's registry
+    count: int  # of emitters
+    groups: int  # that are learned about; 0 where there is nothing to choose
+
+    def choose(self, tables, cell, fraction, u, active):
+        """Chooses an emitter by u, uniform in [0, 1): its place and the probability of that place."""
+        if self.count == 1:
+            return mi.UInt32(0), mi.Float(1)
+        learned = mi.Bool(False)
+        low, high = mi.Float(0), mi.Float(1)
+        if tables is not None and self.groups:
+            learned = active & (u < fraction)
+            u = dr.select(learned, u / fraction, (u - fraction) / (1 - fraction))
+            first = cell * (self.groups + 1)
+            group = dr.binary_search(0, self.groups - 1, lambda i: dr.gather(
+                mi.Float, tables.light_tables, first + i + 1, learned) <= u)
+            group = mi.UInt32(group)
+            begin = dr.gather(mi.Float, tables.light_tables, first + group, learned)
+            end = dr.gather(mi.Float, tables.light_tables, first + group + 1, learned)
+            within = dr.clip((u - begin) / (end - begin), 0, 1)
+            low = dr.gather(mi.Float, self.cdf, dr.gather(mi.UInt32, self.group_begin, group, learned), learned)
+            high = dr.gather(mi.Float, self.cdf, dr.gather(mi.UInt32, self.group_begin, group + 1, learned), learned)
+            u = dr.select(learned, dr.fma(within, high - low, low), u)
+        place = mi.UInt32(dr.binary_search(0, self.count - 1, lambda i: dr.gather(mi.Float, self.cdf, i + 1, active) <= u))
+        return place, self.probability(tables, cell, fraction, place, active)
+
+    def probability(self, tables, cell, fraction, place, active):
+        """The probability with which `choose` gives a place."""
+        if self.count == 1:
+            return mi.Float(1)
+        plain = dr.gather(mi.Float, self.probabilities, place, active)
+        if tables is None or not self.groups:
+            return plain
+        learned = active & (fraction > 0)
+        group = dr.gather(mi.UInt32, self.group, place, learned)
+        first = cell * (self.groups + 1) + group
+        of_group = dr.gather(mi.Float, tables.light_tables, first + 1, learned) \
+            - dr.gather(mi.Float, tables.light_tables, first, learned)
+        share = of_group * self._share_of_group(group, plain, learned)
+        return dr.select(learned, dr.fma(fraction, share - plain, plain), plain)
+
+    def place_of(self, emitter, active):
+        return dr.gather(mi.UInt32, self.place, dr.reinterpret_array(mi.UInt32, emitter), active)
+
+    def group_of(self, place, probability, active):
+        """The group of a place that was chosen with this probability, and the probability of the group."""
+        if not self.groups:
+            return mi.UInt32(odis.NO_LIGHT_GROUP), mi.Float(0)
+        group = dr.gather(mi.UInt32, self.group, place, active)
+        share = self._share_of_group(group, dr.gather(mi.Float, self.probabilities, place, active), active)
+        return dr.select(active, group, odis.NO_LIGHT_GROUP), dr.select(share > 0, probability / share, 0)
+
+    def _share_of_group(self, group, probability, active):
+        """What share of Mitsuba's choices of a group an emitter has that is chosen with this probability."""
+        low = dr.gather(mi.Float, self.cdf, dr.gather(mi.UInt32, self.group_begin, group, active), active)
+        high = dr.gather(mi.Float, self.cdf, dr.gather(mi.UInt32, self.group_begin, group + 1, active), active)
+        return dr.select(active & (high > low), probability / (high - low), 0)
+
+
+def split_groups(centers, most):
+    """Splits points into at most so many groups of neighbours: halves the largest one along its longest axis."""
+    groups = [np.arange(len(centers))]
+    while len(groups) < most:
+        largest = max(range(len(groups)), key=lambda i: len(groups[i]))
+        members = groups[largest]
+        if len(members) < 2:
+            break
+        points = centers[members]
+        axis = np.argmax(points.max(0) - points.min(0))
+        order = members[np.argsort(points[:, axis], kind="stable")]
+        groups[largest:largest + 1] = [order[:len(order) // 2], order[len(order) // 2:]]
+    return groups
+
+
+def center_of(emitter):
+    center = np.asarray(emitter.bbox().center()).ravel()
+    return center if np.isfinite(center).all() else np.zeros(3)
+
+
+def make_light_table(scene):
+    """The emitters of a scene, in groups of neighbours."""
+    emitters = scene.emitters()
+    weights = np.array([float(np.asarray(e.sampling_weight()).ravel()[0]) for e in emitters])
+    weights = weights / weights.sum() if weights.sum() > 0 else weights
+    infinite = [i for i, e in enumerate(emitters) if mi.has_flag(e.flags(), mi.EmitterFlags.Infinite)]
+    finite = [i for i in range(len(emitters)) if i not in set(infinite)]
+    groups = [[i] for i in infinite[:8]] + ([infinite[8:]] if infinite[8:] else [])
+    if finite:
+        centers = np.array([center_of(emitters[i]) for i in finite])
+        groups += [[finite[i] for i in members] for members in split_groups(centers, MOST_GROUPS - len(groups))]
+    order = [i for members in groups for i in members]
+    numbers = np.array(dr.reinterpret_array(mi.UInt32, scene.emitters_dr()))[order] if emitters else np.zeros(1, int)
+    place = np.zeros(int(numbers.max()) + 1, np.uint32)
+    place[numbers] = np.arange(len(numbers))
+    begin = np.cumsum([0] + [len(members) for members in groups])
+    table = LightTable(
+        emitters=dr.reinterpret_array(mi.EmitterPtr, mi.UInt32(numbers)),
+        group=array_of(mi.UInt32, np.repeat(np.arange(len(groups), dtype=np.uint32), np.diff(begin))), probabilities=array_of(mi.Float, weights[order].astype(np.float32)),
+        cdf=array_of(mi.Float, np.concatenate([[0], np.cumsum(weights[order])]).astype(np.float32)), group_begin=array_of(mi.UInt32, begin.astype(np.uint32)),
+        place=array_of(mi.UInt32, place), count=len(emitters), groups=len(groups) if len(groups) > 1 else 0)
+    dr.make_opaque(table)
+    return table

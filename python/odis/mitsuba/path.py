@@ -1,0 +1,318 @@
+"""The path tracer: Mitsuba's `path`, with every decision that an odis guide makes."""
+
+from dataclasses import dataclass
+
+import drjit as dr
+import mitsuba as mi
+
+import odis
+
+from . import guide_tables, recording
+from .materials import BOTH_SIDES, GUIDABLE, HAS_DELTA, SMOOTH, material_at
+from .random_numbers import RandomNumbers
+
+VALID = 1 << 31
+LUMINANCE = (0.212671, 0.715160, 0.072169)
+
+
+@dataclass
+class Settings:
+    """What is the same for all paths, known when kernels are compiled; as in `path`."""
+
+    max_depth: int  # 1 is emission that the camera sees; -1 is no limit
+    rr_depth: int
+    hide_emitters: bool
+
+
+@dataclass
+class SceneTables:
+    """What kernels read of a scene beside the scene itself."""
+
+    materials: object  # MaterialTable
+    lights: object  # LightTable
+
+
+@dataclass
+class Samples:
+    """The samples of a kernel, and the results that it writes."""
+
+    pixel: object  # UInt32 [count]
+    number: object  # UInt32 [count]: of the sample in its pixel
+    count: object  # UInt32
+    lane: object  # UInt32 [lanes]: 0, 1, ...: as many samples are under way at once
+    lanes: object  # UInt32
+    pixel_values: object  # Float [pixel]: luminance of the pixel as the frame estimates it; None without tables
+    # Float [count][4]: what the sample adds to its pixel, in linear sRGB; and, as a UInt32, its number of rays, shadow
+    # rays included, with the highest bit set where something opaque or an environment was met, for alpha.
+    result: object
+    last_row: object  # UInt32 [count]: of the path's last recorded vertex; None without a recorder
+
+
+def luminance(color):
+    return LUMINANCE[0] * color.x + LUMINANCE[1] * color.y + LUMINANCE[2] * color.z
+
+
+def power_heuristic(pdf, other):
+    ratio = other / pdf
+    return dr.select(pdf > 0, 1 / (1 + ratio * ratio), 0)
+
+
+def to_rgb(spectrum, wavelengths):
+    """The colour, linear with the primaries of sRGB, that a sample of radiance adds."""
+    if mi.is_spectral:
+        return mi.spectrum_to_srgb(spectrum, wavelengths)
+    return mi.Color3f(spectrum)
+
+
+@dataclass
+class Scattering:
+    """What a BSDF answers at a vertex about the direction to a light, one of the map, and one that it samples."""
+
+    light_value: object
+    light_pdf: object
+    map_value: object
+    map_pdf: object
+    sample: object
+    weight: object
+    # Densities of the lobes that are no delta lobes, alone.
+    light_alone: object
+    map_alone: object
+    sample_alone: object
+
+
+def scatter(bsdf, si, toward_light, toward_map, u_lobe, u, any_delta, active):
+    """All that is asked of a BSDF, in one call, so that what the answers share is computed once."""
+
+    def ask(bsdf, si, toward_light, toward_map, u_lobe, u, active):
+        context, alone = mi.BSDFContext(), mi.BSDFContext()
+        alone.type_mask = mi.BSDFFlags.Smooth
+        light_value, light_pdf, sample, weight = bsdf.eval_pdf_sample(context, si, toward_light, u_lobe, u, active)
+        map_value, map_pdf = mi.Spectrum(0), mi.Float(0)
+        if toward_map is not None:
+            map_value, map_pdf = bsdf.eval_pdf(context, si, toward_map, active)
+        result = Scattering(light_value, light_pdf, map_value, map_pdf, sample, weight, *[mi.Float(0)] * 3)
+        if any_delta:
+            result.light_alone = bsdf.pdf(alone, si, toward_light, active)
+            result.sample_alone = bsdf.pdf(alone, si, sample.wo, active)
+            if toward_map is not None:
+                result.map_alone = bsdf.pdf(alone, si, toward_map, active)
+        return result
+
+    return dr.dispatch(bsdf, ask, si, toward_light, toward_map, u_lobe, u, active)
+
+
+def part_of(pdf, alone, mixes):
+    """How often a BSDF draws from lobes that are no delta lobes: its density over that of these lobes alone."""
+    return dr.select(mixes & (alone > 0), pdf / alone, 1)
+
+
+@dr.syntax
+def trace(scene, camera, settings, known, tables, recorder, samples):
+    """Traces the paths of samples. A lane whose path has ended goes on with the next sample, so that SIMD packets are
+    full nearly all the time: without this they would be as slow as their longest path.
+
+    camera(pixel, number): a generator of random numbers, a ray, and what its radiance is multiplied by, for a sample.
+    known: SceneTables. tables: GuideTables or None. recorder: Recorder or None. samples: Samples.
+    """
+    lights = known.lights
+    sees_environment = not settings.hide_emitters and scene.environment() is not None
+
+    index = mi.UInt32(samples.lane)
+    under_way = mi.Bool(False)  # a path is
+    more = index < samples.count
+    pixel, number, pixel_value = mi.UInt32(0), mi.UInt32(0), mi.Float(1)
+    rng, ray = RandomNumbers(mi.UInt32(0), mi.UInt32(0)), dr.zeros(mi.Ray3f)
+    radiance, throughput, eta = mi.Spectrum(0), mi.Spectrum(0), mi.Float(1)
+    depth, rays, valid = mi.UInt32(0), mi.UInt32(0), mi.Bool(False)
+    # Of the vertex before.
+    previous_p, previous_n = mi.Point3f(0), mi.Normal3f(0)
+    previous_pdf, previous_delta = mi.Float(1), mi.Bool(True)
+    previous_cell, previous_fraction = mi.UInt32(odis.NO_CELL), mi.Float(0)
+    row = mi.UInt32(recording.NO_ROW)
+
+    while dr.hint(more, label="odis: paths", exclude=[known, tables, recorder, lights, samples, camera]):
+        # The next sample, where none is under way.
+        begins = more & ~under_way
+        pixel = dr.select(begins, dr.gather(mi.UInt32, samples.pixel, index, begins), pixel)
+        number = dr.select(begins, dr.gather(mi.UInt32, samples.number, index, begins), number)
+        new_rng, new_ray, ray_weight = camera(pixel, number)
+        rng, ray = dr.select(begins, new_rng, rng), dr.select(begins, new_ray, ray)
+        throughput, radiance = dr.select(begins, ray_weight, throughput), dr.select(begins, 0, radiance)
+        eta, depth, rays = dr.select(begins, 1, eta), dr.select(begins, 0, depth), dr.select(begins, 0, rays)
+        valid = dr.select(begins, mi.Bool(sees_environment), valid)
+        previous_delta = previous_delta | begins
+        if dr.hint(recorder is not None, mode="scalar"):
+            row = dr.select(begins, recording.NO_ROW, row)
+        if dr.hint(tables is not None, mode="scalar"):
+            pixel_value = dr.select(begins, dr.gather(mi.Float, samples.pixel_values, pixel, begins), pixel_value)
+
+        active = mi.Bool(more)
+        si = scene.ray_intersect(ray, mi.RayFlags.All, coherent=False, active=active)
+        rays += 1
+        bsdf = si.bsdf(ray)
+
+        # Emission that the ray met.
+        previous = dr.zeros(mi.Interaction3f)
+        previous.p, previous.n, previous.time, previous.wavelengths = previous_p, previous_n, ray.time, ray.wavelengths
+        met = mi.DirectionSample3f(scene, si=si, ref=previous)
+        lit = active & (met.emitter != None)
+        passes = mi.Bool(False)  # through an emitter that the camera does not see
+        if dr.hint(settings.hide_emitters, mode="scalar"):
+            passes = lit & (depth == 0) & si.is_valid()
+            lit &= depth > 0
+        emitted = met.emitter.eval(si, lit)
+        weighed = lit & ~previous_delta
+        light_pdf = dr.select(weighed, met.emitter.pdf_direction(previous, met, weighed), 0) * lights.probability(
+            tables, previous_cell, previous_fraction, lights.place_of(met.emitter, weighed), weighed)
+        mis = dr.select(weighed, power_heuristic(previous_pdf, light_pdf), 1)
+        radiance += dr.select(lit, throughput * emitted * mis, 0)
+        if dr.hint(recorder is not None, mode="scalar"):
+            had_row = active & (row != recording.NO_ROW)
+            color = dr.select(lit, to_rgb(emitted, ray.wavelengths), 0)
+            recording.write(recorder, row, 5, [color.x, color.y, color.z, mis, light_pdf,
+                                               dr.select(si.is_valid(), si.t, dr.inf)], had_row)
+
+        active = active & si.is_valid() & ~passes
+        if dr.hint(settings.max_depth >= 0, mode="scalar"):
+            active &= depth + 1 < settings.max_depth
+        flags, roughness = material_at(known.materials, bsdf, active)
+        normal = mi.Vector3f(dr.mulsign(si.sh_frame.n, si.wi.z))
+        both_sides = (flags & BOTH_SIDES) != 0
+
+        # Roulette on arrival, where the guide knows what the path would bring; what it expects stands in for the
+        # paths that end, as a control variate.
+        cell, survival_on_arrival = mi.UInt32(odis.NO_CELL), mi.Float(1)
+        fraction, learned_lights = mi.Float(1), mi.Float(0)
+        if dr.hint(tables is not None, mode="scalar"):
+            cell = guide_tables.find_cell(tables, si.p, normal, active)
+            decisions = guide_tables.decisions_of(tables, cell, roughness, active)
+            relative = luminance(to_rgb(throughput, ray.wavelengths)) / pixel_value
+            survival = guide_tables.survival_probability(tables, decisions.survival_factor, relative)
+            survival_on_arrival = dr.select(active & (depth > 0) & (cell != odis.NO_CELL), survival, 1)
+            stand_in = throughput * (decisions.outgoing_radiance if not mi.is_spectral
+                                     else mi.Spectrum(luminance(decisions.outgoing_radiance)))
+            goes_on = rng.next() < survival_on_arrival
+            played = active & (survival_on_arrival < 1)
+            radiance += dr.select(played, stand_in * dr.select(goes_on, 1 - 1 / survival_on_arrival, 1), 0)
+            active = active & goes_on
+            throughput /= survival_on_arrival
+            fraction = dr.select((flags & GUIDABLE) != 0, decisions.bsdf_fraction, 1)
+            learned_lights = decisions.learned_light_fraction
+
+        # Next-event estimation: what a light would add if nothing hid it.
+        scattering = active & ((flags & SMOOTH) != 0)
+        place, choice = lights.choose(tables, cell, learned_lights, rng.next(), scattering)
+        u_light = rng.next_2d()
+        emitter = dr.gather(mi.EmitterPtr, lights.emitters, place, scattering)
+        toward, light = emitter.sample_direction(si, u_light, scattering)
+        lightable = scattering & (toward.pdf > 0) & (choice > 0)
+        light /= choice
+        toward_pdf = toward.pdf * choice
+        u_lobe, u, v = rng.next(), rng.next(), rng.next()
+        toward_wo = si.to_local(toward.d)
+
+        # A direction of the guide's map, where one is drawn; the map is asked twice: first for this direction or, where
+        # none is drawn, about the light's, then about the light's or the BSDF's.
+        guided, from_map, toward_map, map_pdf, u_within = active & (fraction < 1), mi.Bool(False), None, mi.Float(0), u
+        if dr.hint(tables is not None, mode="scalar"):
+            vertex_map = guide_tables.VertexMap(tables, cell, normal, both_sides, guided)
+            guided &= vertex_map.sampleable
+            from_map = guided & (u >= fraction)
+            u_within = dr.select(guided, dr.select(from_map, (u - fraction) / (1 - fraction), u / fraction), u)
+            u_within = dr.minimum(u_within, guide_tables.ONE_MINUS_EPSILON)
+            map_direction, map_pdf = vertex_map.sample_or_evaluate(from_map, u_within, v, toward.d, guided)
+            toward_map = si.to_local(map_direction)
+
+        scattered = scatter(dr.select(active, bsdf, dr.zeros(mi.BSDFPtr)), si, toward_wo, toward_map, u_lobe,
+                            mi.Point2f(u_within, v), known.materials.any_delta, active)
+        sampled, weight, bsdf_pdf = scattered.sample, scattered.weight, scattered.light_pdf
+        discrete = mi.has_flag(sampled.sampled_type, mi.BSDFFlags.Delta)
+        mixes = ((flags & HAS_DELTA) != 0) & ((flags & GUIDABLE) != 0)
+        wi, pdf = si.to_world(sampled.wo), mi.Float(sampled.pdf)
+        light_mix_pdf, alone = mi.Float(bsdf_pdf), mi.Float(scattered.sample_alone)
+        guidable_pdf = pdf
+        if dr.hint(tables is not None, mode="scalar"):
+            other_pdf = vertex_map.pdf(dr.select(from_map, toward.d, wi), guided)
+            light_map_pdf, map_pdf = dr.select(from_map, other_pdf, map_pdf), dr.select(from_map, map_pdf, other_pdf)
+            from_map &= ~discrete
+            wi, pdf = dr.select(from_map, map_direction, wi), dr.select(from_map, scattered.map_pdf, pdf)
+            alone = dr.select(from_map, scattered.map_alone, alone)
+            guidable_pdf = pdf
+            mixed = dr.fma(1 - fraction, map_pdf * part_of(pdf, alone, mixes) - pdf, pdf)
+            reweighed = guided & ~discrete & (mixed > 0)
+            weight = dr.select(from_map, scattered.map_value / mixed,
+                               dr.select(reweighed, weight * (pdf / mixed), weight))
+            pdf = dr.select(reweighed, mixed, pdf)
+            light_map_pdf *= part_of(bsdf_pdf, scattered.light_alone, mixes)
+            light_mix_pdf = dr.select(guided, dr.fma(1 - fraction, light_map_pdf - bsdf_pdf, bsdf_pdf), bsdf_pdf)
+
+        mis = dr.select(toward.delta, 1, power_heuristic(toward_pdf, light_mix_pdf))
+        unweighted = scattered.light_value * light
+        direct = unweighted * mis
+        lightable &= dr.max(dr.abs(direct)) > 0
+        shadow = mi.Float(1)
+        if dr.hint(tables is not None, mode="scalar"):
+            adds = luminance(to_rgb(throughput * direct, ray.wavelengths)) / pixel_value
+            shadow = dr.select(cell != odis.NO_CELL, guide_tables.shadow_ray_probability(tables, adds), 1)
+            lightable &= rng.next() < shadow
+            direct /= shadow
+            unweighted /= shadow
+        rays += dr.select(lightable, mi.UInt32(1), mi.UInt32(0))
+        seen = lightable & ~scene.ray_test(si.spawn_ray_to(toward.p), coherent=False, active=lightable)
+        radiance += dr.select(seen, throughput * direct, 0)
+
+        # Roulette on departure, where nothing was learned.
+        weight = dr.select(active & dr.all(dr.isfinite(weight)), weight, 0)
+        eta *= dr.select(from_map, 1, sampled.eta)
+        most = dr.max(throughput * weight)
+        plays = active & (depth >= settings.rr_depth) & (cell == odis.NO_CELL)
+        survival = dr.select(plays, dr.minimum(most * eta * eta, 0.95), 1)
+        goes_on = active & (most > 0) & (rng.next() < survival)
+        weight = dr.select(goes_on, weight / survival, 0)
+
+        if dr.hint(recorder is not None, mode="scalar"):
+            previous_row = row
+            row = recording.new_row(recorder, active)
+            has_row = row != recording.NO_ROW
+            c, w = to_rgb(dr.select(seen, direct, 0), ray.wavelengths), to_rgb(weight, ray.wavelengths)
+            t = to_rgb(throughput, ray.wavelengths)
+            light_sum = luminance(to_rgb(dr.select(seen, throughput * unweighted, 0), ray.wavelengths))
+            tag = (depth + 1) | dr.select(discrete, mi.UInt32(recording.DISCRETE), 0) \
+                | dr.select(both_sides, mi.UInt32(recording.BOTH_SIDES), 0)
+            p, n, d = si.p, normal, toward.d
+            recording.write(recorder, row, 0, [p.x, p.y, p.z, n.x, n.y, n.z, recording.bits(pixel),
+                                               recording.bits(number)], has_row)
+            recording.write(recorder, row, 1, [wi.x, wi.y, wi.z, pdf, w.x, w.y, w.z, survival], has_row)
+            recording.write(recorder, row, 2, [c.x, c.y, c.z, light_sum, d.x, d.y, d.z,
+                                               dr.select(seen & ~toward.delta, toward_pdf, 0)], has_row)
+            group, group_choice = lights.group_of(place, choice * shadow, lightable)
+            can_guide = (flags & GUIDABLE) != 0
+            guidable = part_of(guidable_pdf, alone, mixes & ~discrete)
+            recording.write(recorder, row, 3, [bsdf_pdf, dr.select(can_guide, bsdf_pdf, 0), recording.bits(group),
+                                               group_choice,
+                                               dr.select(can_guide, guidable_pdf, 0), dr.select(can_guide, guidable, 0),
+                                               roughness, recording.bits(tag)], has_row)
+            recording.write(recorder, row, 4, [t.x, t.y, t.z, survival_on_arrival, mi.Float(rays),
+                                               recording.bits(previous_row)], has_row)
+            recording.write(recorder, row, 5, [mi.Float(0)] * 5 + [mi.Float(dr.inf)], has_row)
+            row = dr.select(active, row, previous_row)
+
+        valid |= active & ~mi.has_flag(sampled.sampled_type, mi.BSDFFlags.Null)
+        throughput *= weight
+        previous_p, previous_n, previous_pdf, previous_delta = mi.Point3f(si.p), mi.Normal3f(si.n), pdf, discrete
+        previous_cell, previous_fraction = cell, learned_lights
+        if dr.hint(settings.hide_emitters, mode="scalar"):
+            wi, previous_delta = dr.select(passes, ray.d, wi), previous_delta | passes
+        ray = dr.select(goes_on | passes, si.spawn_ray(wi), ray)
+        depth += dr.select(goes_on, mi.UInt32(1), mi.UInt32(0))
+
+        # The sample is complete where the path does not go on.
+        under_way = more & (goes_on | passes)
+        ends = more & ~under_way
+        color = to_rgb(radiance, ray.wavelengths)
+        count = recording.bits(rays | dr.select(valid, mi.UInt32(VALID), 0))
+        dr.scatter(samples.result, mi.Vector4f(color.x, color.y, color.z, count), index, ends)
+        if dr.hint(recorder is not None, mode="scalar"):
+            dr.scatter(samples.last_row, row, index, ends)
+        index += dr.select(ends, samples.lanes, 0)
+        more = index < samples.count

@@ -1,0 +1,174 @@
+"""The integrator `odis` against Mitsuba's `path`, on scenes made here. Skipped where Mitsuba does not run."""
+
+import unittest
+
+import made_up
+import numpy as np
+import odis
+
+try:
+    import drjit as dr
+    import mitsuba as mi
+
+    mi.set_variant("llvm_ad_rgb")
+    mi.set_log_level(mi.LogLevel.Error)
+    dr.eval(mi.Float(1) + dr.opaque(mi.Float, 1))
+    import odis.mitsuba
+    from odis.mitsuba import guide_tables
+    from odis.mitsuba.arrays import array_of
+except (ImportError, AttributeError, RuntimeError) as missing:
+    raise unittest.SkipTest(f"Mitsuba does not run here: {missing}")
+
+SIZE, BLOCKS, SEEDS = 32, 4, 12
+
+
+def box(**changes):
+    scene = mi.cornell_box()
+    scene["sensor"]["film"] = {"type": "hdrfilm", "width": SIZE, "height": SIZE, "rfilter": {"type": "box"}}
+    scene["large-box"]["bsdf"] = {"type": "plastic", "diffuse_reflectance": {"type": "rgb", "value": [0.3, 0.4, 0.6]}}
+    scene["small-box"]["bsdf"] = {"type": "roughconductor", "alpha": 0.2}
+    del scene["integrator"]
+    scene.update(changes)
+    return scene
+
+
+def blocks(image):
+    return np.asarray(image, np.float64).reshape(BLOCKS, SIZE // BLOCKS, BLOCKS, SIZE // BLOCKS, -1).mean((1, 3, 4))
+
+
+def render(scene, kind, seed, spp, **parameters):
+    return np.array(mi.render(scene, integrator=mi.load_dict({"type": kind, **parameters}), spp=spp, seed=seed))
+
+
+class Unbiased(unittest.TestCase):
+    def compare(self, scene, spp=64, **parameters):
+        """z-tests of blocks of pixels over seeds: of 16 blocks none beyond 4.2, a chance of 1 in 2,300."""
+        ours = mi.load_dict({"type": "odis", **parameters})
+        path = mi.load_dict({"type": "path", **parameters})
+        means = [np.array([blocks(np.array(mi.render(scene, integrator=one, spp=spp, seed=first + i))[..., :3])
+                           for i in range(SEEDS)]) for one, first in ((ours, 0), (path, 1000))]
+        error = np.sqrt(sum(m.var(0, ddof=1) / SEEDS for m in means))
+        z = (means[0].mean(0) - means[1].mean(0)) / error
+        # Student's t with 22 degrees of freedom at that chance.
+        self.assertLess(np.abs(z).max(), 5.0, z)
+        self.assertLess(np.median(error / means[1].mean(0)), 0.02)
+
+    def test_plastic_metal_and_one_light(self):
+        self.compare(mi.load_dict(box()), max_depth=6)
+
+    def test_many_lights_and_an_environment(self):
+        lamps = {f"lamp{i}": {"type": "sphere", "radius": 0.03, "center": [-0.8 + 0.4 * i, -0.9, 0.5],
+                              "emitter": {"type": "area", "radiance": {"type": "rgb", "value": 2.0 + 3 * i}}}
+                 for i in range(5)}
+        self.compare(mi.load_dict(box(sky={"type": "constant", "radiance": 0.3}, **lamps)), max_depth=5)
+
+    def test_glass_and_transmission(self):
+        scene = box()
+        scene["large-box"]["bsdf"] = {"type": "dielectric"}
+        scene["small-box"]["bsdf"] = {"type": "roughdielectric", "alpha": 0.3}
+        self.compare(mi.load_dict(scene), max_depth=6)
+
+
+class Images(unittest.TestCase):
+    def test_same_seed_same_bits(self):
+        scene = mi.load_dict(box())
+        np.testing.assert_array_equal(render(scene, "odis", 3, 8), render(scene, "odis", 3, 8))
+
+    def test_other_seed_other_samples(self):
+        # Seeds that differ in few bits must not share random numbers.
+        scene = mi.load_dict(box())
+        a, b = (render(scene, "odis", seed, 16) for seed in (0, 1))
+        noise = [image - (a + b) / 2 for image in (a, b)]
+        self.assertGreater(np.abs(noise[0]).mean(), 0.001)
+
+    def test_alpha_and_filter(self):
+        scene = box()
+        scene["sensor"]["film"] = {"type": "hdrfilm", "width": SIZE, "height": SIZE, "pixel_format": "rgba",
+                                   "rfilter": {"type": "gaussian"}}
+        del scene["back"]
+        scene = mi.load_dict(scene)
+        ours, theirs = (np.mean([render(scene, kind, seed, 64, max_depth=3) for seed in range(4)], axis=0)
+                        for kind in ("odis", "path"))
+        self.assertEqual(ours.shape, theirs.shape)
+        self.assertLess(np.abs(ours[..., 3] - theirs[..., 3])[2:-2, 2:-2].max(), 0.15)
+        # At the image's border `path` normalises by the part of the filter within the image.
+        self.assertLess(np.abs((ours - theirs)[3:-3, 3:-3].mean((0, 1))).max(), 0.02)
+
+    def test_hidden_emitters(self):
+        scene = mi.load_dict(box())
+        ours, theirs = (render(scene, kind, 0, 64, hide_emitters=True, max_depth=1) for kind in ("odis", "path"))
+        np.testing.assert_array_equal(ours, theirs)
+
+
+class Errors(unittest.TestCase):
+    def test_parameters(self):
+        for parameters, expected in (({"max_depth": -2}, "max_depth: expected"), ({"rr_depth": 0}, "rr_depth: expected"),
+                                     ({"max_dept": 3}, "max_dept")):
+            with self.assertRaisesRegex(Exception, expected):
+                mi.load_dict({"type": "odis", **parameters})
+
+
+class Maps(unittest.TestCase):
+    """The kernels' look-ups against the library's own."""
+
+    def setUp(self):
+        vertices = made_up.vertices(20000)
+        builder = odis.GuideBuilder(odis.GuideOptions())
+        builder.add(vertices)
+        self.guide = builder.build(vertices)
+        self.tables = guide_tables.make_guide_tables(self.guide, both_sides=True)
+
+    def places(self, count):
+        random = np.random.default_rng(5)
+        position = random.random((count, 3), np.float32)
+        position[:, 2] = 0
+        return position, np.tile(np.array([0, 0, 1], np.float32), (count, 1))
+
+    def test_cells(self):
+        position, normal = self.places(2000)
+        found = guide_tables.find_cell(self.tables, mi.Point3f(position.T), mi.Vector3f(normal.T), True)
+        expected = self.guide.find_cells(position, normal)
+        # Places on the border of two cells may be rounded to either.
+        self.assertLess((np.array(found) != expected).mean(), 0.005)
+
+    def test_density(self):
+        """Of axis-aligned normals the density is the library's but for the rounding to half floats."""
+        position, normal = self.places(2000)
+        cells = self.guide.find_cells(position, normal)
+        self.assertTrue((cells != odis.NO_CELL).all())
+        wi = made_up.cosine_directions(np.random.default_rng(6), 2000)
+        for both in (False, True):
+            vertex_map = guide_tables.VertexMap(self.tables, array_of(mi.UInt32, cells), mi.Vector3f(normal.T),
+                                                mi.Bool(both), mi.Bool(True))
+            ours = np.array(vertex_map.pdf(mi.Vector3f(wi.T), mi.Bool(True)))
+            theirs = self.guide.pdf(cells, normal, wi, both)
+            self.assertLess(np.median(np.abs(ours / theirs - 1)), 0.005)
+
+    def test_samples_follow_the_density(self):
+        """chi^2 of 100,000 samples over 64 cells of the octahedral map; also that the density integrates to one."""
+        count = 100_000
+        random = np.random.default_rng(7)
+        normal = mi.Vector3f(0.36, 0.48, 0.8)
+        position, up = self.places(1)
+        cell = mi.UInt32(int(self.guide.find_cells(position, up)[0])) + dr.zeros(mi.UInt32, count)
+        vertex_map = guide_tables.VertexMap(self.tables, cell, normal, mi.Bool(False), mi.Bool(True))
+        u, v = (mi.Float(random.random(count, np.float32)) for _ in range(2))
+        wi, pdf = vertex_map.sample_or_evaluate(mi.Bool(True), u, v, mi.Vector3f(0, 0, 1), mi.Bool(True))
+        again = vertex_map.pdf(wi, mi.Bool(True))
+        self.assertGreater((np.abs(np.array(again / pdf) - 1) < 1e-3).mean(), 0.999)
+        x, y = (np.array(axis) for axis in guide_tables.direction_to_square(wi))
+        observed = np.histogram2d(x, y, bins=8, range=[[0, 1], [0, 1]])[0]
+        grid = (np.arange(512) + 0.5) / 512
+        gx, gy = (axis.ravel().astype(np.float32) for axis in np.meshgrid(grid, grid, indexing="ij"))
+        wide = guide_tables.VertexMap(self.tables, cell[0] + dr.zeros(mi.UInt32, gx.size), normal, mi.Bool(False),
+                                      mi.Bool(True))
+        density = np.array(wide.pdf(guide_tables.square_to_direction(mi.Float(gx), mi.Float(gy)), mi.Bool(True)))
+        self.assertAlmostEqual(density.mean() * 4 * np.pi, 1, delta=0.01)
+        expected = density.reshape(8, 64, 8, 64).mean((1, 3)) / density.sum() * density.size / 64 * count
+        used = expected > 5
+        chi2 = ((observed - expected)[used] ** 2 / expected[used]).sum()
+        self.assertLess(chi2, 64 + 5 * np.sqrt(2 * 64))
+
+
+if __name__ == "__main__":
+    unittest.main()
