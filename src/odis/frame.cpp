@@ -62,14 +62,14 @@ Frame::Data::Data(const FrameOptions& o, std::shared_ptr<const Tasks> tasks,
       builder(!o.guided ? nullptr
               : given
                   ? std::move(given)
-                  : std::make_shared<GuideBuilder>(o.guide ? *o.guide : GuideOptions(), std::move(tasks))),
+                  : std::make_shared<GuideBuilder>(o.guide ? *o.guide : GuideOptions(), tasks)),
       guideOptions(builder ? builder->options() : GuideOptions()),
       lightParts(guideOptions.lightParts, guideOptions.lightParts + guideOptions.lightPartCount),
       modelId(builder ? builder->modelId() : 0),
       schedule(o),
       pilot(size_t(o.width) * o.height),
       later(pilot.size()),
-      tiles(o.width, o.height),
+      tiles(o.width, o.height, std::move(tasks)),
       next(o.guided ? ODIS_PASS_PILOT : ODIS_PASS_GUIDED) {}
 
 SampleRange Frame::Data::samples(uint32_t pixel) const {
@@ -108,19 +108,18 @@ void Frame::Data::describePass() {
 }
 
 // Takes a tile's samples and vertices.
-void Frame::Data::take(uint32_t tile, ArrayView<const FrameSample> samples,
-                       ArrayView<const PathVertex> vertices) {
+void Frame::Data::take(uint32_t tile, ArrayView<const FrameSample> samples, TileVertices& vertices) {
   if (pass.partOfImage) {
     std::vector<PixelSums>& sums = next == ODIS_PASS_PILOT ? pilot : later;
     for (const FrameSample& s : samples) addSample(sums[s.pixel], finiteOrBlack(s.value, notFinite), s.rays);
   }
   if (!pass.wantsVertices) return;
   if (next == ODIS_PASS_GUIDED) {
-    cellSamples[tile] = builder->take(vertices);
+    cellSamples[tile] = builder->take(vertices.view());
     keptBytes += cellSamples[tile].bytes();
   } else {
-    passVertices[tile].assign(vertices.begin(), vertices.end());
     keptBytes += vertices.size() * sizeof(PathVertex);
+    passVertices[tile] = vertices.take();
   }
 }
 
@@ -219,8 +218,9 @@ const FramePass* Frame::beginPass() {
   if (d.finished || (d.next == ODIS_PASS_GUIDED && d.done >= d.schedule.mostRemaining())) return nullptr;
   d.describePass();
   d.tiles.beginPass([&d](uint32_t pixel) { return d.samples(pixel); },
-                    [&d](uint32_t tile, ArrayView<const FrameSample> samples,
-                         ArrayView<const PathVertex> vertices) { d.take(tile, samples, vertices); });
+                    [&d](uint32_t tile, ArrayView<const FrameSample> samples, TileVertices& vertices) {
+                      d.take(tile, samples, vertices);
+                    });
   if (d.resumed) d.resume();
   d.inPass = true;
   return &d.pass;
@@ -236,9 +236,16 @@ ArrayView<const float> Frame::pixelValues() const {
   return m_data->pixelValues;
 }
 
-void Frame::add(ArrayView<const FrameSample> samples, ArrayView<const PathVertex> vertices) {
+void Frame::add(ArrayView<const FrameSample> samples, const VertexSource& vertices) {
   requireOrder(m_data->inPass, "odisAddSamples: expected a pass under way");
-  m_data->tiles.add(samples, m_data->pass.wantsVertices ? vertices : ArrayView<const PathVertex>());
+  if (m_data->pass.wantsVertices)
+    m_data->tiles.add(samples, vertices);
+  else
+    m_data->tiles.add(samples, VertexArray({}));
+}
+
+void Frame::add(ArrayView<const FrameSample> samples, ArrayView<const PathVertex> vertices) {
+  add(samples, VertexArray(vertices));
 }
 
 void Frame::endPass(bool interrupted) {

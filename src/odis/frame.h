@@ -32,6 +32,8 @@
 
 namespace odis::core {
 
+class VertexSource;
+
 using FrameOptions = OdisFrameOptions;
 using FramePass = OdisFramePass;
 using SampleRange = OdisSampleRange;
@@ -63,6 +65,7 @@ class Frame {
   // std::out_of_range for a sample that the pass did not ask for, and std::logic_error for one that comes
   // twice, where that can be told. Vertices of samples that are not due are left out
   // and counted (VertexCounts::outsideFrame), those of a pass that wants none are ignored.
+  void add(ArrayView<const FrameSample> samples, const VertexSource& vertices);
   void add(ArrayView<const FrameSample> samples, ArrayView<const PathVertex> vertices = {});
   // Ends the pass: learns, builds the guide, settles what there is to settle. An interrupted pass may lack
   // samples; nothing is learned from it, and it is the last one.

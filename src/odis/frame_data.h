@@ -32,7 +32,7 @@ struct Frame::Data {
 
   // The stages, in their order.
   void describePass();
-  void take(uint32_t tile, ArrayView<const FrameSample> samples, ArrayView<const PathVertex> vertices);
+  void take(uint32_t tile, ArrayView<const FrameSample> samples, TileVertices& vertices);
   void endPilot();
   void endOraclePass();
   void buildGuide(const VertexTiles& taught, const VertexTiles& judged);

@@ -68,17 +68,16 @@ void OdisFrameImpl::endPass(bool interrupted) {
     warnings.report(context, frame.coarsening(), frame.samplesLeftOut());
 }
 
-// The vertices if there is room for them, otherwise none.
-odis::ArrayView<const OdisPathVertex> OdisFrameImpl::withinMemory(
-    odis::ArrayView<const OdisPathVertex> vertices) {
+// Whether the memory's limit lets the frame keep so many vertices; warns where it first does not.
+bool OdisFrameImpl::hasRoomFor(size_t vertices) {
   OdisContextImpl& context = memory.context();
   // Half of the memory is for the guide.
   if (context.options.memoryLimit == 0 ||
-      vertices.size() * sizeof(OdisPathVertex) + context.options.memoryLimit / 2 <= context.memoryLeft())
-    return vertices;
+      vertices * sizeof(OdisPathVertex) + context.options.memoryLimit / 2 <= context.memoryLeft())
+    return true;
   if (!verticesLeftOut.exchange(true))
     context.log(ODIS_LOG_WARNING, "the memory's limit leaves out vertices: the guide learns from the first");
-  return {};
+  return false;
 }
 
 void OdisFrameImpl::requireNotEnding(const char* function) const {
@@ -135,7 +134,10 @@ bool odisAddSamples(OdisFrame frame, const OdisFrameSample* samples, size_t coun
   return guardedForFrame(frame, "odisAddSamples", false, [&](Frame& f) {
     if (count > 0) odis::core::requireArgument(samples, "odisAddSamples: samples");
     const odis::core::HostVertices given(vertices);
-    f.add({samples, count}, frame->withinMemory(given.view()));
+    if (frame->hasRoomFor(given.size()))
+      f.add({samples, count}, given);
+    else
+      f.add({samples, count});
     frame->memory.set(f.bytes());
     return true;
   });

@@ -48,10 +48,10 @@ void odisReleaseGuideBuilder(OdisGuideBuilder builder) {
 bool odisAddVertices(OdisGuideBuilder builder, const OdisPathVertices* vertices) {
   return guardedFor(builder, "odisAddVertices", false, [&] {
     odis::core::requireArgument(vertices, "odisAddVertices: vertices");
-    const HostVertices given(vertices);
+    HostVertices given(vertices);
     OdisContextImpl& context = builder->memory.context();
     if (context.options.memoryLimit > 0)
-      builder->builder.limitBytes(context.memoryLeft() + builder->builder.heldBytes(), given.view().size());
+      builder->builder.limitBytes(context.memoryLeft() + builder->builder.heldBytes(), given.size());
     builder->builder.add(given.view());
     builder->memory.set(builder->builder.bytes());
     builder->takeStock();
@@ -63,7 +63,7 @@ OdisGuide odisBuildGuide(OdisGuideBuilder builder, const OdisPathVertices* verti
                          size_t pixelCount) {
   return guardedFor(builder, "odisBuildGuide", OdisGuide(nullptr), [&] {
     odis::core::requireArgument(vertices, "odisBuildGuide: vertices");
-    const HostVertices given(vertices);
+    HostVertices given(vertices);
     return new OdisGuideImpl(
         &builder->memory.context(),
         builder->builder.build(given.view(), {pixelValues, pixelValues ? pixelCount : 0}));

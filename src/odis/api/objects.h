@@ -139,7 +139,7 @@ struct OdisFrameImpl : odis::core::Object {
 
   void endPass(bool interrupted);
   void requireNotEnding(const char* function) const;
-  odis::ArrayView<const OdisPathVertex> withinMemory(odis::ArrayView<const OdisPathVertex> vertices);
+  bool hasRoomFor(size_t vertices);
 
   odis::core::MemoryUse memory;
   odis::core::Ref<OdisGuideBuilderImpl> builder;  // the host's

@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <cstring>
 #include <stdexcept>
+#include <utility>
 
 #include "odis/api/guard.h"
 
@@ -83,24 +84,19 @@ void copyHalves(void* to, const void* from, size_t floats) {
   }
 }
 
-// Copies one field of all vertices.
-void copyField(const FieldPair& pair, const OdisVertexField& field, std::vector<PathVertex>& vertices) {
+// The distance in bytes of a field's numbers for neighbouring vertices.
+size_t checkedStride(const FieldPair& pair, const OdisVertexField& field, size_t count) {
   const bool half = field.format == ODIS_FORMAT_HALF;
   const size_t bytes = half ? pair.bytes / 2 : pair.bytes;
   const size_t stride = field.stride == 0 ? bytes : field.stride;
-  const auto require = [&](bool holds, const std::string& expected) {
-    if (!holds)
-      throw std::invalid_argument("OdisPathVertices." + std::string(pair.name) + ": expected " + expected);
+  const auto refuse = [&](const std::string& expected) {
+    throw std::invalid_argument("OdisPathVertices." + std::string(pair.name) + ": expected " + expected);
   };
-  require(half || field.format == ODIS_FORMAT_DEFAULT, "a format of OdisFormat");
-  require(!half || pair.isFloat, "no half floats for whole numbers");
-  require(stride >= bytes, "a stride of at least " + std::to_string(bytes) + " bytes");
-  require(vertices.size() <= PTRDIFF_MAX / stride, "an array that memory can hold");
-  for (size_t i = 0; i < vertices.size(); ++i) {
-    const char* from = static_cast<const char*>(field.data) + i * stride;
-    char* to = reinterpret_cast<char*>(&vertices[i]) + pair.offset;
-    half ? copyHalves(to, from, pair.bytes / sizeof(float)) : void(std::memcpy(to, from, pair.bytes));
-  }
+  if (!half && field.format != ODIS_FORMAT_DEFAULT) refuse("a format of OdisFormat");
+  if (half && !pair.isFloat) refuse("no half floats for whole numbers");
+  if (stride < bytes) refuse("a stride of at least " + std::to_string(bytes) + " bytes");
+  if (count > PTRDIFF_MAX / stride) refuse("an array that memory can hold");
+  return stride;
 }
 
 // The array of OdisPathVertex that is described; null if it is something else.
@@ -123,14 +119,72 @@ HostVertices::HostVertices(const OdisPathVertices* given) {
   const OdisPathVertices described = adopt(*given, "OdisPathVertices");
   if (described.count == 0) return;
   requireArgument(described.position.data, "OdisPathVertices.position");
+  m_size = described.count;
   if (const PathVertex* array = asArray(described)) {
-    m_view = {array, described.count};
+    m_array = {array, m_size};
     return;
   }
-  m_copies.resize(described.count);
-  for (const FieldPair& pair : kFields)
-    if ((described.*pair.described).data) copyField(pair, described.*pair.described, m_copies);
-  m_view = m_copies;
+  for (const FieldPair& pair : kFields) {
+    const OdisVertexField& field = described.*pair.described;
+    if (!field.data) continue;
+    const Run run{static_cast<const char*>(field.data), checkedStride(pair, field, described.count),
+                  pair.offset, pair.bytes, field.format == ODIS_FORMAT_HALF};
+    addRun(run);
+    if (pair.offset == offsetof(PathVertex, pixel)) m_pixel = run;
+    if (pair.offset == offsetof(PathVertex, sample)) m_sample = run;
+    if (pair.offset == offsetof(PathVertex, depth)) m_depth = run;
+  }
+}
+
+// Adds a field, as a part of the last run where it lies behind that.
+void HostVertices::addRun(const Run& run) {
+  if (!m_runs.empty()) {
+    Run& last = m_runs.back();
+    if (last.data + last.bytes == run.data && last.offset + last.bytes == run.offset &&
+        last.stride == run.stride && !last.half && !run.half) {
+      last.bytes += run.bytes;
+      return;
+    }
+  }
+  m_runs.push_back(run);
+}
+
+VertexIdentity HostVertices::identity(size_t i) const {
+  if (!m_array.empty()) return identityOf(m_array[i]);
+  VertexIdentity identity = identityOf(PathVertex());
+  if (m_pixel.data) std::memcpy(&identity.pixel, m_pixel.at(i), sizeof identity.pixel);
+  if (m_sample.data) std::memcpy(&identity.sample, m_sample.at(i), sizeof identity.sample);
+  if (m_depth.data) std::memcpy(&identity.depth, m_depth.at(i), sizeof identity.depth);
+  return identity;
+}
+
+void HostVertices::copy(size_t i, PathVertex& vertex) const {
+  if (!m_array.empty()) {
+    vertex = m_array[i];
+    return;
+  }
+  for (const Run& run : m_runs) {
+    char* to = reinterpret_cast<char*>(&vertex) + run.offset;
+    // Most fields are a number or a vector, which is quick where the compiler knows the size.
+    if (run.half)
+      copyHalves(to, run.at(i), run.bytes / sizeof(float));
+    else if (run.bytes == sizeof(float))
+      std::memcpy(to, run.at(i), sizeof(float));
+    else if (run.bytes == sizeof(Float3))
+      std::memcpy(to, run.at(i), sizeof(Float3));
+    else
+      std::memcpy(to, run.at(i), run.bytes);
+  }
+}
+
+ArrayView<const PathVertex> HostVertices::view() {
+  if (m_array.size() == m_size) return m_array;
+  if (m_copies.empty()) {
+    std::vector<PathVertex> copies(m_size);
+    for (size_t i = 0; i < m_size; ++i) copy(i, copies[i]);
+    m_copies = std::move(copies);
+  }
+  return m_copies;
 }
 
 }  // namespace odis::core

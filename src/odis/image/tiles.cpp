@@ -1,26 +1,30 @@
 #include "odis/image/tiles.h"
 
 #include <algorithm>
-#include <map>
 #include <stdexcept>
 #include <string>
 #include <tuple>
 #include <utility>
+
+#include "odis/image/tile_order.h"
 
 namespace odis::core {
 
 namespace {
 
 constexpr uint32_t kTileSize = 16;
+// From so many tiles, and samples and vertices together, threads are worth their while.
+constexpr size_t kTilesForThreads = 5, kWorkForThreads = 16384;
 
 }  // namespace
 
-TileCollector::TileCollector(uint32_t width, uint32_t height)
+TileCollector::TileCollector(uint32_t width, uint32_t height, std::shared_ptr<const Tasks> tasks)
     : m_width(width),
       m_height(height),
       m_columns((width + kTileSize - 1) / kTileSize),
       m_rows((height + kTileSize - 1) / kTileSize),
-      m_tiles(std::make_unique<Tile[]>(tileCount())) {}
+      m_tiles(std::make_unique<Tile[]>(tileCount())),
+      m_tasks(std::move(tasks)) {}
 
 uint32_t TileCollector::tileOf(uint32_t pixel) const {
   return pixel / m_width / kTileSize * m_columns + pixel % m_width / kTileSize;
@@ -59,7 +63,7 @@ void TileCollector::beginPass(Due due, Sink sink) {
 bool TileCollector::allIn(uint32_t tile, ArrayView<const FrameSample> samples,
                           ArrayView<const PathVertex> vertices) const {
   for (const FrameSample& s : samples)
-    if (s.pixel >= m_width * m_height || tileOf(s.pixel) != tile) return false;
+    if (!isDue(s.pixel, s.sample) || tileOf(s.pixel) != tile) return false;
   uint32_t pixel = ~0u, sample = 0;
   for (const PathVertex& v : vertices) {
     if (v.pixel == pixel && v.sample == sample) continue;
@@ -70,43 +74,102 @@ bool TileCollector::allIn(uint32_t tile, ArrayView<const FrameSample> samples,
   return true;
 }
 
-void TileCollector::add(ArrayView<const FrameSample> samples, ArrayView<const PathVertex> vertices) {
-  for (const FrameSample& s : samples)
-    if (!isDue(s.pixel, s.sample))
-      throw std::out_of_range("odisAddSamples: sample " + std::to_string(s.sample) + " of pixel " +
-                              std::to_string(s.pixel) +
-                              " is not due in this pass: odisGetSamples says which are");
-  // Whatever is of one tile needs no sorting by tile.
-  if (!samples.empty())
-    if (const uint32_t tile = tileOf(samples[0].pixel); allIn(tile, samples, vertices))
-      return addToTile(tile, samples, vertices);
-  std::map<uint32_t, std::pair<std::vector<FrameSample>, std::vector<PathVertex>>> tiles;
-  uint64_t refused = 0;
-  for (const FrameSample& s : samples) tiles[tileOf(s.pixel)].first.push_back(s);
-  for (const PathVertex& v : vertices)
-    if (isDue(v.pixel, v.sample))
-      tiles[tileOf(v.pixel)].second.push_back(v);
-    else
-      ++refused;
-  for (auto& [tile, part] : tiles) addToTile(tile, part.first, part.second);
-  if (refused == 0) return;
-  const std::lock_guard lock(m_refusedMutex);
-  m_refused += refused;
+void TileCollector::add(ArrayView<const FrameSample> samples, const VertexSource& vertices) {
+  // Whatever is of one tile and lies in an array needs no sorting by tile.
+  if (!samples.empty() && vertices.array().size() == vertices.size())
+    if (const uint32_t tile = tileOf(samples[0].pixel); allIn(tile, samples, vertices.array()))
+      return addToTile(tile, samples, vertices.array());
+  addTiles(samples, vertices);
 }
 
-void TileCollector::addToTile(uint32_t index, ArrayView<const FrameSample> samples,
-                              ArrayView<const PathVertex> vertices) {
+template <class Body>
+void TileCollector::forEach(bool byThreads, size_t count, const Body& body) const {
+  if (byThreads && m_tasks) return m_tasks->forEach(count, body);
+  for (size_t i = 0; i < count; ++i) body(i);
+}
+
+// [i] the tile of `identityAt(i)`; TileOrder::kNone if that is not due.
+template <class IdentityAt>
+std::vector<uint32_t> TileCollector::tilesOf(bool byThreads, size_t count, const IdentityAt& identityAt) const {
+  constexpr size_t kBlock = 8192;
+  std::vector<uint32_t> tiles(count);
+  forEach(byThreads, (count + kBlock - 1) / kBlock, [&](size_t block) {
+    uint32_t pixel = ~0u, sample = 0, tile = TileOrder::kNone;
+    for (size_t i = block * kBlock; i < std::min((block + 1) * kBlock, count); ++i) {
+      const auto identity = identityAt(i);
+      if (identity.pixel != pixel || identity.sample != sample) {
+        pixel = identity.pixel;
+        sample = identity.sample;
+        tile = isDue(pixel, sample) ? tileOf(pixel) : TileOrder::kNone;
+      }
+      tiles[i] = tile;
+    }
+  });
+  return tiles;
+}
+
+void TileCollector::addTiles(ArrayView<const FrameSample> samples, const VertexSource& vertices) {
+  const bool isLarge = samples.size() + vertices.size() >= kWorkForThreads;
+  const std::vector<uint32_t> tileOfSample =
+      tilesOf(isLarge, samples.size(), [&](size_t i) { return samples[i]; });
+  for (size_t i = 0; i < samples.size(); ++i)
+    if (tileOfSample[i] == TileOrder::kNone)
+      throw std::out_of_range("odisAddSamples: sample " + std::to_string(samples[i].sample) + " of pixel " +
+                              std::to_string(samples[i].pixel) +
+                              " is not due in this pass: odisGetSamples says which are");
+  const TileOrder sampleOrder(tileOfSample),
+      vertexOrder(tilesOf(isLarge, vertices.size(), [&](size_t i) { return vertices.identity(i); }));
+  std::vector<uint32_t> tiles;
+  for (uint32_t tile = std::min(sampleOrder.first(), vertexOrder.first());
+       tile < std::max(sampleOrder.end(), vertexOrder.end()); ++tile)
+    if (!sampleOrder.of(tile).empty() || !vertexOrder.of(tile).empty()) tiles.push_back(tile);
+  for (const uint32_t tile : tiles) requireOpen(tile);
+  forEach(isLarge && tiles.size() >= kTilesForThreads, tiles.size(), [&](size_t t) {
+    std::vector<FrameSample> ofTile;
+    ofTile.reserve(sampleOrder.of(tiles[t]).size());
+    for (const size_t i : sampleOrder.of(tiles[t])) ofTile.push_back(samples[i]);
+    addToTile(tiles[t], ofTile, inOrder(vertices, vertexOrder.of(tiles[t])));
+  });
+  m_refused += vertices.size() - vertexOrder.size();
+}
+
+// Vertices of a tile in the order in which they are handed on.
+std::vector<PathVertex> TileCollector::inOrder(const VertexSource& vertices,
+                                               ArrayView<const size_t> indices) const {
+  // A tile's vertices by pixel, sample and depth in one number, and then as they came.
+  std::vector<std::pair<uint64_t, size_t>> order;
+  order.reserve(indices.size());
+  for (const size_t i : indices) {
+    const VertexIdentity v = vertices.identity(i);
+    order.emplace_back(uint64_t(placeInTile(v.pixel)) << 48 | uint64_t(v.sample) << 16 | v.depth, i);
+  }
+  if (!std::is_sorted(order.begin(), order.end())) std::sort(order.begin(), order.end());
+  std::vector<PathVertex> ordered;
+  ordered.reserve(order.size());
+  for (const auto& [key, i] : order) vertices.copy(i, ordered.emplace_back());
+  return ordered;
+}
+
+void TileCollector::requireOpen(uint32_t tile) const {
+  if (m_tiles[tile].done)
+    throw std::logic_error("odisAddSamples: a sample or vertex came twice, or after its tile was complete");
+}
+
+void TileCollector::addToTile(uint32_t index, ArrayView<const FrameSample> samples, TileVertices vertices) {
   Tile& tile = m_tiles[index];
   const std::lock_guard lock(tile.mutex);
-  if (tile.done)
-    throw std::logic_error("odisAddSamples: a sample or vertex came twice, or after its tile was complete");
+  requireOpen(index);
   if (tile.due == 0) tile.due = samplesDue(index);
   const bool nothingWaits = tile.samples.empty() && tile.vertices.empty();
   tile.done = tile.samples.size() + samples.size() == tile.due;
   if (tile.done && nothingWaits) return handOn(index, samples, vertices);
+  const uint64_t bytes = samples.size() * sizeof(FrameSample) + vertices.size() * sizeof(PathVertex);
   tile.samples.insert(tile.samples.end(), samples.begin(), samples.end());
-  tile.vertices.insert(tile.vertices.end(), vertices.begin(), vertices.end());
-  m_waitingBytes += samples.size() * sizeof(FrameSample) + vertices.size() * sizeof(PathVertex);
+  if (tile.vertices.empty())
+    tile.vertices = vertices.take();
+  else
+    tile.vertices.insert(tile.vertices.end(), vertices.view().begin(), vertices.view().end());
+  m_waitingBytes += bytes;
   if (tile.done) handOnWaiting(index);
 }
 
@@ -114,7 +177,9 @@ void TileCollector::handOnWaiting(uint32_t index) {
   const std::vector<FrameSample> samples = std::exchange(m_tiles[index].samples, {});
   const std::vector<PathVertex> vertices = std::exchange(m_tiles[index].vertices, {});
   m_waitingBytes -= samples.size() * sizeof(FrameSample) + vertices.size() * sizeof(PathVertex);
-  handOn(index, samples, vertices);
+  // Lent: having grown, they hold more memory than they need.
+  TileVertices lent(vertices);
+  handOn(index, samples, lent);
 }
 
 void TileCollector::skip(const std::vector<uint8_t>& done) {
@@ -136,8 +201,7 @@ uint64_t TileCollector::endPass() {
   return m_refused;
 }
 
-void TileCollector::handOn(uint32_t tile, ArrayView<const FrameSample> samples,
-                           ArrayView<const PathVertex> vertices) {
+void TileCollector::handOn(uint32_t tile, ArrayView<const FrameSample> samples, TileVertices& vertices) {
   // Sums over a pixel depend on the order of its own samples alone.
   uint32_t next[kTileSize * kTileSize] = {};
   bool inOrder = true;
@@ -158,13 +222,12 @@ void TileCollector::handOn(uint32_t tile, ArrayView<const FrameSample> samples,
     if (a.pixel != b.pixel) return placeInTile(a.pixel) < placeInTile(b.pixel);
     return std::tie(a.sample, a.depth) < std::tie(b.sample, b.depth);
   };
-  std::vector<PathVertex> orderedVertices;
-  if (!std::is_sorted(vertices.begin(), vertices.end(), precedes)) {
-    orderedVertices.assign(vertices.begin(), vertices.end());
-    std::stable_sort(orderedVertices.begin(), orderedVertices.end(), precedes);
-    vertices = orderedVertices;
-  }
-  m_sink(tile, samples, vertices);
+  const ArrayView<const PathVertex> given = vertices.view();
+  if (std::is_sorted(given.begin(), given.end(), precedes)) return m_sink(tile, samples, vertices);
+  std::vector<PathVertex> orderedVertices = vertices.take();
+  std::stable_sort(orderedVertices.begin(), orderedVertices.end(), precedes);
+  TileVertices ordered(std::move(orderedVertices));
+  m_sink(tile, samples, ordered);
 }
 
 }  // namespace odis::core

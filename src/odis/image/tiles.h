@@ -7,7 +7,9 @@
 #include <mutex>
 #include <vector>
 
-#include "odis/path_vertex.h"
+#include "odis/image/tile_vertices.h"
+#include "odis/record/vertex_source.h"
+#include "odis/work/tasks.h"
 
 namespace odis::core {
 
@@ -21,17 +23,18 @@ class TileCollector {
  public:
   // Called once for each tile that has samples, by any thread: a pixel's samples in the order of their
   // numbers, vertices in the order of pixel, sample, depth.
-  using Sink = std::function<void(uint32_t tile, ArrayView<const FrameSample>, ArrayView<const PathVertex>)>;
+  using Sink = std::function<void(uint32_t tile, ArrayView<const FrameSample>, TileVertices&)>;
   // The samples of a pixel that are due in the pass.
   using Due = std::function<SampleRange(uint32_t pixel)>;
 
-  TileCollector(uint32_t width, uint32_t height);
+  // The tiles of a large call are shared out as `tasks`; null: they are taken one after another.
+  TileCollector(uint32_t width, uint32_t height, std::shared_ptr<const Tasks> tasks = nullptr);
   uint32_t tileCount() const { return m_columns * m_rows; }
 
   void beginPass(Due due, Sink sink);
   // Thread-safe. Throws std::out_of_range for samples that are not due, std::logic_error for samples of a
-  // tile that is complete.
-  void add(ArrayView<const FrameSample> samples, ArrayView<const PathVertex> vertices);
+  // tile that is complete; nothing is taken then.
+  void add(ArrayView<const FrameSample> samples, const VertexSource& vertices);
   // Hands on the tiles that lack samples. Returns how many vertices were refused because they were not due.
   uint64_t endPass();
 
@@ -59,16 +62,23 @@ class TileCollector {
   bool isDue(uint32_t pixel, uint32_t sample) const;
   uint64_t samplesDue(uint32_t tile) const;
   bool allIn(uint32_t tile, ArrayView<const FrameSample> samples, ArrayView<const PathVertex> vertices) const;
-  void addToTile(uint32_t tile, ArrayView<const FrameSample> samples, ArrayView<const PathVertex> vertices);
+  template <class Body>
+  void forEach(bool byThreads, size_t count, const Body& body) const;
+  template <class IdentityAt>
+  std::vector<uint32_t> tilesOf(bool byThreads, size_t count, const IdentityAt& identityAt) const;
+  std::vector<PathVertex> inOrder(const VertexSource& vertices, ArrayView<const size_t> indices) const;
+  void requireOpen(uint32_t tile) const;
+  void addTiles(ArrayView<const FrameSample> samples, const VertexSource& vertices);
+  void addToTile(uint32_t tile, ArrayView<const FrameSample> samples, TileVertices vertices);
   void handOnWaiting(uint32_t tile);
-  void handOn(uint32_t tile, ArrayView<const FrameSample> samples, ArrayView<const PathVertex> vertices);
+  void handOn(uint32_t tile, ArrayView<const FrameSample> samples, TileVertices& vertices);
 
   uint32_t m_width, m_height, m_columns, m_rows;
   Due m_due;
   Sink m_sink;
   std::unique_ptr<Tile[]> m_tiles;
-  std::mutex m_refusedMutex;
-  uint64_t m_refused = 0;
+  std::shared_ptr<const Tasks> m_tasks;
+  std::atomic<uint64_t> m_refused{0};
   std::atomic<uint64_t> m_waitingBytes{0};
 };
 
