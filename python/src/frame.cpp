@@ -260,12 +260,11 @@ void bindFrame(nb::module_& module) {
 
 Calls in the wrong order raise Error (INVALID_OPERATION). add_samples and samples may be called by several
 threads at once, everything else by one at a time.)");
-  frame.def(
-      nb::init<const FrameOptions&, const LoggingContext*, const Builder*>(), "options"_a,
-      "context"_a = nb::none(), "builder"_a = nb::none(),
-      R"(builder: a GuideBuilder that the frame adds its vertices to, and that may hold those of earlier frames.
-    Its own options apply, options.guide is ignored. Nothing else may use it until the frame has ended.
-    None: the frame makes one.
+  frame.def(nb::init<const FrameOptions&, const LoggingContext*, const Builder*>(), "options"_a,
+            "context"_a = nb::none(), "builder"_a = nb::none(),
+            R"(builder: a GuideBuilder that the frame adds its vertices to, and that may hold those of
+    earlier frames. Its own options apply, options.guide is ignored. Nothing else may use it until the
+    frame has ended. None: the frame makes one.
 
 Raises Error (INVALID_ARGUMENT) for an option out of its range.)");
   bindPasses(frame);

@@ -60,9 +60,8 @@ Frame::Data::Data(const FrameOptions& o, std::shared_ptr<const Tasks> tasks,
     : options(checkedOptions(o)),
       ownsBuilder(!given),
       builder(!o.guided ? nullptr
-              : given
-                  ? std::move(given)
-                  : std::make_shared<GuideBuilder>(o.guide ? *o.guide : GuideOptions(), tasks)),
+              : given   ? std::move(given)
+                        : std::make_shared<GuideBuilder>(o.guide ? *o.guide : GuideOptions(), tasks)),
       guideOptions(builder ? builder->options() : GuideOptions()),
       lightParts(guideOptions.lightParts, guideOptions.lightParts + guideOptions.lightPartCount),
       modelId(builder ? builder->modelId() : 0),

@@ -11,7 +11,7 @@ namespace odis::core {
 // Vertices that are lent, or given away.
 class TileVertices {
  public:
-  TileVertices(ArrayView<const PathVertex> lent) : m_view(lent) {}                             // NOLINT
+  TileVertices(ArrayView<const PathVertex> lent) : m_view(lent) {}                               // NOLINT
   TileVertices(std::vector<PathVertex>&& given) : m_given(std::move(given)), m_view(m_given) {}  // NOLINT
   TileVertices(const TileVertices&) = delete;
   TileVertices& operator=(const TileVertices&) = delete;

@@ -90,7 +90,8 @@ void TileCollector::forEach(bool byThreads, size_t count, const Body& body) cons
 
 // [i] the tile of `identityAt(i)`; TileOrder::kNone if that is not due.
 template <class IdentityAt>
-std::vector<uint32_t> TileCollector::tilesOf(bool byThreads, size_t count, const IdentityAt& identityAt) const {
+std::vector<uint32_t> TileCollector::tilesOf(bool byThreads, size_t count,
+                                             const IdentityAt& identityAt) const {
   constexpr size_t kBlock = 8192;
   std::vector<uint32_t> tiles(count);
   forEach(byThreads, (count + kBlock - 1) / kBlock, [&](size_t block) {
