@@ -68,7 +68,7 @@ void OdisFrameImpl::endPass(bool interrupted) {
     warnings.report(context, frame.coarsening(), frame.samplesLeftOut());
 }
 
-// Whether the memory's limit lets the frame keep so many vertices; warns where it first does not.
+// Whether the memory limit leaves room for this many vertices; warns the first time that it does not.
 bool OdisFrameImpl::hasRoomFor(size_t vertices) {
   OdisContextImpl& context = memory.context();
   // Half of the memory is for the guide.

@@ -13,7 +13,8 @@ namespace odis::core {
 namespace {
 
 constexpr uint32_t kTileSize = 16;
-// From so many tiles, and samples and vertices together, threads are worth their while.
+// Threads share the work on a call that brings at least this many tiles, and this many samples and vertices
+// together.
 constexpr size_t kTilesForThreads = 5, kWorkForThreads = 16384;
 
 }  // namespace
@@ -33,6 +34,10 @@ uint32_t TileCollector::tileOf(uint32_t pixel) const {
 uint32_t TileCollector::placeInTile(uint32_t pixel) const {
   const uint32_t x = pixel % m_width % kTileSize, y = pixel / m_width % kTileSize;
   return ((y / 4) * 4 + x / 4) * 16 + (y % 4) * 4 + x % 4;
+}
+
+uint64_t TileCollector::orderInTile(const VertexIdentity& v) const {
+  return uint64_t(placeInTile(v.pixel)) << 48 | uint64_t(v.sample) << 16 | v.depth;
 }
 
 bool TileCollector::isDue(uint32_t pixel, uint32_t sample) const {
@@ -137,13 +142,9 @@ void TileCollector::addTiles(ArrayView<const FrameSample> samples, const VertexS
 // Vertices of a tile in the order in which they are handed on.
 std::vector<PathVertex> TileCollector::inOrder(const VertexSource& vertices,
                                                ArrayView<const size_t> indices) const {
-  // A tile's vertices by pixel, sample and depth in one number, and then as they came.
-  std::vector<std::pair<uint64_t, size_t>> order;
+  std::vector<std::pair<uint64_t, size_t>> order;  // vertices of the same order stay as they came
   order.reserve(indices.size());
-  for (const size_t i : indices) {
-    const VertexIdentity v = vertices.identity(i);
-    order.emplace_back(uint64_t(placeInTile(v.pixel)) << 48 | uint64_t(v.sample) << 16 | v.depth, i);
-  }
+  for (const size_t i : indices) order.emplace_back(orderInTile(vertices.identity(i)), i);
   if (!std::is_sorted(order.begin(), order.end())) std::sort(order.begin(), order.end());
   std::vector<PathVertex> ordered;
   ordered.reserve(order.size());
@@ -220,8 +221,7 @@ void TileCollector::handOn(uint32_t tile, ArrayView<const FrameSample> samples, 
     samples = orderedSamples;
   }
   const auto precedes = [this](const PathVertex& a, const PathVertex& b) {
-    if (a.pixel != b.pixel) return placeInTile(a.pixel) < placeInTile(b.pixel);
-    return std::tie(a.sample, a.depth) < std::tie(b.sample, b.depth);
+    return orderInTile(identityOf(a)) < orderInTile(identityOf(b));
   };
   const ArrayView<const PathVertex> given = vertices.view();
   if (std::is_sorted(given.begin(), given.end(), precedes)) return m_sink(tile, samples, vertices);

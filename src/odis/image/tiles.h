@@ -59,6 +59,8 @@ class TileCollector {
   };
   uint32_t tileOf(uint32_t pixel) const;
   uint32_t placeInTile(uint32_t pixel) const;
+  // What a tile's vertices are ordered by: pixel, sample and depth in one number.
+  uint64_t orderInTile(const VertexIdentity& v) const;
   bool isDue(uint32_t pixel, uint32_t sample) const;
   uint64_t samplesDue(uint32_t tile) const;
   bool allIn(uint32_t tile, ArrayView<const FrameSample> samples, ArrayView<const PathVertex> vertices) const;
