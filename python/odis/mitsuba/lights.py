@@ -1,4 +1,4 @@
-"""The choice of an emitter for next-event estimation: as Mitsuba chooses, or by what a guide learned of groups of them."""
+"""The choice of an emitter for next-event estimation: as Mitsuba chooses, or by what a guide learned of groups."""
 
 from dataclasses import dataclass
 
@@ -18,7 +18,7 @@ class LightTable:
     """Emitters in the order of their groups. 20 bytes each."""
 
     emitters: object  # EmitterPtr, by place
-    group: object  # UInt32, by place: (first) group of the emitter
+    group: object  # UInt32, by place: of the emitter
     probabilities: object  # Float, by place: with which Mitsuba chooses it
     cdf: object  # Float, [places + 1]: sums of that
     group_begin: object  # UInt32, [groups + 1]: first place of a group
@@ -30,8 +30,6 @@ class LightTable:
         """Chooses an emitter by u, uniform in [0, 1): its place and the probability of that place."""
         if self.count == 1:
             return mi.UInt32(0), mi.Float(1)
-        learned = mi.Bool(False)
-        low, high = mi.Float(0), mi.Float(1)
         if tables is not None and self.groups:
             learned = active & (u < fraction)
             u = dr.select(learned, u / fraction, (u - fraction) / (1 - fraction))
@@ -42,10 +40,10 @@ class LightTable:
             begin = dr.gather(mi.Float, tables.light_tables, first + group, learned)
             end = dr.gather(mi.Float, tables.light_tables, first + group + 1, learned)
             within = dr.clip((u - begin) / (end - begin), 0, 1)
-            low = dr.gather(mi.Float, self.cdf, dr.gather(mi.UInt32, self.group_begin, group, learned), learned)
-            high = dr.gather(mi.Float, self.cdf, dr.gather(mi.UInt32, self.group_begin, group + 1, learned), learned)
+            low, high = self._cdf_of_group(group, learned)
             u = dr.select(learned, dr.fma(within, high - low, low), u)
-        place = mi.UInt32(dr.binary_search(0, self.count - 1, lambda i: dr.gather(mi.Float, self.cdf, i + 1, active) <= u))
+        place = mi.UInt32(dr.binary_search(
+            0, self.count - 1, lambda i: dr.gather(mi.Float, self.cdf, i + 1, active) <= u))
         return place, self.probability(tables, cell, fraction, place, active)
 
     def probability(self, tables, cell, fraction, place, active):
@@ -74,10 +72,14 @@ class LightTable:
         share = self._share_of_group(group, dr.gather(mi.Float, self.probabilities, place, active), active)
         return dr.select(active, group, odis.NO_LIGHT_GROUP), dr.select(share > 0, probability / share, 0)
 
+    def _cdf_of_group(self, group, active):
+        """Where a group begins and ends in the sums of Mitsuba's probabilities."""
+        return (dr.gather(mi.Float, self.cdf, dr.gather(mi.UInt32, self.group_begin, group + i, active), active)
+                for i in range(2))
+
     def _share_of_group(self, group, probability, active):
         """What share of Mitsuba's choices of a group an emitter has that is chosen with this probability."""
-        low = dr.gather(mi.Float, self.cdf, dr.gather(mi.UInt32, self.group_begin, group, active), active)
-        high = dr.gather(mi.Float, self.cdf, dr.gather(mi.UInt32, self.group_begin, group + 1, active), active)
+        low, high = self._cdf_of_group(group, active)
         return dr.select(active & (high > low), probability / (high - low), 0)
 
 
@@ -101,26 +103,34 @@ def center_of(emitter):
     return center if np.isfinite(center).all() else np.zeros(3)
 
 
-def make_light_table(scene):
-    """The emitters of a scene, in groups of neighbours."""
-    emitters = scene.emitters()
-    weights = np.array([float(np.asarray(e.sampling_weight()).ravel()[0]) for e in emitters])
-    weights = weights / weights.sum() if weights.sum() > 0 else weights
+def make_groups(emitters):
+    """The emitters' numbers, in groups of neighbours: each infinite one by itself as long as these are few."""
     infinite = [i for i, e in enumerate(emitters) if mi.has_flag(e.flags(), mi.EmitterFlags.Infinite)]
-    finite = [i for i in range(len(emitters)) if i not in set(infinite)]
+    finite = np.array([i for i in range(len(emitters)) if i not in infinite], int)
     groups = [[i] for i in infinite[:8]] + ([infinite[8:]] if infinite[8:] else [])
-    if finite:
+    if finite.size:
         centers = np.array([center_of(emitters[i]) for i in finite])
-        groups += [[finite[i] for i in members] for members in split_groups(centers, MOST_GROUPS - len(groups))]
+        groups += [list(finite[members]) for members in split_groups(centers, MOST_GROUPS - len(groups))]
+    return groups
+
+
+def make_light_table(scene):
+    """The emitters of a scene, in groups of neighbours. Without emitters it has a null one, which gives no light."""
+    emitters = scene.emitters()
+    groups = make_groups(emitters) or [[0]]
     order = [i for members in groups for i in members]
+    weights = np.array([float(np.asarray(e.sampling_weight()).ravel()[0]) for e in emitters] or [0.0])[order]
+    weights /= max(weights.sum(), 1e-30)
     numbers = np.array(dr.reinterpret_array(mi.UInt32, scene.emitters_dr()))[order] if emitters else np.zeros(1, int)
     place = np.zeros(int(numbers.max()) + 1, np.uint32)
     place[numbers] = np.arange(len(numbers))
     begin = np.cumsum([0] + [len(members) for members in groups])
+    whole = lambda values: array_of(mi.UInt32, np.asarray(values, np.uint32))
+    real = lambda values: array_of(mi.Float, np.asarray(values, np.float32))
     table = LightTable(
         emitters=dr.reinterpret_array(mi.EmitterPtr, mi.UInt32(numbers)),
-        group=array_of(mi.UInt32, np.repeat(np.arange(len(groups), dtype=np.uint32), np.diff(begin))), probabilities=array_of(mi.Float, weights[order].astype(np.float32)),
-        cdf=array_of(mi.Float, np.concatenate([[0], np.cumsum(weights[order])]).astype(np.float32)), group_begin=array_of(mi.UInt32, begin.astype(np.uint32)),
-        place=array_of(mi.UInt32, place), count=len(emitters), groups=len(groups) if len(groups) > 1 else 0)
+        group=whole(np.repeat(np.arange(len(groups)), np.diff(begin))), probabilities=real(weights),
+        cdf=real(np.concatenate([[0], np.cumsum(weights)])), group_begin=whole(begin), place=whole(place),
+        count=len(order), groups=len(groups) if len(groups) > 1 else 0)
     dr.make_opaque(table)
     return table
