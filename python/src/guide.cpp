@@ -116,8 +116,6 @@ void bindDecisions(nb::class_<Guide>& guide) {
           "where the fraction is above 0; (0, 1) where nothing was learned about lights.");
 }
 
-}  // namespace
-
 void bindRules(nb::module_& module) {
   nb::class_<Rules>(module, "GuideRules", "The constants of a host's own look-ups (odis/guide_view.h).")
       .def_prop_ro(
@@ -137,6 +135,8 @@ void bindRules(nb::module_& module) {
       .def_prop_ro(
           "rim", [](const Rules& self) { return self.rim; }, "What maps add to every cosine.");
 }
+
+}  // namespace
 
 void bindGuide(nb::module_& module) {
   bindRules(module);

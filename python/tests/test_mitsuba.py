@@ -16,6 +16,7 @@ try:
     import odis.mitsuba
     from odis.mitsuba import guide_tables
     from odis.mitsuba.arrays import array_of
+    from odis.mitsuba.random_numbers import generator_of, hash_seed
 except (ImportError, AttributeError, RuntimeError) as missing:
     raise unittest.SkipTest(f"Mitsuba does not run here: {missing}")
 
@@ -42,14 +43,14 @@ def render(scene, kind, seed, spp, **parameters):
 
 class Unbiased(unittest.TestCase):
     def compare(self, scene, spp=64, **parameters):
-        """z-tests of blocks of pixels over seeds: of 16 blocks none beyond 4.2, a chance of 1 in 2,300."""
+        """Tests of the means of 16 blocks and three colours over seeds: by chance one fails in some 400 such images."""
         ours = mi.load_dict({"type": "odis", **parameters})
         path = mi.load_dict({"type": "path", **parameters})
         means = [np.array([blocks(np.array(mi.render(scene, integrator=one, spp=spp, seed=first + i))[..., :3])
                            for i in range(SEEDS)]) for one, first in ((ours, 0), (path, 1000))]
         error = np.sqrt(sum(m.var(0, ddof=1) / SEEDS for m in means))
         z = (means[0].mean(0) - means[1].mean(0)) / error
-        # Student's t with 22 degrees of freedom at that chance.
+        # |t| > 5 with 22 degrees of freedom: 5 in 100,000.
         self.assertLess(np.abs(z).max(), 5.0, z)
         self.assertLess(np.median(error / means[1].mean(0)), 0.02)
 
@@ -81,6 +82,11 @@ class Images(unittest.TestCase):
         noise = [image - (a + b) / 2 for image in (a, b)]
         self.assertGreater(np.abs(noise[0]).mean(), 0.001)
 
+    def test_seeds_share_no_random_numbers(self):
+        number = dr.arange(mi.UInt32, 4096)
+        first = [np.array(generator_of(mi.UInt64(hash_seed(seed)), mi.UInt32(0), number).s0) for seed in range(4)]
+        self.assertGreater(np.unique(np.concatenate(first)).size, 4 * 4096 - 4)
+
     def test_alpha_and_filter(self):
         scene = box()
         scene["sensor"]["film"] = {"type": "hdrfilm", "width": SIZE, "height": SIZE, "pixel_format": "rgba",
@@ -93,6 +99,11 @@ class Images(unittest.TestCase):
         self.assertLess(np.abs(ours[..., 3] - theirs[..., 3])[2:-2, 2:-2].max(), 0.15)
         # At the image's border `path` normalises by the part of the filter within the image.
         self.assertLess(np.abs((ours - theirs)[3:-3, 3:-3].mean((0, 1))).max(), 0.02)
+
+    def test_without_emitters(self):
+        scene = box()
+        del scene["light"]
+        self.assertEqual(np.abs(render(mi.load_dict(scene), "odis", 0, 4)).max(), 0)
 
     def test_hidden_emitters(self):
         scene = mi.load_dict(box())

@@ -8,8 +8,8 @@ import numpy as np
 def array_of(kind, numbers):
     """A copy of numbers as an evaluated array of this type.
 
-    Without the copy Dr.Jit may refer to numpy's memory, whose alignment differs from array to array: kernels depend on it
-    and would be compiled again.
+    Without the copy Dr.Jit may refer to numpy's memory. Its alignment differs from array to array, and kernels are
+    compiled again when it changes.
     """
     mapped = kind(np.ascontiguousarray(numbers).ravel())
     copy = dr.gather(kind, mapped, dr.arange(mi.UInt32, dr.width(mapped)))

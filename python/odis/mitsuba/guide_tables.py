@@ -1,6 +1,7 @@
 """A guide as Dr.Jit arrays, and what a path looks up in it: odis/guide_view.h and odis/sampling_map.h for kernels."""
 
 from dataclasses import dataclass
+from functools import cache
 
 import drjit as dr
 import mitsuba as mi
@@ -28,7 +29,11 @@ ORIENTATIONS = np.array([[1, 0, 0], [-1, 0, 0], [0, 1, 0], [0, -1, 0], [0, 0, 1]
 
 @dataclass
 class GuideTables:
-    """What kernels read of a guide. 4 bytes an entry of the grid, 830 bytes a cell, 4 bytes a cell and group of lights."""
+    """What kernels read of a guide.
+
+    4 bytes an entry of the grid; a cell has 512 bytes of texels, 32 bytes a slot (up to 1.4 KB, twice that with both
+    sides), 16 of decisions, and 4 bytes a group of lights.
+    """
 
     origin: object  # Point3f: corner of the grid
     inverse_edge: object  # Float: 1 / edge of its cells
@@ -86,8 +91,9 @@ def tabulate_cells(guide):
     return origin + low * edge, size, cells
 
 
+@cache
 def quantized_normals():
-    """The unit normals that maps are multiplied with: [normal] (3,), and of each orientation those it may need."""
+    """The unit normals that maps are multiplied with: [normal] (3,), and the numbers of those of each orientation."""
     steps = np.arange(NORMAL_STEPS, dtype=np.float32) / (NORMAL_STEPS - 1)
     y, x = (axis.ravel() for axis in np.meshgrid(steps, steps, indexing="ij"))
     normals = np.array(square_to_direction(mi.Float(x), mi.Float(y))).T
@@ -129,7 +135,7 @@ def make_products(guide, both_sides):
     cosine = normals @ guide.texel_directions
     counted = [np.maximum(cosine, 0) + guide.rules.rim] + ([np.abs(cosine) + guide.rules.rim] if both_sides else [])
     return {"blocks": table, "slots": array_of(mi.UInt32, slots), "slot_count": mi.UInt32(count),
-            "cosines": array_of(mi.Float16, np.array(counted).astype(np.float16)),
+            "cosines": array_of(mi.Float16, half_floats(np.array(counted))),
             "both_sides_slot": mi.UInt32(per_side if both_sides else 0)}
 
 
@@ -142,9 +148,9 @@ def make_guide_tables(guide, both_sides):
                                 guide.outgoing_radiance / np.float32(radiance_scale),
                                 guide.learned_light_fractions[:, None]], axis=1)
     tables = GuideTables(
-        origin=mi.Point3f(*map(float, corner)), inverse_edge=mi.Float(1 / guide.finest_edge), size=mi.Vector3i(*map(int, size)),
-        entries=array_of(mi.UInt32, cells),
-        texels=array_of(mi.Float16, (guide.texels * np.float32(TEXEL_SCALE)).astype(np.float16)),
+        origin=mi.Point3f(*map(float, corner)), inverse_edge=mi.Float(1 / guide.finest_edge),
+        size=mi.Vector3i(*map(int, size)), entries=array_of(mi.UInt32, cells),
+        texels=array_of(mi.Float16, half_floats(guide.texels * np.float32(TEXEL_SCALE))),
         **make_products(guide, both_sides),
         decisions=array_of(mi.Float16, half_floats(decisions)), radiance_scale=mi.Float(radiance_scale),
         light_tables=array_of(mi.Float, guide.light_tables if guide.light_groups else np.zeros(2, np.float32)),
@@ -216,7 +222,7 @@ def shadow_ray_probability(tables, contribution):
 
 def half_floats(numbers):
     with np.errstate(over="ignore"):
-        return numbers.astype(np.float16).ravel()
+        return numbers.astype(np.float16)
 
 
 def halves(table, row, length, active):
@@ -283,16 +289,24 @@ def direction_to_square(w):
             (dr.copysign(dr.select(below, 1 - u, v), w.y) + 1) * 0.5)
 
 
+def texel_of(direction):
+    """The block that a direction falls into, and the texel within it."""
+    x, y = direction_to_square(direction)
+    column, row = dr.minimum(mi.UInt32(x * 16), 15), dr.minimum(mi.UInt32(y * 16), 15)
+    return (row & ~mi.UInt32(3)) + (column >> 2), ((row & 3) << 2) + (column & 3)
+
+
 class VertexMap:
     """A cell's map times the cosine at a vertex: a density over directions (odis::VertexMap).
 
-    The normal is rounded to one of 121, axes among them, for which products are tabulated: the density is as exact, and
-    its product with the cosine up to ten degrees off. normal: unit shading normal on the side of the outgoing direction.
-    both_sides: where the surface scatters to both.
+    The normal is rounded to one of 121, axes among them, for which products are tabulated. The density remains exact:
+    it is that of the rounded normal, in sampling and in evaluation.
+
+    normal: unit shading normal on the side of the outgoing direction. both_sides: where the surface scatters to both.
     """
 
     def __init__(self, tables, cell, normal, both_sides, active):
-        self.tables, self.cell, self.active = tables, cell, active
+        self.tables, self.cell = tables, cell
         self.normal = quantize_normal(normal)
         slot = dr.gather(mi.UInt32, tables.slots, orientation_of(normal) * NORMAL_STEPS ** 2 + self.normal, active)
         both = both_sides & (tables.both_sides_slot > 0)
@@ -325,16 +339,14 @@ class VertexMap:
         Both at once, because the lanes of a SIMD packet would otherwise do one after the other.
         """
         drawn_block, u, v = self.pick_block(u, v)
-        x, y = direction_to_square(direction)
-        column = dr.minimum(mi.UInt32(x * 16), 15)
-        row = dr.minimum(mi.UInt32(y * 16), 15)
-        block = dr.select(sampling, drawn_block, (row & ~mi.UInt32(3)) + (column >> 2))
+        given_block, given_texel = texel_of(direction)
+        block = dr.select(sampling, drawn_block, given_block)
         weights, rows, to_pdf = self._weigh(block, active)
         drawn_y, v = pick(rows, v)
-        y = dr.select(sampling, drawn_y, row & 3)
+        y = dr.select(sampling, drawn_y, given_texel >> 2)
         texels = row_of(weights, y)
         drawn_x, u = pick(texels, u)
-        x = dr.select(sampling, drawn_x, column & 3)
+        x = dr.select(sampling, drawn_x, given_texel & 3)
         pdf = dr.select(active & self.sampleable, element(texels, x) * to_pdf, 0)
         square_x = (mi.Float((block & 3) * 4 + x) + u) * (1 / 16)
         square_y = (mi.Float((block & ~mi.UInt32(3)) + y) + v) * (1 / 16)
@@ -342,9 +354,6 @@ class VertexMap:
 
     def pdf(self, direction, active):
         """The density of a direction, with respect to solid angle."""
-        x, y = direction_to_square(direction)
-        column = dr.minimum(mi.UInt32(x * 16), 15)
-        row = dr.minimum(mi.UInt32(y * 16), 15)
-        weights, _, to_pdf = self._weigh((row & ~mi.UInt32(3)) + (column >> 2), active)
-        index = ((row & 3) << 2) + (column & 3)
-        return dr.select(active & self.sampleable, element(weights, index) * to_pdf, 0)
+        block, texel = texel_of(direction)
+        weights, _, to_pdf = self._weigh(block, active)
+        return dr.select(active & self.sampleable, element(weights, texel) * to_pdf, 0)

@@ -24,8 +24,6 @@ ROWS = 1 << 20
 PATHS = 1 << 22
 # A lane traces this many samples one after the other, and there are at least so many lanes a thread.
 SAMPLES_PER_LANE, LEAST_LANES = 32, 4096
-
-
 FILTER_STEPS = 256
 
 
@@ -84,7 +82,7 @@ def trace_samples(scene, sensor, settings, known, tables, recorder, seed, pixel_
     path.trace(scene, Camera(sensor, seed, *pixel_filter), settings, known, tables, recorder, samples)
     dr.eval(samples, recorder)
     if recorder is not None:
-        recording.complete_paths(recorder, samples.last_row, samples.result, path.luminance)
+        recording.complete_paths(recorder, samples.last_row, path.ray_counts(samples))
         dr.eval(recorder)
 
 
@@ -93,8 +91,9 @@ def make_samples(pixel, number, pixel_values, recorded):
     count = pixel.size
     lanes = min(count, max(LEAST_LANES * dr.thread_count(), count // SAMPLES_PER_LANE))
     result = path.Samples(
-        pixel=array_of(mi.UInt32, pixel), number=array_of(mi.UInt32, number), count=mi.UInt32(count), lane=dr.arange(mi.UInt32, lanes),
-        lanes=mi.UInt32(lanes), pixel_values=pixel_values, result=dr.zeros(mi.Float, 4 * count), last_row=dr.zeros(mi.UInt32, count) if recorded else None)
+        pixel=array_of(mi.UInt32, pixel), number=array_of(mi.UInt32, number), count=mi.UInt32(count),
+        lane=dr.arange(mi.UInt32, lanes), lanes=mi.UInt32(lanes), pixel_values=pixel_values,
+        result=dr.zeros(mi.Float, 4 * count), last_row=dr.zeros(mi.UInt32, count) if recorded else None)
     dr.make_opaque(result)
     return result
 
@@ -130,12 +129,13 @@ def make_integrator():
         def __init__(self, props):
             check_variant()
             super().__init__(props)
-            self.max_depth, self.rr_depth = props.get("max_depth", -1), props.get("rr_depth", 5)
-            if self.max_depth < -1:
-                raise ValueError(f"odis: max_depth: expected -1 (no limit) or a number from 0, found {self.max_depth}")
-            if self.rr_depth <= 0:
-                raise ValueError(f"odis: rr_depth: expected a number from 1, found {self.rr_depth}")
-            self.settings = path.Settings(self.max_depth, self.rr_depth, bool(props.get("hide_emitters", False)))
+            self.settings = path.Settings(props.get("max_depth", -1), props.get("rr_depth", 5),
+                                          props.get("hide_emitters", False))
+            if self.settings.max_depth < -1:
+                raise ValueError("odis: max_depth: expected -1 (no limit) or a number from 0, "
+                                 f"found {self.settings.max_depth}")
+            if self.settings.rr_depth <= 0:
+                raise ValueError(f"odis: rr_depth: expected a number from 1, found {self.settings.rr_depth}")
             # Kernels are traced and compiled once for each kind of pass.
             self.trace = dr.freeze(trace_samples, limit=16, warn_after=1 << 30)
             self.scene, self.known = None, None
@@ -162,7 +162,7 @@ def make_integrator():
             return []
 
         def to_string(self):
-            return f"OdisIntegrator[max_depth = {self.max_depth}, rr_depth = {self.rr_depth}]"
+            return f"OdisIntegrator[max_depth = {self.settings.max_depth}, rr_depth = {self.settings.rr_depth}]"
 
         def _meet(self, scene):
             """Finds out what there is to know of a scene once."""

@@ -12,7 +12,7 @@ from .arrays import array_of
 LEAST_GUIDED_ROUGHNESS = 0.05
 # Plugins that scatter by delta and other lobes and whose density of the others alone, as the type mask of BSDFContext
 # asks for it, is normalised. Their children need to be such, too.
-SEPARABLE = {"SmoothPlastic", "MaskBSDF", "TwoSidedBRDF", "BumpMap", "NormalMap", "BumpBSDF", "NormalMapBSDF"}
+SEPARABLE = {"SmoothPlastic", "MaskBSDF", "TwoSidedBRDF", "BumpMap", "NormalMap"}
 GUIDABLE, HAS_DELTA, BOTH_SIDES, SMOOTH = 1, 2, 4, 8
 
 
@@ -22,13 +22,12 @@ def nodes_below(bsdf):
     return [node for node in hierarchy if isinstance(node, mi.BSDF)] or [bsdf]
 
 
-def mean_of(parameters, *names):
-    """The mean of a parameter that may be a number or a texture, known by any of these names; None without one."""
-    for name in names:
-        for suffix in ("", ".value", ".data"):
-            value = parameters.get(name + suffix)
-            if value is not None:
-                return float(np.mean(np.asarray(value)))
+def mean_of(parameters, name):
+    """The mean of a parameter that may be a number or a texture; None without one."""
+    for suffix in ("", ".value", ".data"):
+        value = parameters.get(name + suffix)
+        if value is not None:
+            return float(np.mean(np.asarray(value)))
     return None
 
 

@@ -11,8 +11,7 @@ from . import guide_tables, recording
 from .materials import BOTH_SIDES, GUIDABLE, HAS_DELTA, SMOOTH, material_at
 from .random_numbers import RandomNumbers
 
-VALID = 1 << 31
-LUMINANCE = (0.212671, 0.715160, 0.072169)
+VALID = 1 << 31  # marks samples in Samples.result, beside their number of rays
 
 
 @dataclass
@@ -48,8 +47,10 @@ class Samples:
     last_row: object  # UInt32 [count]: of the path's last recorded vertex; None without a recorder
 
 
-def luminance(color):
-    return LUMINANCE[0] * color.x + LUMINANCE[1] * color.y + LUMINANCE[2] * color.z
+def ray_counts(samples):
+    """The number of rays of each sample, UInt32."""
+    tags = dr.reinterpret_array(mi.UInt32, samples.result)
+    return dr.gather(mi.UInt32, tags, dr.arange(mi.UInt32, dr.width(samples.pixel)) * 4 + 3) & (VALID - 1)
 
 
 def power_heuristic(pdf, other):
@@ -186,11 +187,11 @@ def trace(scene, camera, settings, known, tables, recorder, samples):
         if dr.hint(tables is not None, mode="scalar"):
             cell = guide_tables.find_cell(tables, si.p, normal, active)
             decisions = guide_tables.decisions_of(tables, cell, roughness, active)
-            relative = luminance(to_rgb(throughput, ray.wavelengths)) / pixel_value
+            relative = mi.luminance(to_rgb(throughput, ray.wavelengths)) / pixel_value
             survival = guide_tables.survival_probability(tables, decisions.survival_factor, relative)
             survival_on_arrival = dr.select(active & (depth > 0) & (cell != odis.NO_CELL), survival, 1)
             stand_in = throughput * (decisions.outgoing_radiance if not mi.is_spectral
-                                     else mi.Spectrum(luminance(decisions.outgoing_radiance)))
+                                     else mi.Spectrum(mi.luminance(decisions.outgoing_radiance)))
             goes_on = rng.next() < survival_on_arrival
             played = active & (survival_on_arrival < 1)
             radiance += dr.select(played, stand_in * dr.select(goes_on, 1 - 1 / survival_on_arrival, 1), 0)
@@ -252,7 +253,7 @@ def trace(scene, camera, settings, known, tables, recorder, samples):
         lightable &= dr.max(dr.abs(direct)) > 0
         shadow = mi.Float(1)
         if dr.hint(tables is not None, mode="scalar"):
-            adds = luminance(to_rgb(throughput * direct, ray.wavelengths)) / pixel_value
+            adds = mi.luminance(to_rgb(throughput * direct, ray.wavelengths)) / pixel_value
             shadow = dr.select(cell != odis.NO_CELL, guide_tables.shadow_ray_probability(tables, adds), 1)
             lightable &= rng.next() < shadow
             direct /= shadow
@@ -276,7 +277,7 @@ def trace(scene, camera, settings, known, tables, recorder, samples):
             has_row = row != recording.NO_ROW
             c, w = to_rgb(dr.select(seen, direct, 0), ray.wavelengths), to_rgb(weight, ray.wavelengths)
             t = to_rgb(throughput, ray.wavelengths)
-            light_sum = luminance(to_rgb(dr.select(seen, throughput * unweighted, 0), ray.wavelengths))
+            light_sum = mi.luminance(to_rgb(dr.select(seen, throughput * unweighted, 0), ray.wavelengths))
             tag = (depth + 1) | dr.select(discrete, mi.UInt32(recording.DISCRETE), 0) \
                 | dr.select(both_sides, mi.UInt32(recording.BOTH_SIDES), 0)
             p, n, d = si.p, normal, toward.d

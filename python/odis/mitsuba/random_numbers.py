@@ -41,7 +41,7 @@ def hash_seed(seed):
 
 
 def generator_of(seed, pixel, number):
-    """The generator of a sample of a pixel: `seed` is the pass's, hashed, a UInt64. MurmurHash3's finalizer joins them."""
+    """The generator of a sample of a pixel, by MurmurHash3's finalizer. seed: that of the pass, hashed, a UInt64."""
     key = (mi.UInt64(pixel) << 32 | mi.UInt64(number)) ^ seed
     for factor in HASH_FACTORS:
         key = (key ^ (key >> 33)) * mi.UInt64(factor)

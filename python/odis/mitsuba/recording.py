@@ -50,28 +50,34 @@ def read(recorder, row, packet, active):
     return dr.gather(mi.ArrayXf, recorder.rows, row * PACKETS + packet, active, shape=(PACKET, -1))
 
 
+def color_in(packet, first):
+    return mi.Color3f(packet[first], packet[first + 1], packet[first + 2])
+
+
 def new_row(recorder, active):
     """A free row for each active lane; NO_ROW where there is none left."""
     row = dr.scatter_inc(recorder.count, mi.UInt32(0), active)
     return dr.select(active & (row < recorder.capacity), row, NO_ROW)
 
 
-def complete_paths(recorder, last_row, result, luminance):
-    """Fills in what only complete paths know, from their last rows back to the first (odis::PathRecorder)."""
-    tags = dr.gather(mi.UInt32, dr.reinterpret_array(mi.UInt32, result), dr.arange(mi.UInt32, dr.width(last_row)) * 4 + 3)
-    rays = mi.Float(tags & 0x7fffffff)
+def complete_paths(recorder, last_row, rays):
+    """Fills in what only complete paths know, from their last rows back to the first (odis::PathRecorder).
+
+    last_row, rays: UInt32, of each path its last row and its number of rays.
+    """
+    rays = mi.Float(rays)
     row, beyond = mi.UInt32(last_row), mi.Color3f(0)
 
     def body(row, beyond):
         active = row != NO_ROW
         of_weight, of_light = read(recorder, row, 1, active), read(recorder, row, 2, active)
         of_path, met = read(recorder, row, 4, active), read(recorder, row, 5, active)
-        weight, direct = mi.Color3f(of_weight[4], of_weight[5], of_weight[6]), mi.Color3f(*[of_light[i] for i in range(3)])
-        throughput, emission = mi.Color3f(*[of_path[i] for i in range(3)]), mi.Color3f(*[met[i] for i in range(3)])
+        weight, direct = color_in(of_weight, 4), color_in(of_light, 0)
+        throughput, emission = color_in(of_path, 0), color_in(met, 0)
         radiance = emission * met[3] + beyond
         to_pixel = throughput * weight
-        write(recorder, row, 6, [radiance.x, radiance.y, radiance.z, luminance(to_pixel * beyond),
-                                 luminance(to_pixel * emission), rays - of_path[4]], active)
+        write(recorder, row, 6, [radiance.x, radiance.y, radiance.z, mi.luminance(to_pixel * beyond),
+                                 mi.luminance(to_pixel * emission), rays - of_path[4]], active)
         beyond = (direct + weight * radiance) / of_path[3]
         return dr.reinterpret_array(mi.UInt32, of_path[5]), beyond
 
