@@ -1,89 +1,62 @@
-// Is a decision of the guide unbiased? The same seeds are rendered with it and in its constant form; the mean
-// of the differences must be zero. Small images and rare light are where a decision that knows what it
+// Is a decision of the guide unbiased? Small images and rare light are where a decision that knows what it
 // decides over shows: there a single path tells much of all that the guide learns.
 //
-// Each case states the half-width that the 95 % interval of the mean difference has at most, relative to the
-// image's mean. The environment variable ODIS_PAIRED_SEEDS multiplies the number of seeds; the interval
+// What the image's mean must be is known (rare_patch.h), and so is what the pilot's mean must be, which is
+// plain path tracing. So there are two ways to compare, each with less noise than two images have:
+//
+//   - with the integral: image − s (pilot − integral) − integral is zero in the mean, s being the pilot's
+//     share in the image. What is left is the noise of the guided samples.
+//   - with the constant form: the same seed is rendered with the decision and without it, and the two images
+//     are subtracted. That is for decisions which leave most paths as they are, so that most noise cancels.
+//     Where the pilot's shares differ, the pilot is replaced by the integral as above.
+//
+// Each decision states the half-width that the 95 % interval of the mean difference has at most, relative to
+// the image's mean. The environment variable ODIS_PAIRED_SEEDS multiplies the number of seeds; the interval
 // narrows by its square root, and is printed.
 #include <gtest/gtest.h>
 #include <tbb/parallel_for.h>
 
 #include <cstdlib>
+#include <functional>
 #include <iomanip>
+#include <sstream>
 
+#include "integrator/rare_patch.h"
 #include "integrator/test_scenes.h"
 #include "support/sanitizers.h"
 
 namespace odis::render {
 namespace {
 
-// The film of an image of size x size pixels: a whole one, or a crop of one of twice as many a side.
-std::string film(int size, bool crop) {
-  const auto integer = [](const std::string& name, int value) {
-    return "<integer name=\"" + name + "\" value=\"" + std::to_string(value) + "\"/>";
-  };
-  const int full = crop ? 2 * size : size;
-  std::string text =
-      "<film type=\"hdrfilm\"><rfilter type=\"box\"/>" + integer("width", full) + integer("height", full);
-  if (crop)
-    text += integer("crop_width", size) + integer("crop_height", size) + integer("crop_offset_x", size / 2) +
-            integer("crop_offset_y", size / 2);
-  return text + "</film>";
-}
-
-// A floor that is lit by a patch of the wall beside it, which some .6 % of the paths from the floor find;
-// with `lamps` also directly by two dim lamps, so that there is a choice of lights, and shadow rays are worth
-// a roulette.
-std::string rarePatch(int size, bool crop, bool lamps) {
-  return R"(<sensor type="perspective"><float name="fov" value="8"/><transform name="to_world">
-      <lookat origin="0,4,0" target="0,0,0" up="0,0,1"/></transform>)" +
-         film(size, crop) + R"(</sensor>
-    <shape type="rectangle">
-      <transform name="to_world"><scale value="0.5"/><rotate x="1" angle="-90"/></transform>
-      <bsdf type="diffuse"><rgb name="reflectance" value="0.5"/></bsdf>
-    </shape>
-    <shape type="rectangle">
-      <transform name="to_world">
-        <scale x="0.6" y="0.4"/><rotate y="1" angle="-90"/><translate x="1" y="0.6"/>
-      </transform>
-      <bsdf type="twosided"><bsdf type="diffuse"><rgb name="reflectance" value="0.9"/></bsdf></bsdf>
-    </shape>
-    <emitter type="spot">
-      <transform name="to_world"><lookat origin="-3,0.6,0" target="1,0.6,0" up="0,1,0"/></transform>
-      <rgb name="intensity" value="400"/><float name="cutoff_angle" value="2.5"/>
-    </emitter>)" +
-         (lamps ? R"(<emitter type="point">
-      <point name="position" x="-0.3" y="1" z="0.4"/><rgb name="intensity" value="0.003"/>
-    </emitter>
-    <emitter type="point">
-      <point name="position" x="0.5" y="0.5" z="-0.3"/><rgb name="intensity" value="0.001"/>
-    </emitter>)"
-                : "");
-}
-
+using test::RarePatch;
 using ChangeOptions = void (*)(RenderOptions&);
 
 struct Decision {
   const char* name;
-  ChangeOptions makeConstant;
-  int seeds;         // at 16 x 16 pixels; 1 / 16 of them at 64 x 64
-  double halfWidth;  // of the 95 % interval of all these seeds at 2 samples per pixel
+  ChangeOptions makeConstant;  // null: compared with the integral
+  int seeds;                   // at 16 x 16 pixels; 1 / 16 of them at 64 x 64
+  double halfWidth;            // of the 95 % interval of all these seeds at 2 samples per pixel
   bool lamps = false;
   // Otherwise there are as many samples everywhere and one guide: what follows from one decision would change
   // the later ones, and with them all random numbers.
   bool withAllOthers = false;
 };
 
+constexpr ChangeOptions kIntegral = nullptr;
+
+// Maps, the choice of lights and refinement change where most paths go: they are compared with the integral.
+// So the images of "everything" are those of "refinement" at 4 samples per pixel, and those of "maps" at 2,
+// which are too few to refine or to spread.
 const Decision kDecisions[] = {
-    {"pilot weight", [](RenderOptions& o) { o.pilotWeight = 1; }, 1600, 0.008},
+    {"pilot weight", [](RenderOptions& o) { o.pilotWeight = 1; }, 1600, 0.006},
     {"ended paths", [](RenderOptions& o) { o.guideOptions.controlVariate = false; }, 800, 0.001},
     {"shadow rays", [](RenderOptions& o) { o.shadowRays = ShadowRayKind::all; }, 800, 0.001, true},
-    {"lights", [](RenderOptions& o) { o.lights = LightChoiceKind::hierarchy; }, 600, 0.08, true},
+    {"lights", kIntegral, 960, 0.065, true},
     {"roulette", [](RenderOptions& o) { o.roulette = RouletteKind::throughput; }, 1600, 0.02},
-    {"maps", [](RenderOptions& o) { o.guideOptions.fixedBsdfFraction = 1; }, 800, 0.05},
-    {"refinement", [](RenderOptions& o) { o.refineSpp = 0; }, 1600, 0.022, false, true},
+    {"maps", kIntegral, 800, 0.04},
+    {"refinement", kIntegral, 800, 0.022, false, true},
     {"samples", [](RenderOptions& o) { o.samples = SampleSpread::even; }, 1600, 0.005, false, true},
-    {"everything", [](RenderOptions& o) { o.integrator = IntegratorKind::path; }, 800, 0.05, false, true},
+    {"everything", kIntegral, 800, 0.04, false, true},
 };
 
 struct PairedCase {
@@ -93,6 +66,19 @@ struct PairedCase {
   bool crop;
 
   int seeds() const { return size == 16 ? decision.seeds : decision.seeds / 16; }
+  RarePatch patch() const { return {size, crop, decision.lamps}; }
+  RenderOptions options(uint64_t seed) const {
+    RenderOptions options;
+    options.maxDepth = 3;
+    options.spp = spp;
+    options.sampler = sampler;
+    options.seed = seed;
+    if (!decision.withAllOthers) {
+      options.samples = SampleSpread::even;
+      options.refineSpp = 0;
+    }
+    return options;
+  }
 };
 
 void PrintTo(const PairedCase& c, std::ostream* out) {
@@ -100,10 +86,64 @@ void PrintTo(const PairedCase& c, std::ostream* out) {
        << " spp, " << (c.sampler == SamplerKind::sobol ? "sobol" : "independent");
 }
 
-double meanOf(const RenderResult& result) {
+double renderMean(const Scene& scene, const RenderOptions& options) {
+  const RenderResult result = test::renderScene(scene, options);
   double sum = 0;
   for (const Rgb& color : result.image.color) sum += color.y;
   return sum / double(result.image.color.size());
+}
+
+// The mean of the pilot's samples: path tracing draws the same ones, of which there is one a pixel.
+double pilotMean(const Scene& scene, RenderOptions options) {
+  options.integrator = IntegratorKind::path;
+  options.spp = 1;
+  return renderMean(scene, options);
+}
+
+// The pilot's share in the mean of an image. It has to be a constant: one that depends on the pilot would
+// hide the bias of a weight that does.
+double pilotShare(const RenderOptions& options) {
+  return options.pilotWeight / (options.pilotWeight + options.spp - 1);
+}
+
+// A random number whose expectation is the difference that the decision makes to the image's mean.
+double difference(const PairedCase& c, const Scene& scene, double integral, uint64_t seed) {
+  const RenderOptions options = c.options(seed);
+  double without = integral, share = pilotShare(options);
+  if (c.decision.makeConstant) {
+    RenderOptions constant = options;
+    c.decision.makeConstant(constant);
+    without = renderMean(scene, constant);
+    share -= pilotShare(constant);
+  }
+  const double pilot = share != 0 ? pilotMean(scene, options) : integral;
+  return renderMean(scene, options) - without - share * (pilot - integral);
+}
+
+// The mean of a random number, and its standard error.
+struct Estimate {
+  double mean, error;
+  size_t count;
+
+  double z() const { return mean / error; }
+  std::string figures(double integral) const {
+    std::ostringstream text;
+    text << std::setprecision(3) << "difference " << 100 * mean / integral << " ± " << 196 * error / integral
+         << " % of the mean (95 %), z = " << z() << ", " << count << " seeds";
+    return text.str();
+  }
+};
+
+// From the values of the seeds from 1 on.
+Estimate estimate(size_t count, const std::function<double(uint64_t seed)>& valueOf) {
+  std::vector<double> values(count);
+  tbb::parallel_for(size_t(0), count, [&](size_t i) { values[i] = valueOf(i + 1); });
+  double mean = 0, squares = 0;
+  for (const double value : values) {
+    mean += value / double(count);
+    squares += value * value / double(count);
+  }
+  return {mean, std::sqrt((squares - mean * mean) / double(count - 1)), count};
 }
 
 class Paired : public ::testing::TestWithParam<PairedCase> {};
@@ -113,41 +153,19 @@ double seedFactor() {
   return factor ? std::atof(factor) : 1;
 }
 
-TEST_P(Paired, DecisionAndItsConstantFormHaveTheSameMean) {
+TEST_P(Paired, DecisionLeavesTheMean) {
   if (test::kSanitized) GTEST_SKIP() << "takes many seeds, which tell the sanitizers nothing";
   const PairedCase& c = GetParam();
-  const auto scene = test::loadScene(rarePatch(c.size, c.crop, c.decision.lamps));
-  std::vector<double> with(size_t(c.seeds() * seedFactor())), without(with.size());
-  tbb::parallel_for(size_t(0), with.size(), [&](size_t i) {
-    RenderOptions options;
-    options.maxDepth = 3;
-    options.spp = c.spp;
-    options.sampler = c.sampler;
-    options.seed = i + 1;
-    if (!c.decision.withAllOthers) {
-      options.samples = SampleSpread::even;
-      options.refineSpp = 0;
-    }
-    with[i] = meanOf(test::renderScene(*scene, options));
-    c.decision.makeConstant(options);
-    without[i] = meanOf(test::renderScene(*scene, options));
-  });
-  const double count = double(with.size());
-  double mean = 0, difference = 0, squares = 0;
-  for (size_t i = 0; i < with.size(); ++i) {
-    mean += without[i] / count;
-    difference += (with[i] - without[i]) / count;
-    squares += (with[i] - without[i]) * (with[i] - without[i]);
-  }
-  const double error = std::sqrt((squares / count - difference * difference) / (count - 1));
-  ::testing::Message figures;
-  figures << std::setprecision(3) << "difference " << 100 * difference / mean << " ± " << 196 * error / mean
-          << " % of the mean (95 %), z = " << difference / error << ", " << with.size() << " seeds";
+  const auto scene = test::loadScene(c.patch().text());
+  const double integral = c.patch().mean();
+  const Estimate result = estimate(size_t(c.seeds() * seedFactor()),
+                                   [&](uint64_t seed) { return difference(c, *scene, integral, seed); });
+  const std::string figures = result.figures(integral);
   if (seedFactor() > 1) std::cout << ::testing::PrintToString(c) << ": " << figures << std::endl;
-  EXPECT_GT(error, 0) << "the decision changes nothing here";
+  EXPECT_GT(result.error, 0) << "the decision changes nothing here";
   // A significance of .01 % each, 1 % over all cases (Šidák).
-  EXPECT_LT(std::abs(difference / error), 3.8) << figures;
-  EXPECT_LT(1.96 * error / mean, c.decision.halfWidth / std::sqrt(seedFactor())) << figures;
+  EXPECT_LT(std::abs(result.z()), 3.8) << figures;
+  EXPECT_LT(1.96 * result.error / integral, c.decision.halfWidth / std::sqrt(seedFactor())) << figures;
 }
 
 // Refinement and the spreading of samples need 4 samples per pixel.
@@ -165,6 +183,33 @@ std::vector<PairedCase> allCases() {
 }
 
 INSTANTIATE_TEST_SUITE_P(RarePatch, Paired, ::testing::ValuesIn(allCases()));
+
+// The integral does not depend on how many points it is computed with, and path tracing comes to it.
+TEST(RarePatch, MeanIsThatOfPathTracing) {
+  if (test::kSanitized) GTEST_SKIP() << "takes many seeds, which tell the sanitizers nothing";
+  for (const RarePatch& patch :
+       {RarePatch{32, false, false}, {32, true, false}, {32, false, true}, {32, true, true}}) {
+    const double integral = patch.mean();
+    EXPECT_NEAR(patch.mean(8) / integral, 1, 1e-7);
+    EXPECT_NEAR(patch.mean(24) / integral, 1, 1e-9);
+
+    const auto scene = test::loadScene(patch.text());
+    RenderOptions options;
+    options.integrator = IntegratorKind::path;
+    options.sampler = SamplerKind::independent;
+    options.maxDepth = 3;
+    options.spp = 16;
+    const Estimate path = estimate(size_t(64 * seedFactor()), [&](uint64_t seed) {
+      RenderOptions seeded = options;
+      seeded.seed = seed;
+      return renderMean(*scene, seeded) - integral;
+    });
+    const auto figures = path.figures(integral);
+    if (seedFactor() > 1) std::cout << "path tracing: " << figures << std::endl;
+    EXPECT_LT(std::abs(path.z()), 3.5) << figures;
+    EXPECT_LT(1.96 * path.error / integral, 0.03 / std::sqrt(seedFactor())) << figures;
+  }
+}
 
 }  // namespace
 }  // namespace odis::render
