@@ -10,6 +10,10 @@
 //     are subtracted. That is for decisions which leave most paths as they are, so that most noise cancels.
 //     Where the pilot's shares differ, the pilot is replaced by the integral as above.
 //
+// Where all guided samples of a pixel are alike, many stand in for the one or three that the image has, and
+// the pilot weighs as much more as keeps its share. The expectation stays, and the noise falls at the cost of
+// some samples, not of another guide.
+//
 // Each decision states the half-width that the 95 % interval of the mean difference has at most, relative to
 // the image's mean. The environment variable ODIS_PAIRED_SEEDS multiplies the number of seeds; the interval
 // narrows by its square root, and is printed.
@@ -34,8 +38,8 @@ using ChangeOptions = void (*)(RenderOptions&);
 struct Decision {
   const char* name;
   ChangeOptions makeConstant;  // null: compared with the integral
-  int seeds;                   // at 16 x 16 pixels; 1 / 16 of them at 64 x 64
-  double halfWidth;            // of the 95 % interval of all these seeds at 2 samples per pixel
+  int seeds;                   // at 16 x 16 pixels; 1 / 8 of them at 64 x 64
+  double halfWidth;            // of the 95 % interval of all these seeds
   bool lamps = false;
   // Otherwise there are as many samples everywhere and one guide: what follows from one decision would change
   // the later ones, and with them all random numbers.
@@ -45,18 +49,17 @@ struct Decision {
 constexpr ChangeOptions kIntegral = nullptr;
 
 // Maps, the choice of lights and refinement change where most paths go: they are compared with the integral.
-// So the images of "everything" are those of "refinement" at 4 samples per pixel, and those of "maps" at 2,
-// which are too few to refine or to spread.
+// So the images of "everything" are those of "refinement" at 4 samples per pixel, and those of "maps" at 2.
 const Decision kDecisions[] = {
-    {"pilot weight", [](RenderOptions& o) { o.pilotWeight = 1; }, 1600, 0.006},
-    {"ended paths", [](RenderOptions& o) { o.guideOptions.controlVariate = false; }, 800, 0.001},
-    {"shadow rays", [](RenderOptions& o) { o.shadowRays = ShadowRayKind::all; }, 800, 0.001, true},
-    {"lights", kIntegral, 960, 0.065, true},
-    {"roulette", [](RenderOptions& o) { o.roulette = RouletteKind::throughput; }, 1600, 0.02},
-    {"maps", kIntegral, 800, 0.04},
-    {"refinement", kIntegral, 800, 0.022, false, true},
-    {"samples", [](RenderOptions& o) { o.samples = SampleSpread::even; }, 1600, 0.005, false, true},
-    {"everything", kIntegral, 800, 0.04, false, true},
+    {"pilot weight", [](RenderOptions& o) { o.pilotWeight = 1; }, 200, 0.006},
+    {"ended paths", [](RenderOptions& o) { o.guideOptions.controlVariate = false; }, 200, 0.001},
+    {"shadow rays", [](RenderOptions& o) { o.shadowRays = ShadowRayKind::all; }, 200, 0.001, true},
+    {"lights", kIntegral, 400, 0.035, true},
+    {"roulette", [](RenderOptions& o) { o.roulette = RouletteKind::throughput; }, 200, 0.015},
+    {"maps", kIntegral, 400, 0.018},
+    {"refinement", kIntegral, 1000, 0.022, false, true},
+    {"samples", [](RenderOptions& o) { o.samples = SampleSpread::even; }, 1000, 0.005, false, true},
+    {"everything", kIntegral, 1000, 0.022, false, true},
 };
 
 struct PairedCase {
@@ -65,15 +68,20 @@ struct PairedCase {
   int size, spp;
   bool crop;
 
-  int seeds() const { return size == 16 ? decision.seeds : decision.seeds / 16; }
+  int seeds() const { return size == 16 ? decision.seeds : decision.seeds / 8; }
   RarePatch patch() const { return {size, crop, decision.lamps}; }
+  // Whether nothing follows from the first guided sample: two samples are too few to refine or to spread.
+  bool oneGuide() const { return !decision.withAllOthers || spp == 2; }
+  // Whether a pixel's guided samples are alike, given the pilot. They are not where they are Sobol' points of
+  // the pilot's own set, as in large images.
+  bool samplesAreAlike() const { return oneGuide() && (sampler == SamplerKind::independent || size == 16); }
   RenderOptions options(uint64_t seed) const {
     RenderOptions options;
     options.maxDepth = 3;
     options.spp = spp;
     options.sampler = sampler;
     options.seed = seed;
-    if (!decision.withAllOthers) {
+    if (oneGuide()) {
       options.samples = SampleSpread::even;
       options.refineSpp = 0;
     }
@@ -93,6 +101,12 @@ double renderMean(const Scene& scene, const RenderOptions& options) {
   return sum / double(result.image.color.size());
 }
 
+// Many guided samples a pixel in the place of those that there are, with the same expectation of the mean.
+void takeMany(int guided, RenderOptions& options) {
+  options.pilotWeight *= double(guided) / (options.spp - 1);
+  options.spp = 1 + guided;
+}
+
 // The mean of the pilot's samples: path tracing draws the same ones, of which there is one a pixel.
 double pilotMean(const Scene& scene, RenderOptions options) {
   options.integrator = IntegratorKind::path;
@@ -108,11 +122,15 @@ double pilotShare(const RenderOptions& options) {
 
 // A random number whose expectation is the difference that the decision makes to the image's mean.
 double difference(const PairedCase& c, const Scene& scene, double integral, uint64_t seed) {
-  const RenderOptions options = c.options(seed);
+  RenderOptions options = c.options(seed), constant = options;
+  if (c.decision.makeConstant) c.decision.makeConstant(constant);
+  if (c.samplesAreAlike()) {
+    const int guided = c.size == 16 ? 24 : 6;
+    takeMany(guided, options);
+    takeMany(guided, constant);
+  }
   double without = integral, share = pilotShare(options);
   if (c.decision.makeConstant) {
-    RenderOptions constant = options;
-    c.decision.makeConstant(constant);
     without = renderMean(scene, constant);
     share -= pilotShare(constant);
   }
