@@ -92,8 +92,8 @@ void addLamps(std::vector<WallPiece>& pieces, int points) {
     for (const Node& z : gauss(points, -kWallHalfWidth, kWallHalfWidth)) {
       double irradiance = 0;
       for (const Lamp& lamp : kLamps)
-        irradiance += irradianceByPoint(lamp.intensity, kWallX - lamp.x, kWallX - lamp.x, y.x - lamp.y,
-                                        z.x - lamp.z);
+        irradiance +=
+            irradianceByPoint(lamp.intensity, kWallX - lamp.x, kWallX - lamp.x, y.x - lamp.y, z.x - lamp.z);
       pieces.push_back({y.x, z.x, kWallReflectance / kPi * irradiance * y.weight * z.weight});
     }
 }
