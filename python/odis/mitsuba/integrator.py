@@ -20,6 +20,8 @@ from .random_numbers import generator_of, hash_seed
 # Vertices are recorded by so many paths at once at most, into so many rows; paths that need more come in smaller parts.
 RECORDED_PATHS = 1 << 17
 ROWS = 1 << 20
+# Of the samples of a guided pass that the guide learns from only those of one pixel in so many are recorded.
+PIXELS_PER_RECORDED = 4
 # Other paths are traced by so many at once at most.
 PATHS = 1 << 22
 # A lane traces this many samples one after the other, and there are at least so many lanes a thread.
@@ -77,13 +79,15 @@ class Camera:
         return rng, ray, weight * filter_weight
 
 
-def trace_samples(scene, sensor, settings, known, tables, recorder, seed, pixel_filter, samples):
-    """Traces samples, and completes what was recorded of their paths."""
+def trace_samples(scene, sensor, settings, known, tables, records, seed, pixel_filter, samples):
+    """Traces samples; where it records them returns the recorder, with what only complete paths know filled in."""
+    recorder = recording.make_recorder(ROWS) if records else None
     path.trace(scene, Camera(sensor, seed, *pixel_filter), settings, known, tables, recorder, samples)
     dr.eval(samples, recorder)
     if recorder is not None:
         recording.complete_paths(recorder, samples.last_row, path.ray_counts(samples))
         dr.eval(recorder)
+    return recorder
 
 
 def make_samples(pixel, number, pixel_values, recorded):
@@ -98,15 +102,22 @@ def make_samples(pixel, number, pixel_values, recorded):
     return result
 
 
-def parts_of_pass(frame, recorded):
-    """Pixels and numbers of the samples of a pass, in parts that fit."""
-    first, count = (array.ravel() for array in frame.samples())
+def parts_of_pass(frame, frame_pass):
+    """The samples of a pass in parts that fit: their pixels, their numbers, and whether they are recorded."""
+    first, count = frame.samples()
+    width, first, count = first.shape[1], first.ravel(), count.ravel()
     pixel = np.repeat(np.arange(first.size, dtype=np.uint32), count)
     begin = np.cumsum(count, dtype=np.uint32) - count
     number = np.arange(pixel.size, dtype=np.uint32) - (begin - first)[pixel].astype(np.uint32)
-    most = RECORDED_PATHS if recorded else PATHS
-    for i in range(0, pixel.size, most):
-        yield pixel[i:i + most], number[i:i + most]
+    recorded = np.full(pixel.size, frame_pass.wants_vertices)
+    if frame_pass.kind == odis.PassKind.GUIDED:
+        y, x = np.divmod(pixel, np.uint32(width))
+        recorded &= (x + 2 * y) % PIXELS_PER_RECORDED == 0
+    for records, most in ((True, RECORDED_PATHS), (False, PATHS)):
+        chosen = np.flatnonzero(recorded == records)
+        for i in range(0, chosen.size, most):
+            part = chosen[i:i + most]
+            yield pixel[part], number[part], records
 
 
 def check_variant():
@@ -187,8 +198,8 @@ def make_integrator():
                     if len(frame_pass.guide):
                         tables = make_guide_tables(frame_pass.guide, self.known.materials.both_sides)
                         values = array_of(mi.Float, frame.pixel_values)
-                for pixel, number in parts_of_pass(frame, frame_pass.wants_vertices):
-                    self._trace_part(sensor, frame_pass, tables, values, pixel, number, valid)
+                for pixel, number, records in parts_of_pass(frame, frame_pass):
+                    self._trace_part(sensor, frame_pass, tables, values, pixel, number, records, valid)
                 with self._timed("build"):
                     frame.end_pass()
             channels = [frame.image()[0]]
@@ -197,22 +208,21 @@ def make_integrator():
                 channels.append(alpha.astype(np.float32))
             return np.concatenate(channels + [np.ones((height, width, 1), np.float32)], axis=2)
 
-        def _trace_part(self, sensor, frame_pass, tables, values, pixel, number, valid):
+        def _trace_part(self, sensor, frame_pass, tables, values, pixel, number, records, valid):
             """Traces some samples of a pass and hands them to the frame; in halves if they have too many vertices."""
             with self._timed("pilot" if frame_pass.kind == odis.PassKind.PILOT else "guided"):
-                recorder = recording.make_recorder(ROWS) if frame_pass.wants_vertices else None
-                samples = make_samples(pixel, number, values, recorder is not None)
+                samples = make_samples(pixel, number, values, records)
                 seed = mi.UInt64(hash_seed(frame_pass.seed))
                 dr.make_opaque(seed)
-                self.trace(self.scene, sensor, self.settings, self.known, tables, recorder, seed,
-                           self.pixel_filter, samples)
+                recorder = self.trace(self.scene, sensor, self.settings, self.known, tables, records, seed,
+                                      self.pixel_filter, samples)
                 dr.sync_thread()
             vertices = None
             if recorder is not None:
                 count = int(recorder.count[0])
                 if count > ROWS and pixel.size > 1:
                     for half in (slice(0, pixel.size // 2), slice(pixel.size // 2, None)):
-                        self._trace_part(sensor, frame_pass, tables, values, pixel[half], number[half], valid)
+                        self._trace_part(sensor, frame_pass, tables, values, pixel[half], number[half], records, valid)
                     return
                 vertices = recording.path_vertices(recorder, min(count, ROWS))
             with self._timed("add"):
