@@ -3,9 +3,11 @@
 #include <algorithm>
 #include <cmath>
 #include <odis/odis.hpp>
+#include <thread>
 #include <vector>
 
 #include "arrays.h"
+#include "calls.h"
 #include "lookups.h"
 
 namespace odis::python {
@@ -18,7 +20,8 @@ constexpr int kWhole = 1 << 15;
 constexpr int kShare = kWhole / kEntries;
 
 using Weights = float[kEntries];
-using Tables = NumpyArray<uint32_t, -1, -1, kEntries>;
+using BlockTables = NumpyArray<uint32_t, -1, -1, kEntries>;
+using TexelTables = NumpyArray<uint32_t, -1, kMapBlocks, kEntries>;
 
 // Probabilities in proportion to the weights, as multiples of 1 / kWhole that add up to kWhole; equal ones where the
 // weights are no distribution.
@@ -70,35 +73,45 @@ void makeAliasTable(const Weights& weights, uint32_t* entries) {
   }
 }
 
-int orientationOf(const GuideView& view, size_t cell) { return int(view.keys[cell] >> 57 & 7); }
-
-// A table of each cell's blocks for each normal: of the sums of texel times cosine.
-Tables blockTables(const GuideView& view, const Rows<float>& normals, size_t slots, bool bothSides) {
-  const size_t sides = bothSides ? 2 : 1;
-  Tables tables = newArray<Tables>({view.cellCount, slots * sides, kEntries});
-  uint32_t* out = tables.data();
-  for (size_t cell = 0; cell < view.cellCount; ++cell) {
-    const float* sums = view.maps.sums + cell * 4 * kEntries;
-    for (size_t side = 0; side < sides; ++side)
-      for (size_t slot = 0; slot < slots; ++slot, out += kEntries) {
-        const Float3 n = vectorAt(normals, size_t(orientationOf(view, cell)) * slots + slot);
-        Weights weights;
-        for (int block = 0; block < kEntries; ++block) {
-          const float cosine = sums[block] * n.x + sums[kEntries + block] * n.y + sums[2 * kEntries + block] * n.z;
-          weights[block] = (side ? std::abs(cosine) : std::max(cosine, 0.0f)) +
-                           view.maps.rim * sums[3 * kEntries + block];
-        }
-        makeAliasTable(weights, out);
-      }
-  }
-  return tables;
+int orientationOf(const GuideView& view, size_t cell) {
+  return int(view.keys[cell] >> 57 & 7);
 }
 
-// What texels are multiplied by in a table for all normals of an orientation: for the most part the cosine to its axis,
-// as walls and floors have it, for the rest the mean of the cosines to all normals. [texel]
-void addCosines(const GuideView& view, const Rows<float>& normals, size_t first, size_t slots, bool bothSides,
-                float* cosines) {
+// Calls body(i) for all i below count, by as many threads as there are processors.
+template <class Body>
+void forEach(size_t count, const Body& body) {
+  const size_t threads = std::clamp<size_t>(std::thread::hardware_concurrency(), 1, 1 + count / 256);
+  std::vector<std::jthread> others;
+  const auto part = [&](size_t t) {
+    for (size_t i = count * t / threads; i < count * (t + 1) / threads; ++i) body(i);
+  };
+  for (size_t t = 1; t < threads; ++t) others.emplace_back(part, t);
+  part(0);
+}
+
+// The tables of a cell's blocks for each normal: of the sums of texel times cosine.
+void makeBlockTables(const GuideView& view, size_t cell, const Float3* normals, size_t slots, size_t sides,
+                     uint32_t* out) {
+  const float* sums = view.maps.sums + cell * 4 * kEntries;
+  for (size_t side = 0; side < sides; ++side)
+    for (size_t slot = 0; slot < slots; ++slot, out += kEntries) {
+      const Float3 n = normals[slot];
+      Weights weights;
+      for (int i = 0; i < kEntries; ++i) {
+        const float cosine = sums[i] * n.x + sums[kEntries + i] * n.y + sums[2 * kEntries + i] * n.z;
+        weights[i] =
+            (side ? std::abs(cosine) : std::max(cosine, 0.0f)) + view.maps.rim * sums[3 * kEntries + i];
+      }
+      makeAliasTable(weights, out);
+    }
+}
+
+// What the texels of a cell are multiplied by, one table for all normals of its orientation: for the most part the
+// cosine to its axis, as walls and floors have it, for the rest the mean of the cosines to all normals.
+std::vector<float> texelCosines(const GuideView& view, size_t orientation, const Float3* normals,
+                                size_t slots, bool bothSides) {
   constexpr float kAxisShare = 0.8f;
+  std::vector<float> cosines(kMapTexels);
   const auto add = [&](const Float3& n, float weight) {
     const float* d = view.maps.directions;
     for (int i = 0; i < kMapTexels; ++i) {
@@ -106,49 +119,58 @@ void addCosines(const GuideView& view, const Rows<float>& normals, size_t first,
       cosines[i] += weight * ((bothSides ? std::abs(cosine) : std::max(cosine, 0.0f)) + view.maps.rim);
     }
   };
-  const size_t axis = first / slots;
-  const float sign = axis % 2 ? -1.0f : 1.0f;
-  add({axis / 2 == 0 ? sign : 0, axis / 2 == 1 ? sign : 0, axis / 2 == 2 ? sign : 0}, kAxisShare);
-  for (size_t i = 0; i < slots; ++i) add(vectorAt(normals, first + i), (1 - kAxisShare) / float(slots));
+  float axis[3] = {};
+  axis[orientation / 2] = orientation % 2 ? -1.0f : 1.0f;
+  add({axis[0], axis[1], axis[2]}, kAxisShare);
+  for (size_t slot = 0; slot < slots; ++slot) add(normals[slot], (1 - kAxisShare) / float(slots));
+  return cosines;
 }
 
-// A table of each block's texels.
-Tables texelTables(const GuideView& view, const Rows<float>& normals, size_t slots, bool bothSides) {
-  const size_t orientations = normals.size() / slots, sides = bothSides ? 2 : 1;
-  std::vector<float> cosines(sides * orientations * kMapTexels);
-  for (size_t i = 0; i < sides * orientations; ++i)
-    addCosines(view, normals, i % orientations * slots, slots, i >= orientations, &cosines[i * kMapTexels]);
-  Tables tables = newArray<Tables>({sides * view.cellCount, size_t(kMapBlocks), kEntries});
-  uint32_t* out = tables.data();
-  for (size_t i = 0; i < sides * view.cellCount; ++i) {
-    const size_t side = i / view.cellCount, cell = i % view.cellCount;
-    const float* cosine = &cosines[(side * orientations + size_t(orientationOf(view, cell))) * kMapTexels];
-    const uint16_t* texels = view.maps.texels + cell * kMapTexels;
-    for (int texel = 0; texel < kMapTexels; texel += kEntries, out += kEntries) {
-      Weights weights;
-      for (int j = 0; j < kEntries; ++j) weights[j] = float(texels[texel + j]) * cosine[texel + j];
-      makeAliasTable(weights, out);
-    }
+// The tables of the texels of each of a cell's blocks.
+void makeTexelTables(const uint16_t* texels, const float* cosines, uint32_t* out) {
+  for (int texel = 0; texel < kMapTexels; texel += kEntries) {
+    Weights weights;
+    for (int i = 0; i < kEntries; ++i) weights[i] = float(texels[texel + i]) * cosines[texel + i];
+    makeAliasTable(weights, out + texel);
   }
-  return tables;
+}
+
+nb::tuple aliasTables(const Guide& guide, const Array& array, bool bothSides) {
+  constexpr size_t kOrientations = 6;
+  const Rows<float> rows(array, "normals", 3);
+  if (rows.size() == 0 || rows.size() % kOrientations != 0)
+    refuseArray("normals", "as many rows for each of 6 orientations", describe(array));
+  std::vector<Float3> normals;
+  for (size_t i = 0; i < rows.size(); ++i) normals.push_back(vectorAt(rows, i));
+  const GuideView view = guide.view();
+  const size_t cells = view.cellCount, slots = normals.size() / kOrientations, sides = bothSides ? 2 : 1;
+  const BlockTables blocks = newArray<BlockTables>({cells, slots * sides, kEntries});
+  const TexelTables texels = newArray<TexelTables>({cells * sides, kMapBlocks, kEntries});
+  withoutLock([&] {
+    std::vector<std::vector<float>> cosines;  // [side][orientation][texel]
+    for (size_t i = 0; i < sides * kOrientations; ++i) {
+      const size_t orientation = i % kOrientations;
+      cosines.push_back(
+          texelCosines(view, orientation, &normals[orientation * slots], slots, i >= kOrientations));
+    }
+    forEach(cells, [&](size_t cell) {
+      const size_t orientation = view.keys[cell] >> 57 & 7;
+      makeBlockTables(view, cell, &normals[orientation * slots], slots, sides,
+                      blocks.data() + cell * slots * sides * kEntries);
+      for (size_t side = 0; side < sides; ++side)
+        makeTexelTables(view.maps.texels + cell * kMapTexels,
+                        cosines[side * kOrientations + orientation].data(),
+                        texels.data() + (side * cells + cell) * kMapTexels);
+    });
+  });
+  return nb::make_tuple(blocks, texels);
 }
 
 }  // namespace
 
 void bindAliasTables(nb::class_<Guide>& guide) {
-  guide.def(
-      "alias_tables",
-      [](const Guide& self, const Array& normals, bool bothSides) {
-        const Rows<float> rows(normals, "normals", 3);
-        constexpr size_t kOrientations = 6;
-        if (rows.size() == 0 || rows.size() % kOrientations != 0)
-          refuseArray("normals", "as many rows for each of 6 orientations", describe(normals));
-        const GuideView view = self.view();
-        const size_t slots = rows.size() / kOrientations;
-        return nb::make_tuple(blockTables(view, rows, slots, bothSides), texelTables(view, rows, slots, bothSides));
-      },
-      "normals"_a, "both_sides"_a = false,
-      R"(Alias tables (Walker's method) of all sampling maps, for kernels of a host's own.
+  guide.def("alias_tables", &aliasTables, "normals"_a, "both_sides"_a = false,
+            R"(Alias tables (Walker's method) of all sampling maps, for kernels of a host's own.
 
 A direction is drawn from a table of 16 blocks and then from one of 16 texels. The density over solid angle is
 256 / (4 pi) times the probabilities of block and texel. It is near to that of Guide.pdf for the given normals, and

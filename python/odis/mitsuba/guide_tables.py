@@ -12,7 +12,7 @@ import odis
 from .arrays import array_of
 
 MOST_HALF = 65504.0
-NORMAL_STEPS = 11  # along each side of the octahedral map; odd, so that axes are among the normals
+NORMAL_STEPS = 9  # along each side of the octahedral map; odd, so that axes are among the normals
 # Entries of alias tables (odis.Guide.alias_tables): the probability in bits 0 to 15, of ALIAS_WHOLE; the part that
 # stands for the entry itself from bit 16 on, of ALIAS_PART; from bit 27 on what it stands for otherwise.
 ENTRIES = 16
@@ -32,7 +32,7 @@ ORIENTATIONS = np.array([[1, 0, 0], [-1, 0, 0], [0, 1, 0], [0, -1, 0], [0, 0, 1]
 class GuideTables:
     """What kernels read of a guide.
 
-    4 bytes an entry of the grid; a cell has 1 KB for its texels, 64 bytes a slot (up to 2.8 KB, all of that twice
+    4 bytes an entry of the grid; a cell has 1 KB for its texels, 64 bytes a slot (some 2 KB, all of that twice
     with both sides), 16 bytes of decisions, and 4 bytes a group of lights.
     """
 
@@ -266,7 +266,7 @@ def probability(table, place, active):
 class VertexMap:
     """A cell's map times the cosine at a vertex: a density over directions (odis::VertexMap).
 
-    The normal is rounded to one of 121, axes among them, for which products with the map's blocks are tabulated; within
+    The normal is rounded to one of 81, axes among them, for which products with the map's blocks are tabulated; within
     a block the cosine is the mean over the normals of the cell. What is drawn follows the density to the bit.
 
     normal: unit shading normal on the side of the outgoing direction. both_sides: where the surface scatters to both.

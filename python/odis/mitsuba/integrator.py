@@ -190,20 +190,22 @@ def make_integrator():
             self.frame = frame = odis.Frame(odis.FrameOptions(
                 width, height, samples_per_pixel=spp, seed=seed,
                 guide=odis.GuideOptions(light_groups=self.known.lights.groups)))
-            valid = np.zeros(width * height, np.int64)  # samples of each pixel
+            has_alpha = mi.has_flag(film.flags(), mi.FilmFlags.Alpha)
+            valid = np.zeros(width * height) if has_alpha else None  # samples of each pixel
             self.rays, self.seconds = 0, defaultdict(float)
+            tables, values, rebuilt = None, None, False
             while (frame_pass := frame.begin_pass()) is not None:
                 with self._timed("tables"):
-                    tables, values = None, None
-                    if len(frame_pass.guide):
+                    if rebuilt and len(frame_pass.guide):
                         tables = make_guide_tables(frame_pass.guide, self.known.materials.both_sides)
                         values = array_of(mi.Float, frame.pixel_values)
+                rebuilt = frame_pass.wants_vertices
                 for pixel, number, records in parts_of_pass(frame, frame_pass):
                     self._trace_part(sensor, frame_pass, tables, values, pixel, number, records, valid)
                 with self._timed("build"):
                     frame.end_pass()
             channels = [frame.image()[0]]
-            if mi.has_flag(film.flags(), mi.FilmFlags.Alpha):
+            if has_alpha:
                 alpha = valid.reshape(height, width, 1) / np.maximum(frame.sample_counts(), 1)[..., None]
                 channels.append(alpha.astype(np.float32))
             return np.concatenate(channels + [np.ones((height, width, 1), np.float32)], axis=2)
@@ -226,11 +228,12 @@ def make_integrator():
                     return
                 vertices = recording.path_vertices(recorder, min(count, ROWS))
             with self._timed("add"):
-                result = np.array(samples.result).reshape(-1, 4)
+                result = np.asarray(samples.result).reshape(-1, 4)
                 tags = result[:, 3].view(np.uint32)
                 rays = tags & np.uint32(path.VALID - 1)
                 self.rays += int(rays.sum())
-                valid += np.bincount(pixel, weights=tags >> 31, minlength=valid.size).astype(np.int64)
+                if valid is not None:
+                    valid += np.bincount(pixel, weights=tags >> 31, minlength=valid.size)
                 self.frame.add_samples(pixel, number, result[:, :3], rays, vertices)
 
         @contextmanager
