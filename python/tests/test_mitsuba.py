@@ -105,6 +105,15 @@ class Images(unittest.TestCase):
         del scene["light"]
         self.assertEqual(np.abs(render(mi.load_dict(scene), "odis", 0, 4)).max(), 0)
 
+    def test_kernels_that_can_not_be_frozen(self):
+        """Dr.Jit can't freeze calls of emitters with a texture, be they another scene's."""
+        picture = {"type": "bitmap", "data": mi.TensorXf(np.ones((4, 4, 3), np.float32)), "raw": True}
+        screen = {"type": "rectangle", "emitter": {"type": "area", "radiance": picture}}
+        plain, textured = mi.load_dict(box()), mi.load_dict(box(screen=screen))
+        for scene in (plain, textured, plain):
+            ours, theirs = (render(scene, kind, 0, 64, max_depth=3).mean() for kind in ("odis", "path"))
+            self.assertAlmostEqual(ours / theirs, 1, delta=0.05)
+
     def test_hidden_emitters(self):
         scene = mi.load_dict(box())
         ours, theirs = (render(scene, kind, 0, 64, hide_emitters=True, max_depth=1) for kind in ("odis", "path"))
