@@ -150,7 +150,7 @@ def make_guide_tables(guide, both_sides):
     tables = GuideTables(
         origin=mi.Point3f(*map(float, corner)), inverse_edge=mi.Float(1 / guide.finest_edge),
         size=mi.Vector3i(*map(int, size)), entries=array_of(mi.UInt32, cells),
-        texels=array_of(mi.Float16, half_floats(guide.texels * np.float32(TEXEL_SCALE))),
+        texels=array_of(mi.Float16, positive_halves(guide.texels * np.float32(TEXEL_SCALE))),
         **make_products(guide, both_sides),
         decisions=array_of(mi.Float16, half_floats(decisions)), radiance_scale=mi.Float(radiance_scale),
         light_tables=array_of(mi.Float, guide.light_tables if guide.light_groups else np.zeros(2, np.float32)),
@@ -223,6 +223,11 @@ def shadow_ray_probability(tables, contribution):
 def half_floats(numbers):
     with np.errstate(over="ignore"):
         return numbers.astype(np.float16)
+
+
+def positive_halves(numbers):
+    """Half floats of which none is zero, infinite or not a number: a block that is drawn has a texel to draw."""
+    return half_floats(np.fmin(np.fmax(numbers, np.float32(LEAST_HALF)), np.float32(MOST_HALF)))
 
 
 def halves(table, row, length, active):
