@@ -24,13 +24,17 @@ import numpy as np
 
 def load_file(path):
     """Loads a scene without its integrator and without the parameters that Mitsuba 3 no longer knows."""
-    tree = ElementTree.parse(path).getroot()
+    mi.file_resolver().prepend(os.path.dirname(os.path.abspath(path)))
+    return load_tree(ElementTree.parse(path).getroot())
+
+
+def load_tree(tree):
+    """The same of a file that was parsed and whose folder is known to the file resolver."""
     for integrator in tree.findall("integrator"):
         tree.remove(integrator)
     for string in tree.iter("string"):
         if string.get("value") in ("trilinear", "ewa"):
             string.set("value", "bilinear")
-    mi.file_resolver().prepend(os.path.dirname(os.path.abspath(path)))
     while True:
         try:
             return mi.load_string(ElementTree.tostring(tree, encoding="unicode"))

@@ -181,6 +181,7 @@ def make_integrator():
             if left_out:
                 mi.Log(mi.LogLevel.Info, "odis: traced without guidance: " + ", ".join(left_out))
             self.scene, self.known = scene, path.SceneTables(materials, make_light_table(scene))
+            self.trace.enabled = True
 
         def _render(self, sensor, seed, spp):
             """The image as the film stores it: colour, alpha if it has it, and weight."""
@@ -213,12 +214,17 @@ def make_integrator():
         def _trace_part(self, sensor, frame_pass, tables, values, pixel, number, records, valid):
             """Traces some samples of a pass and hands them to the frame; in halves if they have too many vertices."""
             with self._timed("pilot" if frame_pass.kind == odis.PassKind.PILOT else "guided"):
-                samples = make_samples(pixel, number, values, records)
-                seed = mi.UInt64(hash_seed(frame_pass.seed))
-                dr.make_opaque(seed)
-                recorder = self.trace(self.scene, sensor, self.settings, self.known, tables, records, seed,
-                                      self.pixel_filter, samples)
-                dr.sync_thread()
+                arguments = sensor, frame_pass, tables, values, pixel, number, records
+                try:
+                    samples, recorder = self._run_kernels(*arguments)
+                except RuntimeError:
+                    # Dr.Jit can't freeze some scenes: those with thin lenses or textured area lights, and any while
+                    # another scene exists that has bump maps. An error of another cause appears again.
+                    if not self.trace.enabled:
+                        raise
+                    mi.Log(mi.LogLevel.Info, "odis: kernels can't be frozen with this scene and are traced every time")
+                    self.trace.enabled = False
+                    samples, recorder = self._run_kernels(*arguments)
             vertices = None
             if recorder is not None:
                 count = int(recorder.count[0])
@@ -235,6 +241,16 @@ def make_integrator():
                 if valid is not None:
                     valid += np.bincount(pixel, weights=tags >> 31, minlength=valid.size)
                 self.frame.add_samples(pixel, number, result[:, :3], rays, vertices)
+
+        def _run_kernels(self, sensor, frame_pass, tables, values, pixel, number, records):
+            """Traces some samples; returns them with their results, and what was recorded."""
+            samples = make_samples(pixel, number, values, records)
+            seed = mi.UInt64(hash_seed(frame_pass.seed))
+            dr.make_opaque(seed)
+            recorder = self.trace(self.scene, sensor, self.settings, self.known, tables, records, seed,
+                                  self.pixel_filter, samples)
+            dr.sync_thread()
+            return samples, recorder
 
         @contextmanager
         def _timed(self, stage):
