@@ -50,6 +50,8 @@ def make_aovs(integrator):
                 count = min(most, spp - begin)
                 part_seed = mi.UInt32(mi.sample_tea_32(mi.UInt32(seed), mi.UInt32(begin))[0])
                 part = np.array(self.render(scene, sensor, part_seed, count))
+                if self.should_stop():
+                    raise KeyboardInterrupt
                 total = total + part[..., part.shape[2] - len(self.aov_names()):] * np.float32(count / spp)
             dr.sync_thread()
             return total

@@ -51,18 +51,20 @@ def settings_of_scene(scene):
     return settings_of(integrator)
 
 
-def guide(scene):
+def guide(scene, **parameters):
     """An integrator `odis` in place of a scene's own, with its max_depth, rr_depth, hide_emitters and AOVs:
 
         image = mi.render(scene, integrator=odis.mitsuba.guide(scene), spp=16)
 
-    The scene stays as it is. Participating media are not rendered, and an integrator that traces no paths is replaced
-    by `odis` with default parameters; Mitsuba's log warns of both.
+    The scene stays as it is. Further arguments are parameters of `odis` that take the place of the scene's.
+    Participating media are not rendered, and an integrator that traces no paths is replaced by `odis` with default
+    parameters; Mitsuba's log warns of both.
     """
-    integrator = mi.load_dict({"type": "odis", **settings_of_scene(scene)})
-    path_tracer, around = path_tracer_of(scene)
-    if around is not None:
-        integrator.aovs = make_aovs(around)
-    elif _name(path_tracer) == "OdisIntegrator":
-        integrator.aovs = path_tracer.aovs
+    integrator = mi.load_dict({"type": "odis", **settings_of_scene(scene), **parameters})
+    if integrator.aovs is None:
+        path_tracer, around = path_tracer_of(scene)
+        if around is not None:
+            integrator.aovs = make_aovs(around)
+        elif _name(path_tracer) == "OdisIntegrator":
+            integrator.aovs = path_tracer.aovs
     return integrator
