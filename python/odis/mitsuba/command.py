@@ -175,6 +175,13 @@ def set_variant(variant):
         raise Problem(BAD_INPUT, f"--variant: {str(error).removeprefix('odis: ')}") from None
 
 
+def is_interruption(error):
+    """Whether it was caused by Ctrl-C, which Dr.Jit reports as an error of its own while it records a function."""
+    while error is not None and not isinstance(error, KeyboardInterrupt):
+        error = error.__cause__ or error.__context__
+    return error is not None
+
+
 class Rendering:
     """A rendering by the command, stage by stage; `seconds` has their times."""
 
@@ -261,6 +268,8 @@ class Rendering:
             try:
                 bitmap = self.render(scene)
             except (RuntimeError, ValueError, MemoryError, odis.Error) as error:
+                if is_interruption(error):
+                    raise KeyboardInterrupt from None
                 raise Problem(FAILED, f"{self.args.scene}: rendering failed: {error}") from error
             begin = time.perf_counter()
             versions = {"odis": odis.__version__, "mitsuba": mi.__version__, "drjit": dr.__version__}
