@@ -193,6 +193,13 @@ class SceneFiles(InFolder):
         self.assertEqual({round(float(np.array(value).ravel()[0]), 3) for key, value in mi.traverse(scene)
                           if key.endswith("alpha.value")}, {0.1, 0.2})
 
+    def test_changes_of_the_sensor(self):
+        scene = scene_files.load_file(self.scene, pixels=24, rfilter="gaussian", sampler="stratified")
+        sensor = scene.sensors()[0]
+        self.assertEqual(list(sensor.film().size()), [6, 4])
+        self.assertIn("Gaussian", str(sensor.film().rfilter()))
+        self.assertIn("Stratified", str(sensor.sampler()))
+
     def test_file_resolver_stays(self):
         before = str(mi.file_resolver())
         scene_files.load_file(self.scene)

@@ -11,7 +11,7 @@ import mitsuba as mi
 KEPT = {"max_depth", "rr_depth", "hide_emitters"}
 
 
-def load_file(path, size=None, warn=None):
+def load_file(path, size=None, pixels=None, rfilter=None, sampler=None, warn=None):
     """The scene (mi.Scene) of an XML file.
 
     Mitsuba upgrades old versions itself. Beyond that, parameters that it refuses as unreferenced are dropped, texture
@@ -20,6 +20,8 @@ def load_file(path, size=None, warn=None):
     Mitsuba's log.
 
     size: (width, height) in place of what the films of the file say; their crop windows are dropped then.
+    pixels: about so many pixels with the proportions of the file, in place of a size.
+    rfilter, sampler: types of reconstruction filter and of sampler in place of the file's.
 
     Raises ValueError if the file is no scene in XML, RuntimeError if Mitsuba does not load it.
     """
@@ -32,8 +34,8 @@ def load_file(path, size=None, warn=None):
         raise ValueError(f"expected a scene in XML, found the element <{root.tag}>")
     _replace_unknown_integrators(root, warn)
     _replace_texture_filters(root, warn)
-    if size is not None:
-        _set_size(root, size)
+    if size or pixels or rfilter or sampler:
+        _set_sensors(root, size, pixels, rfilter, sampler)
     outside = mi.file_resolver()
     resolver = mi.FileResolver(outside)
     resolver.prepend(os.path.dirname(os.path.abspath(path)))
@@ -99,6 +101,10 @@ def _drop_unreferenced(root, text, error):
     return f"dropped of {culprit.tag} {culprit.get('type')}, which does not know them: " + ", ".join(sorted(dropped))
 
 
+def _defaults(root):
+    return {node.get("name"): node.get("value") for node in root.iter("default")}
+
+
 def _value(text, defaults):
     """An attribute's value with its variables (`$name`) replaced; None if one has no default."""
     try:
@@ -118,7 +124,7 @@ def _is_integrator(kind):
 
 
 def _replace_unknown_integrators(root, warn):
-    defaults = {node.get("name"): node.get("value") for node in root.iter("default")}
+    defaults = _defaults(root)
     for node in root.findall("integrator"):
         kind = _value(node.get("type", ""), defaults)
         if kind and _is_integrator(kind):
@@ -132,22 +138,45 @@ def _replace_unknown_integrators(root, warn):
 
 
 def _replace_texture_filters(root, warn):
-    for node in root.iter("string"):
-        if node.get("value") in ("trilinear", "ewa"):
-            warn(f"the texture filter {node.get('value')} is not known any more; bilinear takes its place")
-            node.set("value", "bilinear")
+    unknown = [node for node in root.iter("string") if node.get("value") in ("trilinear", "ewa")]
+    for node in unknown:
+        node.set("value", "bilinear")
+    if unknown:
+        warn("the texture filters trilinear and ewa are not known any more; bilinear takes their place")
 
 
-def _set_size(root, size):
+def _set_sensors(root, size, pixels, rfilter, sampler):
     sensors = list(root.iter("sensor"))
+    if not sensors:
+        raise ValueError("expected a sensor")
     for sensor in sensors:
         film = sensor.find("film")
         if film is None:
             film = ElementTree.SubElement(sensor, "film", type="hdrfilm")
-        for child in list(film):
-            if _snake_case(child.get("name", "")) in ("width", "height") or child.get("name", "").startswith("crop"):
+        if size or pixels:
+            _set_size(film, size or _scaled_size(film, pixels, _defaults(root)))
+        if rfilter:
+            for child in film.findall("rfilter"):
                 film.remove(child)
-        for name, pixels in zip(("width", "height"), size, strict=True):
-            ElementTree.SubElement(film, "integer", name=name, value=str(pixels))
-    if not sensors:
-        raise ValueError("expected a sensor, whose film can be given a size")
+            ElementTree.SubElement(film, "rfilter", type=rfilter)
+        for child in sensor.findall("sampler") if sampler else []:
+            child.set("type", sampler)
+
+
+def _scaled_size(film, pixels, defaults):
+    """About so many pixels with a film's proportions."""
+    size = {"width": 768, "height": 576}  # Mitsuba's own
+    for child in film.findall("integer"):
+        value = _value(child.get("value", ""), defaults)
+        if child.get("name") in size and value:
+            size[child.get("name")] = int(value)
+    scale = (pixels / (size["width"] * size["height"])) ** 0.5
+    return [max(1, round(axis * scale)) for axis in size.values()]
+
+
+def _set_size(film, size):
+    for child in list(film):
+        if child.get("name", "") in ("width", "height") or child.get("name", "").startswith("crop"):
+            film.remove(child)
+    for name, pixels in zip(("width", "height"), size, strict=True):
+        ElementTree.SubElement(film, "integer", name=name, value=str(pixels))
