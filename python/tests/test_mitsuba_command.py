@@ -162,21 +162,25 @@ class Command(InFolder):
         """In a process of its own, which another one may interrupt."""
         environment = {**os.environ, "PYTHONPATH": os.pathsep.join(sys.path)}
         words = [sys.executable, "-m", "odis.mitsuba", "render", str(self.scene)]
-        shown = self.folder / "shown"
+        # As /dev/stdout does, this leads to what a process has open, here a plain file.
+        shown, link = self.folder / "shown", self.folder / "link"
+        link.symlink_to("/proc/self/fd/1")
         with shown.open("wb") as file:
             file.write(b"before")
             file.flush()
-            subprocess.run([*words, "--integrator", "path", "--quiet", "-o", "/dev/stdout"], stdout=file, check=True,
+            subprocess.run([*words, "--integrator", "path", "--quiet", "-o", str(link)], stdout=file, check=True,
                            env=environment)
-        self.assertTrue(os.path.islink("/dev/stdout"))
+        self.assertTrue(link.is_symlink())
         self.assertTrue(shown.read_bytes().startswith(b"before\x76\x2f\x31\x01"))  # OpenEXR's first bytes
+        self.assertTrue(all(command.is_special(path) for path in ("/dev/stdout", "/dev/fd/1", "/dev/null", link)))
+        self.assertFalse(any(command.is_special(path) for path in (self.scene, shown, self.folder / "new")))
         long = subprocess.Popen([*words, "--spp", "1000000", "-o", str(self.folder / "b.exr")], env=environment,
                                 stderr=subprocess.PIPE, text=True)
         self.assertIn("0 %", long.stderr.readline())
         long.send_signal(signal.SIGINT)
         self.assertIn("interrupted", long.communicate(timeout=50)[1])
         self.assertEqual(long.returncode, 130)
-        self.assertEqual(sorted(file.name for file in self.folder.iterdir()), ["scene.xml", "shown"])
+        self.assertEqual(sorted(file.name for file in self.folder.iterdir()), ["link", "scene.xml", "shown"])
 
 
 class SceneFiles(InFolder):
