@@ -130,6 +130,15 @@ class Command(InFolder):
         self.assertEqual(run(*words, "-o", self.folder / "a.png")[0], 0)
         self.assertEqual(mi.Bitmap(str(self.folder / "a.png")).channel_count(), 3)
 
+    def test_spectral(self):
+        self.addCleanup(mi.set_variant, "llvm_ad_rgb")
+        images = []
+        for integrator in ("odis", "path"):
+            words = ("render", self.scene, "--variant", "llvm_ad_spectral", "--spp", 64, "--quiet")
+            self.assertEqual(run(*words, "--integrator", integrator, "-o", self.folder / "a.exr"), (0, ""))
+            images.append(np.array(mi.Bitmap(str(self.folder / "a.exr"))).mean((0, 1)))
+        np.testing.assert_allclose(images[0], images[1], rtol=0.03)
+
     def test_wrong_usage(self):
         scene = self.scene
         cases = (((self.folder / "none.xml",), "no such file"), ((scene, "--spp", 0), "from 1, found 0"),

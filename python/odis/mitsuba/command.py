@@ -175,11 +175,11 @@ def set_variant(variant):
         raise Problem(BAD_INPUT, f"--variant: {str(error).removeprefix('odis: ')}") from None
 
 
-def is_interruption(error):
-    """Whether it was caused by Ctrl-C, which Dr.Jit reports as an error of its own while it records a function."""
-    while error is not None and not isinstance(error, KeyboardInterrupt):
+def cause_of(error):
+    """What an error comes from in the end: Dr.Jit reports all, Ctrl-C as well, as errors of its own."""
+    while error.__cause__ or error.__context__:
         error = error.__cause__ or error.__context__
-    return error is not None
+    return error
 
 
 class Rendering:
@@ -268,9 +268,10 @@ class Rendering:
             try:
                 bitmap = self.render(scene)
             except (RuntimeError, ValueError, MemoryError, odis.Error) as error:
-                if is_interruption(error):
+                cause = cause_of(error)
+                if isinstance(cause, KeyboardInterrupt):
                     raise KeyboardInterrupt from None
-                raise Problem(FAILED, f"{self.args.scene}: rendering failed: {error}") from error
+                raise Problem(FAILED, f"{self.args.scene}: rendering failed: {str(cause) or repr(cause)}") from error
             begin = time.perf_counter()
             versions = {"odis": odis.__version__, "mitsuba": mi.__version__, "drjit": dr.__version__}
             metadata = {"generatedBy": ", ".join(f"{name} {version}" for name, version in versions.items()),

@@ -149,6 +149,8 @@ def make_integrator():
                 raise ValueError(f"odis: rr_depth: expected a number from 1, found {self.settings.rr_depth}")
             # Kernels are traced and compiled once for each kind of pass.
             self.trace = dr.freeze(trace_samples, limit=16, warn_after=1 << 30)
+            if mi.is_spectral:  # Mitsuba's tables of colour matching functions can't be arguments of a frozen function.
+                self.trace = trace_samples
             self.scene, self.known = None, None
             self.progress, self.separate_compile = None, False
             names = props.get("aovs", "")
