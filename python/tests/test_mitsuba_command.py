@@ -141,7 +141,7 @@ class Command(InFolder):
 
     def test_wrong_usage(self):
         scene = self.scene
-        cases = (((self.folder / "none.xml",), "no such file"), ((scene, "--spp", 0), "from 1, found 0"),
+        cases = (((self.folder / "none.xml",), "no such file"), ((scene, "--spp", 0), "from 1 to 2147483647, found 0"),
                  ((scene, "--resolution", "640"), "640x360, found 640"), ((scene, "--rr-depth", 0), "from 1"),
                  ((scene, "-o", self.folder / "no" / "a.exr"), "folder exists"), ((scene, "-o", self.folder), "a folder"),
                  ((scene, "-o", "a.gif"), "ends with one of"), ((scene, "--variant", "scalar_rgb"), "llvm_ad_rgb"),
@@ -149,7 +149,9 @@ class Command(InFolder):
                  ((scene, "-o", self.folder / "a.exr", "--aovs", "a:b"), "Invalid AOV"),
                  ((self.write("text.xml", "hello"), "-o", self.folder / "a.exr"), "expected a scene in XML"),
                  ((self.write("b.xml", "<bsdf/>"), "-o", self.folder / "a.exr"), "found the element <bsdf>"),
-                 ((self.write("c.xml", "<scene version='3.0.0'/>"), "-o", self.folder / "a.exr"), "expected a sensor"))
+                 ((self.write("c.xml", "<scene version='3.0.0'/>"), "-o", self.folder / "a.exr"), "expected a sensor"),
+                 ((self.write("d.xml", scene_text(more="<shape type='spere'/>")), "-o", self.folder / "a.exr"),
+                  "At line 11, col 4"))
         for words, expected in cases:
             with self.subTest(words):
                 code, said = run("render", *words)

@@ -26,12 +26,15 @@ def load_file(path, size=None, pixels=None, rfilter=None, sampler=None, warn=Non
     Raises ValueError if the file is no scene in XML, RuntimeError if Mitsuba does not load it.
     """
     warn = warn or (lambda text: mi.Log(mi.LogLevel.Warn, f"odis: {path}: {text}"))
+    with open(path, "rb") as file:
+        text = file.read()
     try:
-        root = ElementTree.parse(path).getroot()
+        root = ElementTree.fromstring(text)
     except ElementTree.ParseError as error:
         raise ValueError(f"expected a scene in XML: {error}") from None
     if root.tag != "scene":
         raise ValueError(f"expected a scene in XML, found the element <{root.tag}>")
+    places = dict(zip(root.iter(), _start_tags(text), strict=True))
     _replace_unknown_integrators(root, warn)
     _replace_texture_filters(root, warn)
     if size or pixels or rfilter or sampler:
@@ -41,7 +44,7 @@ def load_file(path, size=None, pixels=None, rfilter=None, sampler=None, warn=Non
     resolver.prepend(os.path.dirname(os.path.abspath(path)))
     mi.set_file_resolver(resolver)
     try:
-        scene = _load(root, warn)
+        scene = _load(root, places, warn)
     finally:
         mi.set_file_resolver(outside)
     if not isinstance(scene, mi.Scene):
@@ -49,16 +52,28 @@ def load_file(path, size=None, pixels=None, rfilter=None, sampler=None, warn=Non
     return scene
 
 
-def _load(root, warn):
+def _load(root, places, warn):
+    """places: line and column of elements in the file, which Mitsuba's errors are made to speak of."""
     while True:
         text = ElementTree.tostring(root, encoding="unicode")
         try:
             return mi.load_string(text)
         except RuntimeError as error:
-            dropped = _drop_unreferenced(root, text, str(error))
-            if not dropped:
+            culprit, match = _culprit(root, text, str(error))
+            if culprit is None:
                 raise
+            dropped = _drop_unreferenced(root, culprit, str(error))
+            if not dropped:
+                place = "line {}, col {}".format(*places[culprit]) if culprit in places else "an added element"
+                raise RuntimeError(str(error).replace(match[0], place)) from None
             warn(dropped)
+
+
+def _culprit(root, text, error):
+    """The element that an error speaks of, and where it does."""
+    match = re.search(r"string \(line (\d+), col (\d+)\)", error)
+    at = (int(match[1]), int(match[2])) if match else None
+    return next((node for place, node in zip(_start_tags(text), root.iter(), strict=True) if place == at), None), match
 
 
 def _snake_case(name):
@@ -77,17 +92,12 @@ def _names(node):
     return sorted(child.get("name", "") for child in node)
 
 
-def _drop_unreferenced(root, text, error):
+def _drop_unreferenced(root, culprit, error):
     """Drops parameters of the element that an error speaks of, and of others of its type with the same parameters.
     Returns what was dropped in words; None if the error is another one."""
-    place = re.search(r"\(line (\d+), col (\d+)\): Found \d+ unreferenced", error)
-    if not place:
+    if not re.search(r"Found \d+ unreferenced", error):
         return None
-    culprit = next((node for at, node in zip(_start_tags(text), root.iter(), strict=True)
-                    if at == (int(place[1]), int(place[2]))), None)
-    if culprit is None:
-        return None
-    unknown = set(re.findall(r'^ +- \w+ "(\w+)"', error, re.MULTILINE))
+    unknown = set(re.findall(r'^ +- \w+ "([^"]+)"', error, re.MULTILINE))
     alike = [node for node in root.iter(culprit.tag)
              if node.get("type") == culprit.get("type") and _names(node) == _names(culprit)]
     dropped = set()
