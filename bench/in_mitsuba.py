@@ -5,9 +5,9 @@
 
 Needs `pip install ".[mitsuba]"`. Both integrators run in one process and take turns, with max_depth 13, rr_depth 5,
 independent samples and a box filter. Times are wall clock and processor time without Dr.Jit's code generation and
-compilation: each kind renders once to warm up, and an image for which kernels were compiled is rendered again. Errors are
-0.1 %-trimmed relMSE as src/eval/metrics.h has it, to references of `path` with other seeds. Values are medians over
-seeds, ratios are of `odis` to `path`. Scenes that do not load get `-`, and the reason on stderr.
+compilation: each kind renders once to warm up, and an image for which kernels were compiled is rendered again. Errors
+are 0.1 %-trimmed relMSE as src/eval/metrics.h has it, to references of `path` with other seeds. Values are medians
+over seeds, ratios are of `odis` to `path`. Scenes that do not load get `-`, and the reason on stderr.
 """
 import argparse
 import hashlib
@@ -101,8 +101,8 @@ def measure(scene, reference, spp, seeds):
 
 def print_row(name, spp, values):
     time_of_path, time_ratio, processor_ratio, error_ratio, rays = values
-    print(f"| {name} | {spp} | {time_of_path} | {time_ratio:.2f} | {processor_ratio:.2f} | {error_ratio:.2f} | {rays} | "
-          f"{time_ratio * error_ratio:.2f} |", flush=True)
+    print(f"| {name} | {spp} | {time_of_path} | {time_ratio:.2f} | {processor_ratio:.2f} | {error_ratio:.2f} | "
+          f"{rays} | {time_ratio * error_ratio:.2f} |", flush=True)
 
 
 def main():

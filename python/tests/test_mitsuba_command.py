@@ -143,9 +143,11 @@ class Command(InFolder):
         scene = self.scene
         cases = (((self.folder / "none.xml",), "no such file"), ((scene, "--spp", 0), "from 1 to 2147483647, found 0"),
                  ((scene, "--resolution", "640"), "640x360, found 640"), ((scene, "--rr-depth", 0), "from 1"),
-                 ((scene, "-o", self.folder / "no" / "a.exr"), "folder exists"), ((scene, "-o", self.folder), "a folder"),
+                 ((scene, "-o", self.folder / "no" / "a.exr"), "folder exists"),
+                 ((scene, "-o", self.folder), "a folder"),
                  ((scene, "-o", "a.gif"), "ends with one of"), ((scene, "--variant", "scalar_rgb"), "llvm_ad_rgb"),
-                 ((scene, "--variant", "metal"), "llvm_ad_rgb"), ((scene, "--variant", "llvm_ad_mono"), "rgb or spectral"),
+                 ((scene, "--variant", "metal"), "llvm_ad_rgb"),
+                 ((scene, "--variant", "llvm_ad_mono"), "rgb or spectral"),
                  ((scene, "-o", self.folder / "a.exr", "--aovs", "a:b"), "Invalid AOV"),
                  ((self.write("text.xml", "hello"), "-o", self.folder / "a.exr"), "expected a scene in XML"),
                  ((self.write("b.xml", "<bsdf/>"), "-o", self.folder / "a.exr"), "found the element <bsdf>"),

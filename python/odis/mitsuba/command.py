@@ -69,7 +69,8 @@ def make_parser():
     render.add_argument("-o", "--output", metavar="IMAGE", help="image file; its ending says the format: "
                         f"{', '.join(sorted(FORMATS))} (the scene's name with .exr, in the current folder)")
     render.add_argument("--spp", type=number_from(1), metavar="N", help="samples per pixel (the scene's)")
-    render.add_argument("--seed", type=number_from(0, 2**32 - 1), default=0, metavar="N", help="seed of the random numbers (0)")
+    render.add_argument("--seed", type=number_from(0, 2**32 - 1), default=0, metavar="N",
+                        help="seed of the random numbers (0)")
     render.add_argument("--resolution", type=resolution, metavar="WxH",
                         help="size of the image, in place of the film's size and crop window (the scene's)")
     render.add_argument("--variant", default="llvm_ad_rgb",
