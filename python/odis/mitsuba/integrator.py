@@ -11,10 +11,13 @@ import numpy as np
 import odis
 
 from . import path, recording
+from .aovs import make_aovs, nested_integrators
 from .arrays import array_of
 from .guide_tables import make_guide_tables
+from .kernel_history import compile_seconds
 from .lights import make_light_table
 from .materials import make_material_table
+from .progress import default_progress
 from .random_numbers import generator_of, hash_seed
 
 # Vertices are recorded by so many paths at once at most, into so many rows; paths that need more come in smaller parts.
@@ -132,10 +135,18 @@ def make_integrator():
     """The class of the integrator for the variant that is set."""
 
     class OdisIntegrator(mi.SamplingIntegrator):
-        """Parameters: max_depth (-1), rr_depth (5) and hide_emitters (false), as of `path`.
+        """Parameters: max_depth (-1), rr_depth (5) and hide_emitters (false), as of `path`; aovs (""), as of `aov`.
 
         After a rendering `seconds` holds the time of its stages, `rays` the number of rays, `frame` the odis.Frame.
+        `progress`, if set, is called with the fraction of the samples that are traced. If `separate_compile` is set and
+        so is Dr.Jit's flag KernelHistory, seconds["compile"] is what code generation and compilation took, which the
+        other stages leave out then; that clears the history.
         """
+
+        # Dr.Jit traverses __dict__, also of an integrator that a scene holds, and would compile kernels anew whenever
+        # something in there changes: all is kept out of it.
+        __slots__ = ("settings", "trace", "scene", "known", "pixel_filter", "frame", "rays", "traced", "seconds",
+                     "progress", "separate_compile", "aovs", "unguided", "said_unguided")
 
         def __init__(self, props):
             check_variant()
@@ -149,7 +160,14 @@ def make_integrator():
                 raise ValueError(f"odis: rr_depth: expected a number from 1, found {self.settings.rr_depth}")
             # Kernels are traced and compiled once for each kind of pass.
             self.trace = dr.freeze(trace_samples, limit=16, warn_after=1 << 30)
+            if mi.is_spectral:  # Mitsuba's tables of colour matching functions can't be arguments of a frozen function.
+                self.trace = trace_samples
             self.scene, self.known = None, None
+            self.progress, self.separate_compile = None, False
+            names = props.get("aovs", "")
+            self.aovs = make_aovs(mi.load_dict({"type": "aov", "aovs": names})) if names else None
+            self.unguided = mi.load_dict({"type": "path", **vars(self.settings)})
+            self.said_unguided = False
 
         def render(self, scene, sensor=0, seed=0, spp=0, develop=True, evaluate=True):
             if isinstance(sensor, int):
@@ -157,20 +175,35 @@ def make_integrator():
             film = sensor.film()
             if mi.has_flag(film.flags(), mi.FilmFlags.Special):
                 raise RuntimeError(f"odis: expected a film that stores colours, found {film.class_name()}")
+            seed, spp = int(dr.slice(seed) if dr.is_array_v(seed) else seed), spp or sensor.sampler().sample_count()
+            self.seconds = defaultdict(float)
             with dr.suspend_grad():
                 if self.scene is not scene:
-                    self._meet(scene)
-                image = self._render(sensor, int(dr.slice(seed) if dr.is_array_v(seed) else seed),
-                                     spp or sensor.sampler().sample_count())
-                film.prepare([])
+                    with self._timed("prepare"):
+                        self._meet(scene)
+                image = self._render(sensor, seed, spp)
+                if self.aovs is not None:
+                    with self._timed("aovs"):
+                        image = np.concatenate([image, self.aovs.image(scene, sensor, seed, spp)], axis=2)
+                film.prepare(self.aov_names())
                 film.put_block(mi.ImageBlock(mi.TensorXf(image), film.crop_offset()))
+                own = scene.integrator()
+                if own is self or (own is not None and self in nested_integrators(own)):
+                    self.scene = None  # Otherwise they would keep each other forever.
                 return film.develop() if develop else mi.TensorXf()
 
         def sample(self, scene, sampler, ray, medium=None, active=True):
-            raise NotImplementedError("odis renders whole images: it can't be nested in another integrator")
+            """Single rays, which other integrators ask for, are traced without guidance."""
+            if not self.said_unguided:
+                self.said_unguided = True
+                mi.Log(mi.LogLevel.Warn, "odis: another integrator asks for single rays, which are traced as `path` "
+                                         "does; for AOVs, odis has the parameter `aovs`")
+            radiance, valid, _ = self.unguided.sample(scene, sampler, ray, medium, active)
+            values = self.aovs.sample(scene, sampler, ray, medium, active)[2] if self.aovs is not None else []
+            return radiance, valid, values
 
         def aov_names(self):
-            return []
+            return self.aovs.aov_names() if self.aovs is not None else []
 
         def to_string(self):
             return f"OdisIntegrator[max_depth = {self.settings.max_depth}, rr_depth = {self.settings.rr_depth}]"
@@ -193,7 +226,8 @@ def make_integrator():
                 guide=odis.GuideOptions(light_groups=self.known.lights.groups)))
             has_alpha = mi.has_flag(film.flags(), mi.FilmFlags.Alpha)
             valid = np.zeros(width * height) if has_alpha else None  # samples of each pixel
-            self.rays, self.seconds = 0, defaultdict(float)
+            progress, self.rays, self.traced = self.progress or default_progress(), 0, 0
+            progress(0)
             tables, values, rebuilt = None, None, False
             while (frame_pass := frame.begin_pass()) is not None:
                 with self._timed("tables"):
@@ -203,8 +237,11 @@ def make_integrator():
                 rebuilt = frame_pass.wants_vertices
                 for pixel, number, records in parts_of_pass(frame, frame_pass):
                     self._trace_part(sensor, frame_pass, tables, values, pixel, number, records, valid)
+                    self.traced += pixel.size
+                    progress(self.traced / (spp * width * height))
                 with self._timed("build"):
                     frame.end_pass()
+            progress(1)
             channels = [frame.image()[0]]
             if has_alpha:
                 alpha = valid.reshape(height, width, 1) / np.maximum(frame.sample_counts(), 1)[..., None]
@@ -257,5 +294,9 @@ def make_integrator():
             begin = time.perf_counter()
             yield
             self.seconds[stage] += time.perf_counter() - begin
+            if self.separate_compile:
+                compiling = compile_seconds()
+                self.seconds[stage] -= compiling
+                self.seconds["compile"] += compiling
 
     return OdisIntegrator
