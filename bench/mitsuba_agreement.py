@@ -16,11 +16,9 @@ import argparse
 import os
 import statistics
 import sys
-from xml.etree import ElementTree
 
 import mitsuba as mi
 import numpy as np
-from beside_mitsuba import load_tree
 
 BLOCK = 8
 EXCHANGES = 2000
@@ -68,24 +66,6 @@ def report(name, a, b):
           f"{100 * (ratio - 1):+.2f} ± {100 * spread:.2f} % | {100 * error:.2f} % | {verdict} |", flush=True)
 
 
-def load(path, pixels):
-    """A scene at about so many pixels, with a box filter, for the integrators treat others differently at borders."""
-    tree = ElementTree.parse(path).getroot()
-    for film in tree.iter("film"):
-        for rfilter in film.findall("rfilter"):
-            film.remove(rfilter)
-        ElementTree.SubElement(film, "rfilter", type="box")
-    mi.file_resolver().prepend(os.path.dirname(os.path.abspath(path)))
-    scene = load_tree(tree)
-    parameters = mi.traverse(scene)
-    key = next(k for k in parameters.keys() if k.endswith("film.size"))
-    scale = np.sqrt(pixels / np.prod([int(v) for v in parameters[key]]))
-    size = [max(BLOCK, round(int(v) * scale)) for v in parameters[key]]
-    parameters[key] = parameters[key.replace("film.size", "film.crop_size")] = size
-    parameters.update()
-    return scene
-
-
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("scenes", nargs="+")
@@ -98,10 +78,12 @@ def main():
     mi.set_variant(args.variant)
     mi.set_log_level(mi.LogLevel.Error)
     import odis.mitsuba  # noqa: F401, registers the integrator
+    from odis.mitsuba.scene_files import load_file
     print("| scene | largest \\|z\\| | limit | exchanged | beyond | mean | median block's error | |")
     print("|---|--:|--:|--:|--:|--:|--:|---|", flush=True)
     for path in args.scenes:
-        scene = load(path, args.pixels)
+        # Without a box filter the two integrators differ at the image's border.
+        scene = load_file(path, pixels=args.pixels, rfilter="box")
         images = []
         for kind, first in (("odis", 0), ("path", 100_000)):
             integrator = mi.load_dict({"type": kind, "max_depth": args.max_depth})

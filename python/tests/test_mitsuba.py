@@ -158,7 +158,7 @@ class Maps(unittest.TestCase):
         self.assertLess((np.array(found) != expected).mean(), 0.005)
 
     def test_density(self):
-        """Of axis-aligned normals the density is the library's but for the rounding to half floats."""
+        """Of axis-aligned normals the density is nearly the library's: within blocks the cosine is rounded."""
         position, normal = self.places(2000)
         cells = self.guide.find_cells(position, normal)
         self.assertTrue((cells != odis.NO_CELL).all())
@@ -168,7 +168,7 @@ class Maps(unittest.TestCase):
                                                 mi.Bool(both), mi.Bool(True))
             ours = np.array(vertex_map.pdf(mi.Vector3f(wi.T), mi.Bool(True)))
             theirs = self.guide.pdf(cells, normal, wi, both)
-            self.assertLess(np.median(np.abs(ours / theirs - 1)), 0.005)
+            self.assertLess(np.median(np.abs(ours / theirs - 1)), 0.02)
 
     def test_samples_follow_the_density(self):
         """chi^2 of 100,000 samples over 64 cells of the octahedral map; also that the density integrates to one."""
