@@ -111,8 +111,8 @@ class Images(unittest.TestCase):
         del scene["light"]
         self.assertEqual(np.abs(render(mi.load_dict(scene), "odis", 0, 4)).max(), 0)
 
-    def test_kernels_that_can_not_be_frozen(self):
-        """Dr.Jit can't freeze calls of emitters with a texture, be they another scene's."""
+    def test_several_scenes_at_once(self):
+        """Virtual calls are compiled for the objects of all scenes that exist."""
         picture = {"type": "bitmap", "data": mi.TensorXf(np.ones((4, 4, 3), np.float32)), "raw": True}
         screen = {"type": "rectangle", "emitter": {"type": "area", "radiance": picture}}
         plain, textured = mi.load_dict(box()), mi.load_dict(box(screen=screen))

@@ -82,10 +82,10 @@ class Camera:
         return rng, ray, weight * filter_weight
 
 
-def trace_samples(scene, sensor, settings, known, tables, records, seed, pixel_filter, samples):
+def trace_samples(scene, camera, settings, known, tables, records, samples):
     """Traces samples; where it records them returns the recorder, with what only complete paths know filled in."""
     recorder = recording.make_recorder(ROWS) if records else None
-    path.trace(scene, Camera(sensor, seed, *pixel_filter), settings, known, tables, recorder, samples)
+    path.trace(scene, camera, settings, known, tables, recorder, samples)
     dr.eval(samples, recorder)
     if recorder is not None:
         recording.complete_paths(recorder, samples.last_row, path.ray_counts(samples))
@@ -145,7 +145,7 @@ def make_integrator():
 
         # Dr.Jit traverses __dict__, also of an integrator that a scene holds, and would compile kernels anew whenever
         # something in there changes: all is kept out of it.
-        __slots__ = ("settings", "trace", "scene", "known", "pixel_filter", "frame", "rays", "traced", "seconds",
+        __slots__ = ("settings", "scene", "known", "pixel_filter", "frame", "rays", "traced", "seconds",
                      "progress", "separate_compile", "aovs", "unguided", "said_unguided")
 
         def __init__(self, props):
@@ -158,10 +158,6 @@ def make_integrator():
                                  f"found {self.settings.max_depth}")
             if self.settings.rr_depth <= 0:
                 raise ValueError(f"odis: rr_depth: expected a number from 1, found {self.settings.rr_depth}")
-            # Kernels are traced and compiled once for each kind of pass.
-            self.trace = dr.freeze(trace_samples, limit=16, warn_after=1 << 30)
-            if mi.is_spectral:  # Mitsuba's tables of colour matching functions can't be arguments of a frozen function.
-                self.trace = trace_samples
             self.scene, self.known = None, None
             self.progress, self.separate_compile = None, False
             names = props.get("aovs", "")
@@ -214,7 +210,6 @@ def make_integrator():
             if left_out:
                 mi.Log(mi.LogLevel.Info, "odis: traced without guidance: " + ", ".join(left_out))
             self.scene, self.known = scene, path.SceneTables(materials, make_light_table(scene))
-            self.trace.enabled = True
 
         def _render(self, sensor, seed, spp):
             """The image as the film stores it: colour, alpha if it has it, and weight."""
@@ -251,17 +246,12 @@ def make_integrator():
         def _trace_part(self, sensor, frame_pass, tables, values, pixel, number, records, valid):
             """Traces some samples of a pass and hands them to the frame; in halves if they have too many vertices."""
             with self._timed("pilot" if frame_pass.kind == odis.PassKind.PILOT else "guided"):
-                arguments = sensor, frame_pass, tables, values, pixel, number, records
-                try:
-                    samples, recorder = self._run_kernels(*arguments)
-                except RuntimeError:
-                    # Dr.Jit can't freeze some scenes: those with thin lenses or textured area lights, and any while
-                    # another scene exists that has bump maps. An error of another cause appears again.
-                    if not self.trace.enabled:
-                        raise
-                    mi.Log(mi.LogLevel.Info, "odis: kernels can't be frozen with this scene and are traced every time")
-                    self.trace.enabled = False
-                    samples, recorder = self._run_kernels(*arguments)
+                samples = make_samples(pixel, number, values, records)
+                # An opaque number, so that the same kernel serves all seeds.
+                seed = dr.opaque(mi.UInt64, hash_seed(frame_pass.seed))
+                recorder = trace_samples(self.scene, Camera(sensor, seed, *self.pixel_filter), self.settings,
+                                         self.known, tables, records, samples)
+                dr.sync_thread()
             vertices = None
             if recorder is not None:
                 count = int(recorder.count[0])
@@ -278,16 +268,6 @@ def make_integrator():
                 if valid is not None:
                     valid += np.bincount(pixel, weights=tags >> 31, minlength=valid.size)
                 self.frame.add_samples(pixel, number, result[:, :3], rays, vertices)
-
-        def _run_kernels(self, sensor, frame_pass, tables, values, pixel, number, records):
-            """Traces some samples; returns them with their results, and what was recorded."""
-            samples = make_samples(pixel, number, values, records)
-            seed = mi.UInt64(hash_seed(frame_pass.seed))
-            dr.make_opaque(seed)
-            recorder = self.trace(self.scene, sensor, self.settings, self.known, tables, records, seed,
-                                  self.pixel_filter, samples)
-            dr.sync_thread()
-            return samples, recorder
 
         @contextmanager
         def _timed(self, stage):
