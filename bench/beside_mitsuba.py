@@ -3,59 +3,21 @@
 
     bench/beside_mitsuba.py ODIS SCENE.xml... [--variant llvm_ad_rgb] [--pixels 57600] [--spp 64] [--rounds 3]
 
-Needs `pip install mitsuba numpy` (and a libLLVM for the llvm variants). Both trace paths of at most 13 vertices with
+Needs `pip install ".[mitsuba]"` (and a libLLVM for the llvm variants). Both trace paths of at most 13 vertices with
 Russian roulette from the fifth, independent samples and a box filter or the scene's own; they take turns, and time is
 the processes' time on all cores, which a busy machine disturbs least. Mitsuba's compilation is left out. Scenes that
-Mitsuba 3 does not load as they are get `-`.
+odis.mitsuba.scene_files does not load get `-`.
 """
 import argparse
 import json
-import math
 import os
-import re
 import subprocess
 import sys
 import time
-from xml.etree import ElementTree
 
 import mitsuba as mi
 import numpy as np
-
-
-def load_file(path):
-    """Loads a scene without its integrator and without the parameters that Mitsuba 3 no longer knows."""
-    tree = ElementTree.parse(path).getroot()
-    for integrator in tree.findall("integrator"):
-        tree.remove(integrator)
-    for string in tree.iter("string"):
-        if string.get("value") in ("trilinear", "ewa"):
-            string.set("value", "bilinear")
-    mi.file_resolver().prepend(os.path.dirname(os.path.abspath(path)))
-    while True:
-        try:
-            return mi.load_string(ElementTree.tostring(tree, encoding="unicode"))
-        except RuntimeError as error:
-            unknown = set(re.findall(r'- \w+ "(\w+)"', str(error)))
-            unknown |= {re.sub(r"_(\w)", lambda m: m.group(1).upper(), name) for name in unknown}
-            found = [(node, child) for node in tree.iter() for child in node if child.get("name") in unknown]
-            if "unreferenced" not in str(error) or not found:
-                raise
-            for node, child in found:
-                node.remove(child)
-
-
-def load(path, pixels):
-    """The scene at about so many pixels."""
-    scene = load_file(path)
-    parameters = mi.traverse(scene)
-    key = next(k for k in parameters.keys() if k.endswith("film.size"))
-    width, height = (int(v) for v in parameters[key])
-    scale = math.sqrt(pixels / (width * height))
-    size = [max(1, round(width * scale)), max(1, round(height * scale))]
-    parameters[key] = size
-    parameters[key.replace("film.size", "film.crop_size")] = size
-    parameters.update()
-    return scene
+from odis.mitsuba.scene_files import load_file
 
 
 def mitsuba_rate(scene, spp, seed):
@@ -87,10 +49,10 @@ def main():
         ours, theirs, loaded, seconds = [], [], None, float("nan")
         try:
             start = time.time()
-            loaded = load(path, args.pixels)
+            loaded = load_file(path, pixels=args.pixels)
             seconds = time.time() - start
             mitsuba_rate(loaded, args.spp, 0)  # compiles
-        except (RuntimeError, StopIteration) as error:
+        except (RuntimeError, ValueError) as error:
             print(f"{name}: {str(error).strip().splitlines()[-1]}", file=sys.stderr)
             loaded = None
         for seed in range(args.rounds):

@@ -182,6 +182,7 @@ and keep it alive. About 830 bytes a cell.)");
   bindMaps(guide);
   bindDecisions(guide);
   bindLookups(guide);
+  bindAliasTables(guide);
 }
 
 }  // namespace odis::python

@@ -121,6 +121,45 @@ class SameBits(unittest.TestCase):
         self.assertTrue((tens.survival_factors != ones.survival_factors).any())
 
 
+class AliasTables(unittest.TestCase):
+    AXES = np.concatenate([sign * np.eye(3, dtype=np.float32)[axis:axis + 1] for axis in range(3) for sign in (1, -1)])
+
+    def setUp(self):
+        self.guide = build(made_up.vertices(20000))
+
+    def test_probabilities_are_what_is_drawn(self):
+        for both_sides in (False, True):
+            for table in self.guide.alias_tables(self.AXES, both_sides):
+                table = table.reshape(-1, 16).astype(np.int64)
+                part, alias = table >> 16 & 2047, table >> 27
+                drawn = part.copy()
+                for entry in range(16):
+                    drawn[:, entry] += np.where(alias == entry, 2048 - part, 0).sum(1)
+                np.testing.assert_array_equal(table & 0xffff, drawn)
+                np.testing.assert_array_equal(drawn.sum(1), 1 << 15)
+
+    def test_density_is_near_that_of_the_guide(self):
+        blocks, texels = (table & 0xffff for table in self.guide.alias_tables(self.AXES))
+        cells = np.arange(len(self.guide), dtype=np.uint32)
+        axis = (self.guide.cell_keys >> np.uint64(57) & np.uint64(7)).astype(int)
+        # The texel nearest to a direction between the axis and the horizon.
+        along = self.AXES + 0.5 * np.roll(self.AXES, 1, axis=1)
+        nearest = (along @ self.guide.texel_directions).argmax(1)[axis]
+        block, texel = nearest // 16, nearest % 16
+        wi = np.ascontiguousarray(self.guide.texel_directions[:, nearest].T)
+        ours = blocks[cells, 0, block] * (texels[cells, block, texel] * (256 / (4 * np.pi) / 2 ** 30))
+        theirs = self.guide.pdf(cells, self.AXES[axis], wi)
+        self.assertLess(np.median(np.abs(ours / theirs - 1)), 0.1)
+
+    def test_shapes_and_errors(self):
+        cells = len(self.guide)
+        blocks, texels = self.guide.alias_tables(np.repeat(self.AXES, 3, axis=0), both_sides=True)
+        self.assertEqual((blocks.shape, texels.shape), ((cells, 6, 16), (2 * cells, 16, 16)))
+        for count in (0, 4):
+            with self.assertRaisesRegex(ValueError, "normals: expected as many rows for each of 6 orientations"):
+                self.guide.alias_tables(self.AXES[:count])
+
+
 class Lifetimes(unittest.TestCase):
     def test_arrays_are_the_guides_own(self):
         guide = build(made_up.vertices(5000))

@@ -41,18 +41,24 @@ def render(scene, kind, seed, spp, **parameters):
     return np.array(mi.render(scene, integrator=mi.load_dict({"type": kind, **parameters}), spp=spp, seed=seed))
 
 
+def z_scores(scene, spp=64, **parameters):
+    """Differences between `odis` and `path` in the means of blocks over seeds, in standard errors; and these errors,
+    relative to the means."""
+    ours, path = (mi.load_dict({"type": kind, **parameters}) for kind in ("odis", "path"))
+    means = [np.array([blocks(np.array(mi.render(scene, integrator=one, spp=spp, seed=first + i))[..., :3])
+                       for i in range(SEEDS)]) for one, first in ((ours, 0), (path, 1000))]
+    error = np.sqrt(sum(m.var(0, ddof=1) / SEEDS for m in means))
+    difference = means[0].mean(0) - means[1].mean(0)
+    return difference / np.maximum(error, 1e-6), error / means[1].mean(0)
+
+
 class Unbiased(unittest.TestCase):
     def compare(self, scene, spp=64, **parameters):
         """Tests of the means of 16 blocks and three colours over seeds: by chance one fails in some 400 such images."""
-        ours = mi.load_dict({"type": "odis", **parameters})
-        path = mi.load_dict({"type": "path", **parameters})
-        means = [np.array([blocks(np.array(mi.render(scene, integrator=one, spp=spp, seed=first + i))[..., :3])
-                           for i in range(SEEDS)]) for one, first in ((ours, 0), (path, 1000))]
-        error = np.sqrt(sum(m.var(0, ddof=1) / SEEDS for m in means))
-        z = (means[0].mean(0) - means[1].mean(0)) / error
+        z, error = z_scores(scene, spp, **parameters)
         # |t| > 5 with 22 degrees of freedom: 5 in 100,000.
         self.assertLess(np.abs(z).max(), 5.0, z)
-        self.assertLess(np.median(error / means[1].mean(0)), 0.02)
+        self.assertLess(np.median(error), 0.02)
 
     def test_plastic_metal_and_one_light(self):
         self.compare(mi.load_dict(box()), max_depth=6)
@@ -105,6 +111,15 @@ class Images(unittest.TestCase):
         del scene["light"]
         self.assertEqual(np.abs(render(mi.load_dict(scene), "odis", 0, 4)).max(), 0)
 
+    def test_several_scenes_at_once(self):
+        """Virtual calls are compiled for the objects of all scenes that exist."""
+        picture = {"type": "bitmap", "data": mi.TensorXf(np.ones((4, 4, 3), np.float32)), "raw": True}
+        screen = {"type": "rectangle", "emitter": {"type": "area", "radiance": picture}}
+        plain, textured = mi.load_dict(box()), mi.load_dict(box(screen=screen))
+        for scene in (plain, textured, plain):
+            ours, theirs = (render(scene, kind, 0, 64, max_depth=3).mean() for kind in ("odis", "path"))
+            self.assertAlmostEqual(ours / theirs, 1, delta=0.05)
+
     def test_hidden_emitters(self):
         scene = mi.load_dict(box())
         ours, theirs = (render(scene, kind, 0, 64, hide_emitters=True, max_depth=1) for kind in ("odis", "path"))
@@ -143,7 +158,7 @@ class Maps(unittest.TestCase):
         self.assertLess((np.array(found) != expected).mean(), 0.005)
 
     def test_density(self):
-        """Of axis-aligned normals the density is the library's but for the rounding to half floats."""
+        """Of axis-aligned normals the density is nearly the library's: within blocks the cosine is rounded."""
         position, normal = self.places(2000)
         cells = self.guide.find_cells(position, normal)
         self.assertTrue((cells != odis.NO_CELL).all())
@@ -153,7 +168,7 @@ class Maps(unittest.TestCase):
                                                 mi.Bool(both), mi.Bool(True))
             ours = np.array(vertex_map.pdf(mi.Vector3f(wi.T), mi.Bool(True)))
             theirs = self.guide.pdf(cells, normal, wi, both)
-            self.assertLess(np.median(np.abs(ours / theirs - 1)), 0.005)
+            self.assertLess(np.median(np.abs(ours / theirs - 1)), 0.02)
 
     def test_samples_follow_the_density(self):
         """chi^2 of 100,000 samples over 64 cells of the octahedral map; also that the density integrates to one."""

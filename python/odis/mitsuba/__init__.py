@@ -5,12 +5,22 @@
     import odis.mitsuba
 
     scene = mi.load_file("scene.xml")
-    image = mi.render(scene, integrator=mi.load_dict({"type": "odis"}), spp=16)
+    image = mi.render(scene, integrator=odis.mitsuba.guide(scene), spp=16)
 
 Importing it registers the integrator for the variants of Mitsuba that it works in, also those that are set later.
 """
 
-import mitsuba as mi
+try:
+    import mitsuba as mi
+except ModuleNotFoundError as missing:
+    if missing.name != "mitsuba":
+        raise
+    raise ModuleNotFoundError('odis.mitsuba needs Mitsuba: pip install "mitsuba>=3.9"', name="mitsuba") from None
+
+from .from_scene import guide
+from .progress import ProgressLine
+
+__all__ = ["ProgressLine", "guide"]
 
 _registered = set()
 

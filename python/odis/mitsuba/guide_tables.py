@@ -11,13 +11,14 @@ import odis
 
 from .arrays import array_of
 
-MAP_BLOCKS = 16
-BLOCK_TEXELS = 16
-# Brings what a map has into the range of half floats.
-TEXEL_SCALE, SUM_SCALE = 1 / 2, 1 / 32
-LEAST_HALF, MOST_HALF = 2.0 ** -24, 65504.0
-NORMAL_STEPS = 11  # along each side of the octahedral map; odd, so that axes are among the normals
-TEXELS_PER_STERADIAN = 256 / (4 * np.pi)
+MOST_HALF = 65504.0
+NORMAL_STEPS = 9  # along each side of the octahedral map; odd, so that axes are among the normals
+# Entries of alias tables (odis.Guide.alias_tables): the probability in bits 0 to 15, of ALIAS_WHOLE; the part that
+# stands for the entry itself from bit 16 on, of ALIAS_PART; from bit 27 on what it stands for otherwise.
+ENTRIES = 16
+ALIAS_WHOLE, ALIAS_PART = 1 << 15, 1 << 11
+# What the product of the probabilities of block and texel is multiplied by for the density over solid angle.
+TO_DENSITY = 256 / (4 * np.pi) / ALIAS_WHOLE ** 2
 ONE_MINUS_EPSILON = float(np.nextafter(np.float32(1), np.float32(0)))
 # Cells are found in a grid of the finest ones, which spans at most this many of them and this much beyond those that
 # most vertices lie in; places outside are not guided. 4 bytes an entry.
@@ -31,22 +32,20 @@ ORIENTATIONS = np.array([[1, 0, 0], [-1, 0, 0], [0, 1, 0], [0, -1, 0], [0, 0, 1]
 class GuideTables:
     """What kernels read of a guide.
 
-    4 bytes an entry of the grid; a cell has 512 bytes of texels, 32 bytes a slot (up to 1.4 KB, twice that with both
-    sides), 16 of decisions, and 4 bytes a group of lights.
+    4 bytes an entry of the grid; a cell has 1 KB for its texels, 64 bytes a slot (some 2 KB, all of that twice
+    with both sides), 16 bytes of decisions, and 4 bytes a group of lights.
     """
 
     origin: object  # Point3f: corner of the grid
     inverse_edge: object  # Float: 1 / edge of its cells
     size: object  # Vector3i: of the grid, in cells
     entries: object  # UInt32 [z][y][x][orientation]: numbers of cells, or odis.NO_CELL
-    # Half floats are read several times as fast as floats, and a density may be rounded: what is sampled is what is
-    # evaluated.
-    texels: object  # Float16 [cell][block][16]: relative incident radiance, TEXEL_SCALE times that of the guide
-    blocks: object  # Float16 [cell][slot][block]: sums of texel times cosine to the normal of the slot, SUM_SCALE times
+    blocks: object  # UInt32 [cell][slot][block]: alias tables of the map's blocks times the cosine to a slot's normal
+    texels: object  # UInt32 [side][cell][block][texel]: alias tables of a block's texels
     slots: object  # UInt32 [orientation][normal]: slots of the normals that cells of this orientation have
     slot_count: object  # UInt32: for each cell
-    cosines: object  # Float16 [both sides][normal][texel]: what counts of the cosine, and the rim
-    both_sides_slot: object  # UInt32: first slot for surfaces that scatter to both sides
+    both_sides_slot: object  # UInt32: first slot for surfaces that scatter to both sides, 0 without
+    both_sides_cell: object  # UInt32: what is added to a cell's number for their texels
     decisions: object  # Float16 [cell][8]: BSDF fractions of the roughness classes, survival factor, outgoing radiance
     # over radiance_scale, fraction of the choices of a light that are learned
     radiance_scale: object  # Float
@@ -104,39 +103,20 @@ def quantized_normals():
     return normals, [np.unique(number[orientation == o]) for o in range(len(ORIENTATIONS))]
 
 
-def make_products(guide, both_sides):
-    """The products of the cells' maps with cosines, for each normal that is told apart."""
+def make_map_tables(guide, both_sides):
+    """The alias tables of the cells' maps, for each normal that is told apart."""
     normals, needed = quantized_normals()
-    per_side = max(len(numbers) for numbers in needed)
-    sides = 2 if both_sides else 1
+    slot_count = max(len(numbers) for numbers in needed)
     slots = np.zeros((len(needed), len(normals)), np.uint32)
-    of_slot = np.zeros((len(needed), per_side), np.uint32)
+    normal_of_slot = np.zeros((len(needed), slot_count), np.uint32)
     for orientation, numbers in enumerate(needed):
         slots[orientation, numbers] = np.arange(len(numbers))
-        of_slot[orientation, :len(numbers)] = numbers
-    count = per_side * sides
-    sums, rim = array_of(mi.Float, guide.block_sums), mi.Float(guide.rules.rim)
-    orientation = array_of(mi.UInt32, ((guide.cell_keys >> np.uint64(57)) & np.uint64(7)).astype(np.uint32))
-    # One lane for each slot.
-    lane = dr.arange(mi.UInt32, len(guide) * count)
-    cell, slot = lane // count, lane % count
-    number = dr.gather(mi.UInt32, array_of(mi.UInt32, of_slot), dr.gather(mi.UInt32, orientation, cell) * per_side
-                       + slot % per_side)
-    normal = dr.gather(mi.Vector3f, array_of(mi.Float, normals), number)
-    below_sign = dr.select(slot >= per_side, mi.Float(-1), 0)
-    x, y, z, total = (dr.gather(mi.ArrayXf, sums, cell * 4 + i, shape=(MAP_BLOCKS, -1)) for i in range(4))
-    blocks = []
-    for block in range(MAP_BLOCKS):
-        cosine = x[block] * normal.x + y[block] * normal.y + z[block] * normal.z
-        weight = dr.maximum(cosine, below_sign * cosine) + rim * total[block]
-        blocks.append(mi.Float16(dr.maximum(weight * SUM_SCALE, LEAST_HALF)))
-    table = dr.zeros(mi.Float16, len(guide) * count * MAP_BLOCKS)
-    dr.scatter(table, mi.ArrayXf16(blocks), lane)
-    cosine = normals @ guide.texel_directions
-    counted = [np.maximum(cosine, 0) + guide.rules.rim] + ([np.abs(cosine) + guide.rules.rim] if both_sides else [])
-    return {"blocks": table, "slots": array_of(mi.UInt32, slots), "slot_count": mi.UInt32(count),
-            "cosines": array_of(mi.Float16, half_floats(np.array(counted))),
-            "both_sides_slot": mi.UInt32(per_side if both_sides else 0)}
+        normal_of_slot[orientation] = np.resize(numbers, slot_count)
+    blocks, texels = guide.alias_tables(normals[normal_of_slot].reshape(-1, 3), both_sides)
+    whole = lambda values: array_of(mi.UInt32, values)
+    return {"blocks": whole(blocks), "texels": whole(texels), "slots": whole(slots),
+            "slot_count": mi.UInt32(blocks.shape[1]), "both_sides_slot": mi.UInt32(slot_count if both_sides else 0),
+            "both_sides_cell": mi.UInt32(len(guide) if both_sides else 0)}
 
 
 def make_guide_tables(guide, both_sides):
@@ -150,8 +130,7 @@ def make_guide_tables(guide, both_sides):
     tables = GuideTables(
         origin=mi.Point3f(*map(float, corner)), inverse_edge=mi.Float(1 / guide.finest_edge),
         size=mi.Vector3i(*map(int, size)), entries=array_of(mi.UInt32, cells),
-        texels=array_of(mi.Float16, half_floats(guide.texels * np.float32(TEXEL_SCALE))),
-        **make_products(guide, both_sides),
+        **make_map_tables(guide, both_sides),
         decisions=array_of(mi.Float16, half_floats(decisions)), radiance_scale=mi.Float(radiance_scale),
         light_tables=array_of(mi.Float, guide.light_tables if guide.light_groups else np.zeros(2, np.float32)),
         roughness_bounds=[mi.Float(x) for x in rules.roughness_bounds[:2]],
@@ -225,38 +204,10 @@ def half_floats(numbers):
         return numbers.astype(np.float16)
 
 
+
 def halves(table, row, length, active):
     """A row of a table of half floats with so many columns, as floats."""
     return [mi.Float(x) for x in dr.gather(mi.ArrayXf16, table, row, active, shape=(length, -1))]
-
-
-def element(values, index):
-    """values[index] of a list whose length is a power of two, lane by lane, by halving."""
-    bit = 1
-    while len(values) > 1:
-        odd = (index & bit) != 0
-        values = [dr.select(odd, values[i + 1], values[i]) for i in range(0, len(values), 2)]
-        bit *= 2
-    return values[0]
-
-
-def row_of(table, index):
-    """The four numbers table[4 index + i] of a list of 16."""
-    return [element(table[i::4], index) for i in range(4)]
-
-
-def pick(weights, u):
-    """Which of four weights u, uniform in [0, 1), falls into, and its place within that."""
-    begin = [mi.Float(0), weights[0], weights[0] + weights[1], weights[0] + weights[1] + weights[2]]
-    target = u * (begin[3] + weights[3])
-    one, zero = mi.UInt32(1), mi.UInt32(0)
-    index = sum((dr.select(target >= begin[i], one, zero) for i in (2, 3)), dr.select(target >= begin[1], one, zero))
-    within = (target - element(begin, index)) / element(weights, index)
-    return index, dr.clip(within, 0, ONE_MINUS_EPSILON)
-
-
-def row_sums(table):
-    return [(table[i] + table[i + 1]) + (table[i + 2] + table[i + 3]) for i in range(0, 16, 4)]
 
 
 def square_to_direction(x, y):
@@ -296,64 +247,59 @@ def texel_of(direction):
     return (row & ~mi.UInt32(3)) + (column >> 2), ((row & 3) << 2) + (column & 3)
 
 
+def draw(table, first, u, active):
+    """Draws an entry of the alias table that begins at `first` by u, uniform in [0, 1); returns it and u stretched."""
+    scaled = u * ENTRIES
+    entry = dr.minimum(mi.UInt32(scaled), ENTRIES - 1)
+    within = scaled - mi.Float(entry)
+    word = dr.gather(mi.UInt32, table, first + entry, active)
+    part = mi.Float((word >> 16) & (ALIAS_PART - 1)) * (1 / ALIAS_PART)
+    itself = within < part
+    within = dr.select(itself, within, within - part) / dr.select(itself, part, 1 - part)
+    return dr.select(itself, entry, word >> 27), dr.minimum(within, ONE_MINUS_EPSILON)
+
+
+def probability(table, place, active):
+    """The probability of an entry, of ALIAS_WHOLE."""
+    return mi.Float(dr.gather(mi.UInt32, table, place, active) & 0xffff)
+
+
 class VertexMap:
     """A cell's map times the cosine at a vertex: a density over directions (odis::VertexMap).
 
-    The normal is rounded to one of 121, axes among them, for which products are tabulated. The density remains exact:
-    it is that of the rounded normal, in sampling and in evaluation.
+    The normal is rounded to one of 81, axes among them, for which products with the map's blocks are tabulated; within
+    a block the cosine is the mean over the normals of the cell. What is drawn follows the density to the bit.
 
     normal: unit shading normal on the side of the outgoing direction. both_sides: where the surface scatters to both.
     """
 
     def __init__(self, tables, cell, normal, both_sides, active):
-        self.tables, self.cell = tables, cell
-        self.normal = quantize_normal(normal)
-        slot = dr.gather(mi.UInt32, tables.slots, orientation_of(normal) * NORMAL_STEPS ** 2 + self.normal, active)
-        both = both_sides & (tables.both_sides_slot > 0)
-        slot += dr.select(both, tables.both_sides_slot, 0)
-        self.normal += dr.select(both, mi.UInt32(NORMAL_STEPS ** 2), 0)
-        self.blocks = halves(tables.blocks, cell * tables.slot_count + slot, MAP_BLOCKS, active)
-        self.rows = row_sums(self.blocks)
-        total = (self.rows[0] + self.rows[1]) + (self.rows[2] + self.rows[3])
-        self.sampleable = active & (total > 0) & (total < dr.inf)
-        self.to_pdf = dr.select(self.sampleable, TEXELS_PER_STERADIAN / total, 0)
+        self.tables = tables
+        slot = dr.gather(mi.UInt32, tables.slots,
+                         orientation_of(normal) * NORMAL_STEPS ** 2 + quantize_normal(normal), active)
+        self.first_block = (cell * tables.slot_count + slot + dr.select(both_sides, tables.both_sides_slot, 0)) * ENTRIES
+        self.first_texel = (cell + dr.select(both_sides, tables.both_sides_cell, 0)) * ENTRIES ** 2
 
-    def _weigh(self, block, active):
-        """The weights of a block's 16 texels, and the density of a unit of weight."""
-        texels = halves(self.tables.texels, self.cell * MAP_BLOCKS + block, BLOCK_TEXELS, active)
-        cosines = halves(self.tables.cosines, self.normal * MAP_BLOCKS + block, BLOCK_TEXELS, active)
-        weights = [texel * cosine for texel, cosine in zip(texels, cosines)]
-        rows = row_sums(weights)
-        total = (rows[0] + rows[1]) + (rows[2] + rows[3])
-        return weights, rows, self.to_pdf * element(self.blocks, block) / total
-
-    def pick_block(self, u, v):
-        """Chooses a block; returns it and the numbers stretched again."""
-        y, v = pick(self.rows, v)
-        x, u = pick(row_of(self.blocks, y), u)
-        return y * 4 + x, u, v
+    def _density(self, block, texel, active):
+        of_block = probability(self.tables.blocks, self.first_block + block, active)
+        of_texel = probability(self.tables.texels, self.first_texel + block * ENTRIES + texel, active)
+        return dr.select(active, of_block * of_texel * TO_DENSITY, 0)
 
     def sample_or_evaluate(self, sampling, u, v, direction, active):
         """Where `sampling`, draws a direction from u, v; elsewhere keeps `direction`. Returns it and its density.
 
         Both at once, because the lanes of a SIMD packet would otherwise do one after the other.
         """
-        drawn_block, u, v = self.pick_block(u, v)
-        given_block, given_texel = texel_of(direction)
-        block = dr.select(sampling, drawn_block, given_block)
-        weights, rows, to_pdf = self._weigh(block, active)
-        drawn_y, v = pick(rows, v)
-        y = dr.select(sampling, drawn_y, given_texel >> 2)
-        texels = row_of(weights, y)
-        drawn_x, u = pick(texels, u)
-        x = dr.select(sampling, drawn_x, given_texel & 3)
-        pdf = dr.select(active & self.sampleable, element(texels, x) * to_pdf, 0)
-        square_x = (mi.Float((block & 3) * 4 + x) + u) * (1 / 16)
-        square_y = (mi.Float((block & ~mi.UInt32(3)) + y) + v) * (1 / 16)
-        return dr.select(sampling, square_to_direction(square_x, square_y), direction), pdf
+        sampling = sampling & active
+        block, texel = texel_of(direction)
+        drawn_block, u = draw(self.tables.blocks, self.first_block, u, sampling)
+        block = dr.select(sampling, drawn_block, block)
+        drawn_texel, v = draw(self.tables.texels, self.first_texel + block * ENTRIES, v, sampling)
+        texel = dr.select(sampling, drawn_texel, texel)
+        x = (mi.Float((block & 3) * 4 + (texel & 3)) + u) * (1 / 16)
+        y = (mi.Float((block & ~mi.UInt32(3)) + (texel >> 2)) + v) * (1 / 16)
+        return (dr.select(sampling, square_to_direction(x, y), direction), self._density(block, texel, active))
 
     def pdf(self, direction, active):
         """The density of a direction, with respect to solid angle."""
-        block, texel = texel_of(direction)
-        weights, _, to_pdf = self._weigh(block, active)
-        return dr.select(active & self.sampleable, element(weights, texel) * to_pdf, 0)
+        return self._density(*texel_of(direction), active)

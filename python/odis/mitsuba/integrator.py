@@ -11,15 +11,20 @@ import numpy as np
 import odis
 
 from . import path, recording
+from .aovs import make_aovs, nested_integrators
 from .arrays import array_of
 from .guide_tables import make_guide_tables
+from .kernel_history import compile_seconds
 from .lights import make_light_table
 from .materials import make_material_table
+from .progress import default_progress
 from .random_numbers import generator_of, hash_seed
 
 # Vertices are recorded by so many paths at once at most, into so many rows; paths that need more come in smaller parts.
 RECORDED_PATHS = 1 << 17
 ROWS = 1 << 20
+# Of the samples of a guided pass that the guide learns from only those of one pixel in so many are recorded.
+PIXELS_PER_RECORDED = 4
 # Other paths are traced by so many at once at most.
 PATHS = 1 << 22
 # A lane traces this many samples one after the other, and there are at least so many lanes a thread.
@@ -77,13 +82,15 @@ class Camera:
         return rng, ray, weight * filter_weight
 
 
-def trace_samples(scene, sensor, settings, known, tables, recorder, seed, pixel_filter, samples):
-    """Traces samples, and completes what was recorded of their paths."""
-    path.trace(scene, Camera(sensor, seed, *pixel_filter), settings, known, tables, recorder, samples)
+def trace_samples(scene, camera, settings, known, tables, records, samples):
+    """Traces samples; where it records them returns the recorder, with what only complete paths know filled in."""
+    recorder = recording.make_recorder(ROWS) if records else None
+    path.trace(scene, camera, settings, known, tables, recorder, samples)
     dr.eval(samples, recorder)
     if recorder is not None:
         recording.complete_paths(recorder, samples.last_row, path.ray_counts(samples))
         dr.eval(recorder)
+    return recorder
 
 
 def make_samples(pixel, number, pixel_values, recorded):
@@ -98,15 +105,22 @@ def make_samples(pixel, number, pixel_values, recorded):
     return result
 
 
-def parts_of_pass(frame, recorded):
-    """Pixels and numbers of the samples of a pass, in parts that fit."""
-    first, count = (array.ravel() for array in frame.samples())
+def parts_of_pass(frame, frame_pass):
+    """The samples of a pass in parts that fit: their pixels, their numbers, and whether they are recorded."""
+    first, count = frame.samples()
+    width, first, count = first.shape[1], first.ravel(), count.ravel()
     pixel = np.repeat(np.arange(first.size, dtype=np.uint32), count)
     begin = np.cumsum(count, dtype=np.uint32) - count
     number = np.arange(pixel.size, dtype=np.uint32) - (begin - first)[pixel].astype(np.uint32)
-    most = RECORDED_PATHS if recorded else PATHS
-    for i in range(0, pixel.size, most):
-        yield pixel[i:i + most], number[i:i + most]
+    recorded = np.full(pixel.size, frame_pass.wants_vertices)
+    if frame_pass.kind == odis.PassKind.GUIDED:
+        y, x = np.divmod(pixel, np.uint32(width))
+        recorded &= (x + 2 * y) % PIXELS_PER_RECORDED == 0
+    for records, most in ((True, RECORDED_PATHS), (False, PATHS)):
+        chosen = np.flatnonzero(recorded == records)
+        for i in range(0, chosen.size, most):
+            part = chosen[i:i + most]
+            yield pixel[part], number[part], records
 
 
 def check_variant():
@@ -121,10 +135,18 @@ def make_integrator():
     """The class of the integrator for the variant that is set."""
 
     class OdisIntegrator(mi.SamplingIntegrator):
-        """Parameters: max_depth (-1), rr_depth (5) and hide_emitters (false), as of `path`.
+        """Parameters: max_depth (-1), rr_depth (5) and hide_emitters (false), as of `path`; aovs (""), as of `aov`.
 
         After a rendering `seconds` holds the time of its stages, `rays` the number of rays, `frame` the odis.Frame.
+        `progress`, if set, is called with the fraction of the samples that are traced. If `separate_compile` is set and
+        so is Dr.Jit's flag KernelHistory, seconds["compile"] is what code generation and compilation took, which the
+        other stages leave out then; that clears the history.
         """
+
+        # Dr.Jit traverses __dict__, also of an integrator that a scene holds, and would compile kernels anew whenever
+        # something in there changes: all is kept out of it.
+        __slots__ = ("settings", "scene", "known", "pixel_filter", "frame", "rays", "traced", "seconds",
+                     "progress", "separate_compile", "aovs", "unguided", "said_unguided")
 
         def __init__(self, props):
             check_variant()
@@ -136,9 +158,12 @@ def make_integrator():
                                  f"found {self.settings.max_depth}")
             if self.settings.rr_depth <= 0:
                 raise ValueError(f"odis: rr_depth: expected a number from 1, found {self.settings.rr_depth}")
-            # Kernels are traced and compiled once for each kind of pass.
-            self.trace = dr.freeze(trace_samples, limit=16, warn_after=1 << 30)
             self.scene, self.known = None, None
+            self.progress, self.separate_compile = None, False
+            names = props.get("aovs", "")
+            self.aovs = make_aovs(mi.load_dict({"type": "aov", "aovs": names})) if names else None
+            self.unguided = mi.load_dict({"type": "path", **vars(self.settings)})
+            self.said_unguided = False
 
         def render(self, scene, sensor=0, seed=0, spp=0, develop=True, evaluate=True):
             if isinstance(sensor, int):
@@ -146,20 +171,35 @@ def make_integrator():
             film = sensor.film()
             if mi.has_flag(film.flags(), mi.FilmFlags.Special):
                 raise RuntimeError(f"odis: expected a film that stores colours, found {film.class_name()}")
+            seed, spp = int(dr.slice(seed) if dr.is_array_v(seed) else seed), spp or sensor.sampler().sample_count()
+            self.seconds = defaultdict(float)
             with dr.suspend_grad():
                 if self.scene is not scene:
-                    self._meet(scene)
-                image = self._render(sensor, int(dr.slice(seed) if dr.is_array_v(seed) else seed),
-                                     spp or sensor.sampler().sample_count())
-                film.prepare([])
+                    with self._timed("prepare"):
+                        self._meet(scene)
+                image = self._render(sensor, seed, spp)
+                if self.aovs is not None:
+                    with self._timed("aovs"):
+                        image = np.concatenate([image, self.aovs.image(scene, sensor, seed, spp)], axis=2)
+                film.prepare(self.aov_names())
                 film.put_block(mi.ImageBlock(mi.TensorXf(image), film.crop_offset()))
+                own = scene.integrator()
+                if own is self or (own is not None and self in nested_integrators(own)):
+                    self.scene = None  # Otherwise they would keep each other forever.
                 return film.develop() if develop else mi.TensorXf()
 
         def sample(self, scene, sampler, ray, medium=None, active=True):
-            raise NotImplementedError("odis renders whole images: it can't be nested in another integrator")
+            """Single rays, which other integrators ask for, are traced without guidance."""
+            if not self.said_unguided:
+                self.said_unguided = True
+                mi.Log(mi.LogLevel.Warn, "odis: another integrator asks for single rays, which are traced as `path` "
+                                         "does; for AOVs, odis has the parameter `aovs`")
+            radiance, valid, _ = self.unguided.sample(scene, sampler, ray, medium, active)
+            values = self.aovs.sample(scene, sampler, ray, medium, active)[2] if self.aovs is not None else []
+            return radiance, valid, values
 
         def aov_names(self):
-            return []
+            return self.aovs.aov_names() if self.aovs is not None else []
 
         def to_string(self):
             return f"OdisIntegrator[max_depth = {self.settings.max_depth}, rr_depth = {self.settings.rr_depth}]"
@@ -179,48 +219,54 @@ def make_integrator():
             self.frame = frame = odis.Frame(odis.FrameOptions(
                 width, height, samples_per_pixel=spp, seed=seed,
                 guide=odis.GuideOptions(light_groups=self.known.lights.groups)))
-            valid = np.zeros(width * height, np.int64)  # samples of each pixel
-            self.rays, self.seconds = 0, defaultdict(float)
+            has_alpha = mi.has_flag(film.flags(), mi.FilmFlags.Alpha)
+            valid = np.zeros(width * height) if has_alpha else None  # samples of each pixel
+            progress, self.rays, self.traced = self.progress or default_progress(), 0, 0
+            progress(0)
+            tables, values, rebuilt = None, None, False
             while (frame_pass := frame.begin_pass()) is not None:
                 with self._timed("tables"):
-                    tables, values = None, None
-                    if len(frame_pass.guide):
+                    if rebuilt and len(frame_pass.guide):
                         tables = make_guide_tables(frame_pass.guide, self.known.materials.both_sides)
                         values = array_of(mi.Float, frame.pixel_values)
-                for pixel, number in parts_of_pass(frame, frame_pass.wants_vertices):
-                    self._trace_part(sensor, frame_pass, tables, values, pixel, number, valid)
+                rebuilt = frame_pass.wants_vertices
+                for pixel, number, records in parts_of_pass(frame, frame_pass):
+                    self._trace_part(sensor, frame_pass, tables, values, pixel, number, records, valid)
+                    self.traced += pixel.size
+                    progress(self.traced / (spp * width * height))
                 with self._timed("build"):
                     frame.end_pass()
+            progress(1)
             channels = [frame.image()[0]]
-            if mi.has_flag(film.flags(), mi.FilmFlags.Alpha):
+            if has_alpha:
                 alpha = valid.reshape(height, width, 1) / np.maximum(frame.sample_counts(), 1)[..., None]
                 channels.append(alpha.astype(np.float32))
             return np.concatenate(channels + [np.ones((height, width, 1), np.float32)], axis=2)
 
-        def _trace_part(self, sensor, frame_pass, tables, values, pixel, number, valid):
+        def _trace_part(self, sensor, frame_pass, tables, values, pixel, number, records, valid):
             """Traces some samples of a pass and hands them to the frame; in halves if they have too many vertices."""
             with self._timed("pilot" if frame_pass.kind == odis.PassKind.PILOT else "guided"):
-                recorder = recording.make_recorder(ROWS) if frame_pass.wants_vertices else None
-                samples = make_samples(pixel, number, values, recorder is not None)
-                seed = mi.UInt64(hash_seed(frame_pass.seed))
-                dr.make_opaque(seed)
-                self.trace(self.scene, sensor, self.settings, self.known, tables, recorder, seed,
-                           self.pixel_filter, samples)
+                samples = make_samples(pixel, number, values, records)
+                # An opaque number, so that the same kernel serves all seeds.
+                seed = dr.opaque(mi.UInt64, hash_seed(frame_pass.seed))
+                recorder = trace_samples(self.scene, Camera(sensor, seed, *self.pixel_filter), self.settings,
+                                         self.known, tables, records, samples)
                 dr.sync_thread()
             vertices = None
             if recorder is not None:
                 count = int(recorder.count[0])
                 if count > ROWS and pixel.size > 1:
                     for half in (slice(0, pixel.size // 2), slice(pixel.size // 2, None)):
-                        self._trace_part(sensor, frame_pass, tables, values, pixel[half], number[half], valid)
+                        self._trace_part(sensor, frame_pass, tables, values, pixel[half], number[half], records, valid)
                     return
                 vertices = recording.path_vertices(recorder, min(count, ROWS))
             with self._timed("add"):
-                result = np.array(samples.result).reshape(-1, 4)
+                result = np.asarray(samples.result).reshape(-1, 4)
                 tags = result[:, 3].view(np.uint32)
                 rays = tags & np.uint32(path.VALID - 1)
                 self.rays += int(rays.sum())
-                valid += np.bincount(pixel, weights=tags >> 31, minlength=valid.size).astype(np.int64)
+                if valid is not None:
+                    valid += np.bincount(pixel, weights=tags >> 31, minlength=valid.size)
                 self.frame.add_samples(pixel, number, result[:, :3], rays, vertices)
 
         @contextmanager
@@ -228,5 +274,9 @@ def make_integrator():
             begin = time.perf_counter()
             yield
             self.seconds[stage] += time.perf_counter() - begin
+            if self.separate_compile:
+                compiling = compile_seconds()
+                self.seconds[stage] -= compiling
+                self.seconds["compile"] += compiling
 
     return OdisIntegrator

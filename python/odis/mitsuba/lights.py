@@ -103,10 +103,10 @@ def center_of(emitter):
     return center if np.isfinite(center).all() else np.zeros(3)
 
 
-def make_groups(emitters):
-    """The emitters' numbers, in groups of neighbours: each infinite one by itself as long as these are few."""
-    infinite = [i for i, e in enumerate(emitters) if mi.has_flag(e.flags(), mi.EmitterFlags.Infinite)]
-    finite = np.array([i for i in range(len(emitters)) if i not in infinite], int)
+def make_groups(emitters, numbers):
+    """Numbers of emitters, in groups of neighbours: each infinite one by itself as long as these are few."""
+    infinite = [i for i in numbers if mi.has_flag(emitters[i].flags(), mi.EmitterFlags.Infinite)]
+    finite = np.array([i for i in numbers if i not in infinite], int)
     groups = [[i] for i in infinite[:8]] + ([infinite[8:]] if infinite[8:] else [])
     if finite.size:
         centers = np.array([center_of(emitters[i]) for i in finite])
@@ -117,10 +117,12 @@ def make_groups(emitters):
 def make_light_table(scene):
     """The emitters of a scene, in groups of neighbours. Without emitters it has a null one, which gives no light."""
     emitters = scene.emitters()
-    groups = make_groups(emitters) or [[0]]
+    weights = np.array([float(np.asarray(e.sampling_weight()).ravel()[0]) for e in emitters] or [0.0])
+    groups = make_groups(emitters, np.flatnonzero(weights > 0)) or [[0]]
+    # Emitters that are never chosen come last, as if they were of the first group, outside its range.
     order = [i for members in groups for i in members]
-    weights = np.array([float(np.asarray(e.sampling_weight()).ravel()[0]) for e in emitters] or [0.0])[order]
-    weights /= max(weights.sum(), 1e-30)
+    order += [i for i in range(len(weights)) if i not in order]
+    weights = weights[order] / max(weights.sum(), 1e-30)
     numbers = np.array(dr.reinterpret_array(mi.UInt32, scene.emitters_dr()))[order] if emitters else np.zeros(1, int)
     place = np.zeros(int(numbers.max()) + 1, np.uint32)
     place[numbers] = np.arange(len(numbers))
@@ -129,8 +131,9 @@ def make_light_table(scene):
     real = lambda values: array_of(mi.Float, np.asarray(values, np.float32))
     table = LightTable(
         emitters=dr.reinterpret_array(mi.EmitterPtr, mi.UInt32(numbers)),
-        group=whole(np.repeat(np.arange(len(groups)), np.diff(begin))), probabilities=real(weights),
-        cdf=real(np.concatenate([[0], np.cumsum(weights)])), group_begin=whole(begin), place=whole(place),
+        group=whole(np.repeat(np.arange(len(groups)), np.diff(begin)).tolist() + [0] * (len(order) - begin[-1])),
+        probabilities=real(weights), cdf=real(np.concatenate([[0], np.cumsum(weights)])), group_begin=whole(begin),
+        place=whole(place),
         count=len(order), groups=len(groups) if len(groups) > 1 else 0)
     dr.make_opaque(table)
     return table

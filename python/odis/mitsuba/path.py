@@ -217,7 +217,6 @@ def trace(scene, camera, settings, known, tables, recorder, samples):
         guided, from_map, toward_map, map_pdf, u_within = active & (fraction < 1), mi.Bool(False), None, mi.Float(0), u
         if dr.hint(tables is not None, mode="scalar"):
             vertex_map = guide_tables.VertexMap(tables, cell, normal, both_sides, guided)
-            guided &= vertex_map.sampleable
             from_map = guided & (u >= fraction)
             u_within = dr.select(guided, dr.select(from_map, (u - fraction) / (1 - fraction), u / fraction), u)
             u_within = dr.minimum(u_within, guide_tables.ONE_MINUS_EPSILON)

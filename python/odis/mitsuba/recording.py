@@ -13,10 +13,12 @@ import odis
 #   1 wi (3), pdf, weight (3), survival                       rays before, previous row, -, -
 #   2 direct (3), light, light direction (3), light pdf   5 what wi met: emission (3), its MIS weight, light pdf,
 #   3 light BSDF pdf, light guidable pdf, light group,        distance, -, -
-#     its probability, guidable pdf, guidable             6 once the path is complete: radiance (3), indirect,
-#     probability, roughness, depth and flags                 emission, rays after, -, -
+#     its probability, guidable pdf, guidable
+#     probability, roughness, depth and flags
+# Once the path is complete a further packet is written, apart, as Dr.Jit copies arrays that a kernel reads and writes:
+# radiance (3), indirect, emission, rays after, -, -.
 PACKET = 8
-PACKETS = 7
+PACKETS = 6
 ROW = PACKET * PACKETS
 NO_ROW = 0xffffffff
 DISCRETE, BOTH_SIDES = 1 << 16, 1 << 24  # beside the depth in the lower 16 bits
@@ -24,15 +26,17 @@ DISCRETE, BOTH_SIDES = 1 << 16, 1 << 24  # beside the depth in the lower 16 bits
 
 @dataclass
 class Recorder:
-    """224 bytes a row."""
+    """224 bytes a row, in two arrays."""
 
     rows: object  # Float, [capacity][ROW]
+    completions: object  # Float, [capacity][PACKET]
     count: object  # UInt32: rows asked for, which may be more than there are
     capacity: object  # UInt32
 
 
 def make_recorder(capacity):
-    recorder = Recorder(dr.empty(mi.Float, capacity * ROW), dr.zeros(mi.UInt32, 1), mi.UInt32(capacity))
+    recorder = Recorder(dr.empty(mi.Float, capacity * ROW), dr.empty(mi.Float, capacity * PACKET),
+                        dr.zeros(mi.UInt32, 1), mi.UInt32(capacity))
     dr.make_opaque(recorder.count, recorder.capacity)
     return recorder
 
@@ -76,8 +80,9 @@ def complete_paths(recorder, last_row, rays):
         throughput, emission = color_in(of_path, 0), color_in(met, 0)
         radiance = emission * met[3] + beyond
         to_pixel = throughput * weight
-        write(recorder, row, 6, [radiance.x, radiance.y, radiance.z, mi.luminance(to_pixel * beyond),
-                                 mi.luminance(to_pixel * emission), rays - of_path[4]], active)
+        completion = [radiance.x, radiance.y, radiance.z, mi.luminance(to_pixel * beyond),
+                      mi.luminance(to_pixel * emission), rays - of_path[4], mi.Float(0), mi.Float(0)]
+        dr.scatter(recorder.completions, mi.ArrayXf(completion), row, active)
         beyond = (direct + weight * radiance) / of_path[3]
         return dr.reinterpret_array(mi.UInt32, of_path[5]), beyond
 
@@ -87,6 +92,7 @@ def complete_paths(recorder, last_row, rays):
 def path_vertices(recorder, count):
     """The first `count` rows as odis.PathVertices, which keeps the rows alive."""
     rows = np.asarray(recorder.rows).reshape(-1, ROW)[:count]
+    completions = np.asarray(recorder.completions).reshape(-1, PACKET)[:count]
     whole, halves, flags = rows.view(np.uint32), rows.view(np.uint16), rows.view(np.bool_)
     at = lambda packet, number: PACKET * packet + number
     return odis.PathVertices(
@@ -100,5 +106,5 @@ def path_vertices(recorder, count):
         guidable_probability=rows[:, at(3, 5)], roughness=rows[:, at(3, 6)], depth=halves[:, 2 * at(3, 7)],
         discrete=flags[:, 4 * at(3, 7) + 2], scatters_both_sides=flags[:, 4 * at(3, 7) + 3],
         emission_light_pdf=rows[:, at(5, 4)], distance=rows[:, at(5, 5)],
-        radiance=rows[:, at(6, 0):at(6, 3)], indirect=rows[:, at(6, 3)], emission=rows[:, at(6, 4)],
-        rays_after=rows[:, at(6, 5)])
+        radiance=completions[:, 0:3], indirect=completions[:, 3], emission=completions[:, 4],
+        rays_after=completions[:, 5])

@@ -1,0 +1,143 @@
+#!/usr/bin/env python3
+"""What `odis` gains and costs in Mitsuba 3: error and time beside Mitsuba's `path`, as the table of docs/mitsuba.md.
+
+    bench/in_mitsuba.py SCENE.xml... [--variant llvm_ad_rgb] [--pixels 230400] [--spp 4,16] [--seeds 4] [--cache DIR]
+
+Needs `pip install ".[mitsuba]"`. Both integrators run in one process and take turns, with max_depth 13, rr_depth 5,
+independent samples and a box filter. Times are wall clock and processor time without Dr.Jit's code generation and
+compilation: each kind renders once to warm up, and an image for which kernels were compiled is rendered again. Errors
+are 0.1 %-trimmed relMSE as src/eval/metrics.h has it, to references of `path` with other seeds. Values are medians
+over seeds, ratios are of `odis` to `path`. Scenes that do not load get `-`, and the reason on stderr.
+"""
+import argparse
+import hashlib
+import os
+import resource
+import sys
+import time
+
+import drjit as dr
+import mitsuba as mi
+import numpy as np
+from odis.mitsuba.kernel_history import compile_seconds
+from odis.mitsuba.scene_files import load_file
+
+SETTINGS = {"max_depth": 13, "rr_depth": 5}
+REFERENCE_SEED, REFERENCE_PART = 1 << 20, 32
+COLUMNS = ("scene", "samples", "time of `path`, s", "time ratio", "processor time ratio", "error ratio",
+           "rays a sample of `odis`", "error × time")
+
+
+def trimmed_relative_error(image, reference):
+    """0.1 %-trimmed relMSE, as src/eval/metrics.h defines it."""
+    luminance = (reference @ np.array([0.212671, 0.715160, 0.072169])).mean()
+    scale = 1 / luminance if luminance > 0 else 1.0
+    errors = ((scale * (image - reference)) ** 2 / ((scale * reference) ** 2 + 0.01)).mean(axis=2).ravel()
+    errors[~np.isfinite(errors)] = np.inf
+    kept = errors.size - int(0.001 * errors.size)
+    return np.partition(errors, kept - 1)[:kept].mean()
+
+
+def processor_seconds():
+    used = resource.getrusage(resource.RUSAGE_SELF)
+    return used.ru_utime + used.ru_stime
+
+
+def render(scene, integrator, spp, seed):
+    """The image, and seconds of wall clock and of processor time. Where kernels were compiled, which takes time of
+    another kind, the same is rendered again: they are there then."""
+    for _ in range(4):
+        compile_seconds()
+        begin, begin_processor = time.perf_counter(), processor_seconds()
+        image = np.array(mi.render(scene, integrator=integrator, spp=spp, seed=seed))[..., :3].astype(np.float64)
+        seconds, processor = time.perf_counter() - begin, processor_seconds() - begin_processor
+        compiling = compile_seconds()
+        if compiling < 0.02 * seconds:
+            break
+    return image, seconds - compiling, max(processor - compiling, 0.01 * processor)
+
+
+def reference_of(scene, path, args):
+    """An image by `path` with many samples; kept in a file between runs."""
+    if args.reference_spp % REFERENCE_PART:
+        raise SystemExit(f"--reference-spp: expected a multiple of {REFERENCE_PART}")
+    size = list(scene.sensors()[0].film().crop_size())
+    key = f"{os.path.abspath(path)} {os.stat(path).st_mtime} {size} {args.variant} {args.reference_spp} {SETTINGS}"
+    file = os.path.join(args.cache, f"{name_of(path)}-{hashlib.sha256(key.encode()).hexdigest()[:16]}.npz")
+    if os.path.exists(file):
+        return np.load(file)["image"]
+    integrator, begin = mi.load_dict({"type": "path", **SETTINGS}), time.perf_counter()
+    parts = args.reference_spp // REFERENCE_PART
+    image = sum(np.array(mi.render(scene, integrator=integrator, spp=REFERENCE_PART, seed=REFERENCE_SEED + part),
+                         np.float64)[..., :3] for part in range(parts)) / parts
+    print(f"{name_of(path)}: reference of {args.reference_spp} samples in {time.perf_counter() - begin:.0f} s",
+          file=sys.stderr)
+    os.makedirs(args.cache, exist_ok=True)
+    np.savez_compressed(f"{file}.part.npz", image=image.astype(np.float32))
+    os.replace(f"{file}.part.npz", file)
+    return image
+
+
+def name_of(path):
+    return os.path.basename(os.path.dirname(os.path.abspath(path)))
+
+
+def measure(scene, reference, spp, seeds):
+    """Medians: seconds of `path`, ratios of time, processor time and error, and rays a sample."""
+    integrators = [mi.load_dict({"type": kind, **SETTINGS}) for kind in ("path", "odis")]
+    for integrator in integrators:
+        render(scene, integrator, spp, REFERENCE_SEED - 1)
+    rows, rays = [], []
+    for seed in range(seeds):
+        row = []
+        for integrator in integrators:
+            image, seconds, processor = render(scene, integrator, spp, seed)
+            row.append((seconds, processor, trimmed_relative_error(image, reference)))
+        rows.append(row)
+        rays.append(integrators[1].rays / (image.shape[0] * image.shape[1] * spp))
+    (path_seconds, *path), odis = np.median(np.array(rows), axis=0)
+    return path_seconds, *(odis / [path_seconds, *path]), np.median(rays)
+
+
+def print_row(name, spp, values):
+    time_of_path, time_ratio, processor_ratio, error_ratio, rays = values
+    print(f"| {name} | {spp} | {time_of_path} | {time_ratio:.2f} | {processor_ratio:.2f} | {error_ratio:.2f} | "
+          f"{rays} | {time_ratio * error_ratio:.2f} |", flush=True)
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("scenes", nargs="+", metavar="SCENE.xml")
+    parser.add_argument("--variant", default="llvm_ad_rgb")
+    parser.add_argument("--pixels", type=int, default=230400)
+    parser.add_argument("--spp", default="4,16", help="samples per pixel, with commas (4,16)")
+    parser.add_argument("--seeds", type=int, default=4)
+    parser.add_argument("--reference-spp", type=int, default=256)
+    parser.add_argument("--cache", default="out/mitsuba-references", metavar="DIR", help="keeps references there")
+    args = parser.parse_args()
+    mi.set_variant(args.variant)
+    mi.set_log_level(mi.LogLevel.Error)
+
+    print(f"| {' | '.join(COLUMNS)} |\n|---|{'--:|' * (len(COLUMNS) - 1)}")
+    counts = [int(count) for count in args.spp.split(",")]
+    ratios = {spp: [] for spp in counts}
+    with dr.scoped_set_flag(dr.JitFlag.KernelHistory, True):
+        for path in args.scenes:
+            try:
+                scene = load_file(path, pixels=args.pixels, rfilter="box", sampler="independent", warn=lambda _: None)
+                reference = reference_of(scene, path, args)
+            except (OSError, RuntimeError, ValueError) as error:
+                print(f"{name_of(path)}: {error}", file=sys.stderr)
+                print(f"| {name_of(path)} {'| - ' * (len(COLUMNS) - 1)}|", flush=True)
+                continue
+            for spp in counts:
+                seconds, *values, rays = measure(scene, reference, spp, args.seeds)
+                ratios[spp].append(values)
+                print_row(name_of(path), spp, (f"{seconds:.2f}", *values, f"{rays:.2f}"))
+    for spp, values in ratios.items():
+        if values:
+            print_row(f"geometric mean of {len(values)}", spp, ("", *np.exp(np.log(values).mean(axis=0)), ""))
+
+
+if __name__ == "__main__":
+    main()

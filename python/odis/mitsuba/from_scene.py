@@ -1,0 +1,70 @@
+"""The integrator `odis` in place of a scene's own."""
+
+import re
+
+import mitsuba as mi
+
+from .aovs import make_aovs, nested_integrators
+
+PATH_TRACERS = {"PathIntegrator", "OdisIntegrator", "PRBIntegrator", "BasicPRBIntegrator", "PathProjectiveIntegrator"}
+VOLUMETRIC = {"VolumetricSimplePathIntegrator", "VolumetricMisPathIntegrator", "PRBVolpathIntegrator"}
+
+
+def _name(integrator):
+    return str(integrator).split("[")[0]
+
+
+def path_tracer_of(scene):
+    """The integrator that traces a scene's paths, which `aov` may hold, and the `aov` around it or None."""
+    integrator = scene.integrator()
+    if integrator is None or _name(integrator) != "AOVIntegrator":
+        return integrator, None
+    nested = nested_integrators(integrator)
+    known = [one for one in nested if _name(one) in PATH_TRACERS | VOLUMETRIC]
+    return next(iter(known + nested), None), integrator
+
+
+def settings_of(integrator):
+    """max_depth, rr_depth and hide_emitters of an integrator that traces paths; none of others."""
+    if integrator is None or _name(integrator) not in PATH_TRACERS | VOLUMETRIC:
+        return {}
+    settings = {name: int(value) for name, value in re.findall(r"\b(max_depth|rr_depth) = (\d+)", str(integrator))}
+    if settings.get("max_depth") == 0xFFFFFFFF:
+        settings["max_depth"] = -1
+    return {**settings, "hide_emitters": bool(integrator.hide_emitters)}
+
+
+def has_media(scene):
+    return any(shape.is_medium_transition() for shape in scene.shapes()) or \
+        any(sensor.get_medium() is not None for sensor in scene.sensors())
+
+
+def settings_of_scene(scene):
+    """The settings that a path tracer takes over from a scene's integrator. Mitsuba's log warns of what it can't do."""
+    integrator, _ = path_tracer_of(scene)
+    if integrator is not None and _name(integrator) not in PATH_TRACERS | VOLUMETRIC:
+        mi.Log(mi.LogLevel.Warn, f"odis: {_name(integrator)} is no path tracer: the image will be that of `path` with "
+                                 "its default parameters")
+    if has_media(scene):
+        mi.Log(mi.LogLevel.Warn, "odis: the scene has participating media, which are not rendered: light passes them "
+                                 "as it does with `path`")
+    return settings_of(integrator)
+
+
+def guide(scene, **parameters):
+    """An integrator `odis` in place of a scene's own, with its max_depth, rr_depth, hide_emitters and AOVs:
+
+        image = mi.render(scene, integrator=odis.mitsuba.guide(scene), spp=16)
+
+    The scene stays as it is. Further arguments are parameters of `odis` that take the place of the scene's.
+    Participating media are not rendered, and an integrator that traces no paths is replaced by `odis` with default
+    parameters; Mitsuba's log warns of both.
+    """
+    integrator = mi.load_dict({"type": "odis", **settings_of_scene(scene), **parameters})
+    if integrator.aovs is None:
+        path_tracer, around = path_tracer_of(scene)
+        if around is not None:
+            integrator.aovs = make_aovs(around)
+        elif _name(path_tracer) == "OdisIntegrator":
+            integrator.aovs = path_tracer.aovs
+    return integrator
