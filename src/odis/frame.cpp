@@ -21,7 +21,7 @@ constexpr uint32_t kOracleFractionPasses = 2;
 // others are not uniform, and the guide is made from the first: it is not independent of the points that it
 // guides. One pixel's share in what a cell knows makes this too small to measure, but in images of fewer
 // pixels than these every guide has numbers of its own.
-constexpr size_t kFewPixels = 1024;
+constexpr size_t kFewPixels = 16384;
 constexpr uint64_t kGuideSeed = 0x9e3779b97f4a7c15ull;
 
 void requireOption(bool holds, const char* message) {

@@ -70,11 +70,9 @@ struct PairedCase {
 
   int seeds() const { return size == 16 ? decision.seeds : decision.seeds / 8; }
   RarePatch patch() const { return {size, crop, decision.lamps}; }
-  // Whether nothing follows from the first guided sample: two samples are too few to refine or to spread.
+  // Whether a pixel's guided samples are alike, given the pilot, because nothing follows from the first one: two
+  // samples are too few to refine or to spread.
   bool oneGuide() const { return !decision.withAllOthers || spp == 2; }
-  // Whether a pixel's guided samples are alike, given the pilot. They are not where they are Sobol' points of
-  // the pilot's own set, as in large images.
-  bool samplesAreAlike() const { return oneGuide() && (sampler == SamplerKind::independent || size == 16); }
   RenderOptions options(uint64_t seed) const {
     RenderOptions options;
     options.maxDepth = 3;
@@ -124,7 +122,7 @@ double pilotShare(const RenderOptions& options) {
 double difference(const PairedCase& c, const Scene& scene, double integral, uint64_t seed) {
   RenderOptions options = c.options(seed), constant = options;
   if (c.decision.makeConstant) c.decision.makeConstant(constant);
-  if (c.samplesAreAlike()) {
+  if (c.oneGuide()) {
     const int guided = c.size == 16 ? 24 : 6;
     takeMany(guided, options);
     takeMany(guided, constant);
