@@ -1,5 +1,5 @@
-// Alias tables of sampling maps, for kernels on SIMD units and GPUs: a direction is drawn, and its density found, by two
-// look-ups of one word each, whatever the map.
+// Alias tables of sampling maps, for kernels on SIMD units and GPUs: a direction is drawn, and its density
+// found, by two look-ups of one word each, whatever the map.
 #include <algorithm>
 #include <cmath>
 #include <odis/odis.hpp>
@@ -15,7 +15,7 @@ namespace odis::python {
 namespace {
 
 constexpr int kEntries = 16;
-// Probabilities are whole multiples of 1 / kWhole, so that what is drawn and what is evaluated are equal to the bit.
+// Probabilities are whole multiples of 1 / kWhole, so that what is drawn is what is evaluated, to the bit.
 constexpr int kWhole = 1 << 15;
 constexpr int kShare = kWhole / kEntries;
 
@@ -23,8 +23,8 @@ using Weights = float[kEntries];
 using BlockTables = NumpyArray<uint32_t, -1, -1, kEntries>;
 using TexelTables = NumpyArray<uint32_t, -1, kMapBlocks, kEntries>;
 
-// Probabilities in proportion to the weights, as multiples of 1 / kWhole that add up to kWhole; equal ones where the
-// weights are no distribution.
+// Probabilities in proportion to the weights, as multiples of 1 / kWhole that add up to kWhole; equal ones
+// where the weights are no distribution.
 void quantize(const Weights& weights, int (&parts)[kEntries]) {
   float total = 0;
   for (const float weight : weights) total += weight;
@@ -43,8 +43,8 @@ void quantize(const Weights& weights, int (&parts)[kEntries]) {
   }
 }
 
-// Walker's alias method, made in linear time (Vose 1991): each entry is drawn with probability 1 / 16, stands for
-// itself with probability `own` / kShare, and for `alias` otherwise.
+// Walker's alias method, made in linear time (Vose 1991): each entry is drawn with probability 1 / 16, stands
+// for itself with probability `own` / kShare, and for `alias` otherwise.
 void makeAliasTable(const Weights& weights, uint32_t* entries) {
   int parts[kEntries], own[kEntries], alias[kEntries], small[kEntries], large[kEntries];
   quantize(weights, parts);
@@ -106,8 +106,8 @@ void makeBlockTables(const GuideView& view, size_t cell, const Float3* normals, 
     }
 }
 
-// What the texels of a cell are multiplied by, one table for all normals of its orientation: for the most part the
-// cosine to its axis, as walls and floors have it, for the rest the mean of the cosines to all normals.
+// What the texels of a cell are multiplied by, one table for all normals of its orientation: for the most
+// part the cosine to its axis, as walls and floors have it, for the rest the mean of the cosines to all normals.
 std::vector<float> texelCosines(const GuideView& view, size_t orientation, const Float3* normals,
                                 size_t slots, bool bothSides) {
   constexpr float kAxisShare = 0.8f;
@@ -172,9 +172,9 @@ void bindAliasTables(nb::class_<Guide>& guide) {
   guide.def("alias_tables", &aliasTables, "normals"_a, "both_sides"_a = false,
             R"(Alias tables (Walker's method) of all sampling maps, for kernels of a host's own.
 
-A direction is drawn from a table of 16 blocks and then from one of 16 texels. The density over solid angle is
-256 / (4 pi) times the probabilities of block and texel. It is near to that of Guide.pdf for the given normals, and
-what is drawn follows it exactly.
+A direction is drawn from a table of 16 blocks and then from one of 16 texels. The density over solid angle
+is 256 / (4 pi) times the probabilities of block and texel. It is near to that of Guide.pdf for the given
+normals, and what is drawn follows it exactly.
 
 normals: float32 (6 n, 3), unit: n for each orientation of cells, in the order +x, -x, +y, -y, +z, -z
 both_sides: whether to make tables for surfaces that scatter to both sides as well
@@ -182,8 +182,8 @@ both_sides: whether to make tables for surfaces that scatter to both sides as we
 Returns two arrays of uint32:
 blocks: (cells, n, 16), or (cells, 2 n, 16): tables for both sides come after those for one
 texels: (cells, 16, 16), or (2 cells, 16, 16), likewise
-Bits 0 to 15 of an entry are its own probability times 2^15, bits 16 to 26 the probability that drawing it stands
-for itself times 2^11, and bits 27 to 30 the entry that it stands for otherwise.)");
+Bits 0 to 15 of an entry are its own probability times 2^15, bits 16 to 26 the probability that drawing it
+stands for itself times 2^11, and bits 27 to 30 the entry that it stands for otherwise.)");
 }
 
 }  // namespace odis::python

@@ -70,8 +70,8 @@ struct PairedCase {
 
   int seeds() const { return size == 16 ? decision.seeds : decision.seeds / 8; }
   RarePatch patch() const { return {size, crop, decision.lamps}; }
-  // Whether a pixel's guided samples are alike, given the pilot, because nothing follows from the first one: two
-  // samples are too few to refine or to spread.
+  // Whether a pixel's guided samples are alike, given the pilot, because nothing follows from the first one:
+  // two samples are too few to refine or to spread.
   bool oneGuide() const { return !decision.withAllOthers || spp == 2; }
   RenderOptions options(uint64_t seed) const {
     RenderOptions options;
