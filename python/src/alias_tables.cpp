@@ -107,7 +107,8 @@ void makeBlockTables(const GuideView& view, size_t cell, const Float3* normals, 
 }
 
 // What the texels of a cell are multiplied by, one table for all normals of its orientation: for the most
-// part the cosine to its axis, as walls and floors have it, for the rest the mean of the cosines to all normals.
+// part the cosine to its axis, as walls and floors have it, for the rest the mean of the cosines to all
+// normals.
 std::vector<float> texelCosines(const GuideView& view, size_t orientation, const Float3* normals,
                                 size_t slots, bool bothSides) {
   constexpr float kAxisShare = 0.8f;
