@@ -268,7 +268,7 @@ class VertexMap:
     """A cell's map times the cosine at a vertex: a density over directions (odis::VertexMap).
 
     The normal is rounded to one of 81, axes among them, for which products with the map's blocks are tabulated; within
-    a block the cosine is the mean over the normals of the cell. What is drawn follows the density to the bit.
+    a block the cosine is, for the most part, that to the axis of the cell. What is drawn follows the density to the bit.
 
     normal: unit shading normal on the side of the outgoing direction. both_sides: where the surface scatters to both.
     """
