@@ -99,7 +99,7 @@ double renderMean(const Scene& scene, const RenderOptions& options) {
   return sum / double(result.image.color.size());
 }
 
-// Takes so many guided samples in each pixel. The pilot keeps its share, so the mean has the same expectation.
+// Takes so many guided samples in each pixel. The pilot keeps its share: the mean has the same expectation.
 void takeMany(int guided, RenderOptions& options) {
   options.pilotWeight *= double(guided) / (options.spp - 1);
   options.spp = 1 + guided;

@@ -145,7 +145,7 @@ def make_integrator():
 
         # Dr.Jit traverses __dict__, also of an integrator that a scene holds, and would compile kernels anew whenever
         # something in there changes: all is kept out of it.
-        __slots__ = ("settings", "scene", "known", "pixel_filter", "frame", "rays", "traced", "seconds",
+        __slots__ = ("settings", "scene", "known", "pixel_filter", "frame", "rays", "seconds",
                      "progress", "separate_compile", "aovs", "unguided", "said_unguided")
 
         def __init__(self, props):
@@ -221,7 +221,7 @@ def make_integrator():
                 guide=odis.GuideOptions(light_groups=self.known.lights.groups)))
             has_alpha = mi.has_flag(film.flags(), mi.FilmFlags.Alpha)
             valid = np.zeros(width * height) if has_alpha else None  # samples of each pixel
-            progress, self.rays, self.traced = self.progress or default_progress(), 0, 0
+            progress, traced, self.rays = self.progress or default_progress(), 0, 0
             progress(0)
             tables, values, rebuilt = None, None, False
             while (frame_pass := frame.begin_pass()) is not None:
@@ -232,8 +232,8 @@ def make_integrator():
                 rebuilt = frame_pass.wants_vertices
                 for pixel, number, records in parts_of_pass(frame, frame_pass):
                     self._trace_part(sensor, frame_pass, tables, values, pixel, number, records, valid)
-                    self.traced += pixel.size
-                    progress(self.traced / (spp * width * height))
+                    traced += pixel.size
+                    progress(traced / (spp * width * height))
                 with self._timed("build"):
                     frame.end_pass()
             progress(1)
