@@ -83,9 +83,10 @@ class ImageFrame {
     std::optional<VertexArrays> vertices;
     if (given) vertices = vertexArrays(*given);
     callBeside(m_calls, [&] {
-      std::vector<FrameSample> samples(pixelAt.size());
-      for (size_t i = 0; i < samples.size(); ++i)
-        samples[i] = {pixelAt(i), sampleAt(i), vectorAt(valueAt, i), raysAt ? (*raysAt)(i) : 0};
+      std::vector<FrameSample> samples;
+      samples.reserve(pixelAt.size());
+      for (size_t i = 0; i < pixelAt.size(); ++i)
+        samples.push_back({pixelAt(i), sampleAt(i), vectorAt(valueAt, i), raysAt ? (*raysAt)(i) : 0});
       m_frame.add(samples, vertices ? vertices->described() : OdisPathVertices());
     });
   }

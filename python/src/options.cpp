@@ -65,6 +65,8 @@ oracle_samples: int (0): further samples per pixel that the guide is made from i
 guided: bool (True); False: plain path tracing, without a pilot
 adaptive: bool (True): whether pixels whose first samples differ more get more samples; from 4 samples per
     pixel on
+guided_cost: float >= 0 (1.15): what a ray of a guided path takes, relative to one of an unguided path; where
+    the first guided samples show that guiding does not pay, the others are not guided. 0: guides in any case
 guide: GuideOptions
 
 Values out of their range raise Error (INVALID_ARGUMENT) where the options are used.)";
@@ -110,7 +112,8 @@ void bindFrameOptions(nb::module_& module) {
           "__init__",
           [](FrameOptions* self, uint32_t width, uint32_t height, uint32_t samplesPerPixel,
              uint32_t refinementSamples, uint64_t seed, double pilotSamplesPerPixel, float pilotWeight,
-             uint32_t oracleSamples, bool guided, bool adaptive, std::optional<GuideOptions> guide) {
+             uint32_t oracleSamples, bool guided, bool adaptive, float guidedCost,
+             std::optional<GuideOptions> guide) {
             new (self) FrameOptions{{}, guide ? *guide : GuideOptions()};
             self->width = width;
             self->height = height;
@@ -122,12 +125,14 @@ void bindFrameOptions(nb::module_& module) {
             self->oracleSamples = oracleSamples;
             self->guided = guided;
             self->adaptive = adaptive;
+            self->guidedCost = guidedCost;
           },
           "width"_a, "height"_a, nb::kw_only(), "samples_per_pixel"_a = defaults.samplesPerPixel,
           "refinement_samples"_a = defaults.refinementSamples, "seed"_a = defaults.seed,
           "pilot_samples_per_pixel"_a = defaults.pilotSamplesPerPixel,
           "pilot_weight"_a = defaults.pilotWeight, "oracle_samples"_a = defaults.oracleSamples,
-          "guided"_a = defaults.guided, "adaptive"_a = defaults.adaptive, "guide"_a = nb::none())
+          "guided"_a = defaults.guided, "adaptive"_a = defaults.adaptive,
+          "guided_cost"_a = defaults.guidedCost, "guide"_a = nb::none())
       .def_rw("width", &FrameOptions::width)
       .def_rw("height", &FrameOptions::height)
       .def_rw("samples_per_pixel", &FrameOptions::samplesPerPixel)
@@ -138,6 +143,7 @@ void bindFrameOptions(nb::module_& module) {
       .def_rw("oracle_samples", &FrameOptions::oracleSamples)
       .def_rw("guided", &FrameOptions::guided)
       .def_rw("adaptive", &FrameOptions::adaptive)
+      .def_rw("guided_cost", &FrameOptions::guidedCost)
       .def_rw("guide", &FrameOptions::guide);
 }
 

@@ -5,6 +5,7 @@
 #include <stdexcept>
 
 #include "odis/cells/batches.h"
+#include "odis/image/guiding_gain.h"
 #include "odis/image/sample_counts.h"
 #include "odis/models/model.h"
 
@@ -52,6 +53,8 @@ const FrameOptions& checkedOptions(const FrameOptions& o) {
                 "pilotSamplesPerPixel: expected a finite number from 0 on");
   requireOption(o.pilotWeight >= 0 && std::isfinite(o.pilotWeight),
                 "pilotWeight: expected a finite number from 0 on");
+  requireOption(o.guidedCost >= 0 && std::isfinite(o.guidedCost),
+                "guidedCost: expected a finite number from 0 on");
   return o;
 }
 
@@ -196,9 +199,30 @@ void Frame::Data::resume() {
   resumed.reset();
 }
 
+// Whether the first guided samples, compared with the pilot's, were not worth their time.
+bool Frame::Data::guidingDoesNotPay() const {
+  if (done > 0 || !learns() || options.guidedCost == 0) return false;
+  const std::optional<double> ratio = guidedOverUnguided(pilot, later, options.width);
+  return ratio && *ratio * options.guidedCost > 1;
+}
+
+// Goes on without a guide. No sample's weight changes, nor how many there are: only samples that are still to
+// be drawn know of it, and their mean is the same in any case.
+void Frame::Data::giveUpGuiding() {
+  for (const CellSamples& samples : cellSamples) keptBytes -= samples.bytes();
+  cellSamples.clear();
+  guide = Guide();
+  ++guidesBuilt;
+  schedule.endRefinement();
+  done = end;
+  takeStock(0);
+}
+
 void Frame::Data::endGuidedPass() {
   if (end == schedule.spreadAfter()) spreadSamples();
-  if (learns())
+  if (guidingDoesNotPay())
+    giveUpGuiding();
+  else if (learns())
     refineGuide();
   else
     done = end;

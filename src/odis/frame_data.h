@@ -38,6 +38,8 @@ struct Frame::Data {
   void buildGuide(const VertexTiles& taught, const VertexTiles& judged);
   void endGuidedPass();
   void spreadSamples();
+  bool guidingDoesNotPay() const;
+  void giveUpGuiding();
   void refineGuide();
   void takeStock(uint64_t vertices);
 

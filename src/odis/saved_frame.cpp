@@ -202,6 +202,7 @@ SavedFrame::SavedFrame(const Archive& file)
 
 void SavedFrame::readPosition(const Archive& file) {
   position = file.value<FramePosition>("frame.position");
+  if (position.next == ODIS_PASS_GUIDED && !position.builder) schedule.endRefinement();
   // Who learns needs a builder.
   const bool learns = position.next != ODIS_PASS_GUIDED || position.done < schedule.lastRefinement();
   file.require(position.next <= ODIS_PASS_GUIDED && position.done <= schedule.mostRemaining() &&

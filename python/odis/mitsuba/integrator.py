@@ -3,6 +3,8 @@
 import time
 from collections import defaultdict
 from contextlib import contextmanager
+from dataclasses import dataclass, replace
+from functools import lru_cache
 
 import drjit as dr
 import mitsuba as mi
@@ -25,11 +27,15 @@ RECORDED_PATHS = 1 << 17
 ROWS = 1 << 20
 # Of the samples of a guided pass that the guide learns from only those of one pixel in so many are recorded.
 PIXELS_PER_RECORDED = 4
+# Time of a ray of a guided path over that of a ray of another, in the kernels.
+GUIDED_COST = 1.4
 # Other paths are traced by so many at once at most.
 PATHS = 1 << 22
 # A lane traces this many samples one after the other, and there are at least so many lanes a thread.
 SAMPLES_PER_LANE, LEAST_LANES = 32, 4096
 FILTER_STEPS = 256
+# Side of the tiles that odis.Frame takes samples by, in pixels: it is fastest if all of a tile come at once.
+TILE = 16
 
 
 def filter_quantiles(rfilter):
@@ -86,41 +92,69 @@ def trace_samples(scene, camera, settings, known, tables, records, samples):
     """Traces samples; where it records them returns the recorder, with what only complete paths know filled in."""
     recorder = recording.make_recorder(ROWS) if records else None
     path.trace(scene, camera, settings, known, tables, recorder, samples)
-    dr.eval(samples, recorder)
+    dr.eval(samples.result, samples.last_row, recorder)
     if recorder is not None:
         recording.complete_paths(recorder, samples.last_row, path.ray_counts(samples))
         dr.eval(recorder)
+    dr.sync_thread()
     return recorder
 
 
-def make_samples(pixel, number, pixel_values, recorded):
-    """path.Samples of these pixels and numbers (numpy's uint32)."""
-    count = pixel.size
+def choose_samples(samples, chosen, recorded):
+    """Those of path.Samples that a kernel is to trace: `chosen` are their places (numpy's uint32)."""
+    count = chosen.size
     lanes = min(count, max(LEAST_LANES * dr.thread_count(), count // SAMPLES_PER_LANE))
-    result = path.Samples(
-        pixel=array_of(mi.UInt32, pixel), number=array_of(mi.UInt32, number), count=mi.UInt32(count),
-        lane=dr.arange(mi.UInt32, lanes), lanes=mi.UInt32(lanes), pixel_values=pixel_values,
-        result=dr.zeros(mi.Float, 4 * count), last_row=dr.zeros(mi.UInt32, count) if recorded else None)
-    dr.make_opaque(result)
-    return result
+    samples = replace(samples, chosen=array_of(mi.UInt32, chosen), count=mi.UInt32(count),
+                      lane=dr.arange(mi.UInt32, lanes), lanes=mi.UInt32(lanes),
+                      last_row=dr.zeros(mi.UInt32, count) if recorded else None)
+    dr.make_opaque(samples)
+    return samples
+
+
+@lru_cache(maxsize=4)
+def tile_order(width, height):
+    """The pixels of an image in the order of the frame's tiles: their numbers, and where each tile begins and ends."""
+    y, x = np.divmod(np.arange(width * height, dtype=np.uint32), np.uint32(width))
+    tile = y // TILE * ((width + TILE - 1) // TILE) + x // TILE
+    order = np.argsort(tile, kind="stable").astype(np.uint32)
+    return order, np.append(np.searchsorted(tile[order], np.arange(tile.max() + 1)), order.size)
+
+
+@dataclass
+class PartOfPass:
+    """Samples of a pass, of whole tiles, in the order of the tiles: arrays of one length."""
+
+    pixel: object  # uint32
+    number: object  # uint32: of the sample in its pixel
+    recorded: object  # bool: whether its vertices are
 
 
 def parts_of_pass(frame, frame_pass):
-    """The samples of a pass in parts that fit: their pixels, their numbers, and whether they are recorded."""
+    """The samples of a pass, in parts that fit."""
     first, count = frame.samples()
-    width, first, count = first.shape[1], first.ravel(), count.ravel()
-    pixel = np.repeat(np.arange(first.size, dtype=np.uint32), count)
-    begin = np.cumsum(count, dtype=np.uint32) - count
-    number = np.arange(pixel.size, dtype=np.uint32) - (begin - first)[pixel].astype(np.uint32)
-    recorded = np.full(pixel.size, frame_pass.wants_vertices)
+    height, width = first.shape
+    order, tile_begin = tile_order(width, height)
+    first, count = first.ravel()[order], count.ravel()[order]
+    recorded = np.full(order.size, frame_pass.wants_vertices)
     if frame_pass.kind == odis.PassKind.GUIDED:
-        y, x = np.divmod(pixel, np.uint32(width))
+        y, x = np.divmod(order, np.uint32(width))
         recorded &= (x + 2 * y) % PIXELS_PER_RECORDED == 0
-    for records, most in ((True, RECORDED_PATHS), (False, PATHS)):
-        chosen = np.flatnonzero(recorded == records)
-        for i in range(0, chosen.size, most):
-            part = chosen[i:i + most]
-            yield pixel[part], number[part], records
+    samples_before, recorded_before = (np.concatenate([[0], np.cumsum(counts)])[tile_begin]
+                                       for counts in (count, count * recorded))
+    begin, tiles = 0, tile_begin.size - 1
+    while begin < tiles:
+        fits = (samples_before <= samples_before[begin] + PATHS) \
+            & (recorded_before <= recorded_before[begin] + RECORDED_PATHS)
+        end = max(begin + 1, int(np.flatnonzero(fits)[-1]))
+        pixels = slice(tile_begin[begin], tile_begin[end])
+        counts = count[pixels]
+        before = np.cumsum(counts, dtype=np.uint32) - counts
+        repeat = lambda values: np.repeat(values, counts)
+        number = np.arange(samples_before[end] - samples_before[begin], dtype=np.uint32)
+        number += repeat(first[pixels] - before)
+        if number.size:
+            yield PartOfPass(repeat(order[pixels]), number, repeat(recorded[pixels]))
+        begin = end
 
 
 def check_variant():
@@ -217,7 +251,7 @@ def make_integrator():
             self.pixel_filter = filter_quantiles(film.rfilter())
             width, height = film.crop_size()
             self.frame = frame = odis.Frame(odis.FrameOptions(
-                width, height, samples_per_pixel=spp, seed=seed,
+                width, height, samples_per_pixel=spp, seed=seed, guided_cost=GUIDED_COST,
                 guide=odis.GuideOptions(light_groups=self.known.lights.groups)))
             has_alpha = mi.has_flag(film.flags(), mi.FilmFlags.Alpha)
             valid = np.zeros(width * height) if has_alpha else None  # samples of each pixel
@@ -226,13 +260,15 @@ def make_integrator():
             tables, values, rebuilt = None, None, False
             while (frame_pass := frame.begin_pass()) is not None:
                 with self._timed("tables"):
-                    if rebuilt and len(frame_pass.guide):
+                    if not len(frame_pass.guide):  # not yet, or guiding does not pay
+                        tables, values = None, None
+                    elif rebuilt:
                         tables = make_guide_tables(frame_pass.guide, self.known.materials.both_sides)
                         values = array_of(mi.Float, frame.pixel_values)
                 rebuilt = frame_pass.wants_vertices
-                for pixel, number, records in parts_of_pass(frame, frame_pass):
-                    self._trace_part(sensor, frame_pass, tables, values, pixel, number, records, valid)
-                    traced += pixel.size
+                for part in parts_of_pass(frame, frame_pass):
+                    self._trace_part(sensor, frame_pass, tables, values, part, valid)
+                    traced += part.pixel.size
                     progress(traced / (spp * width * height))
                 with self._timed("build"):
                     frame.end_pass()
@@ -243,31 +279,45 @@ def make_integrator():
                 channels.append(alpha.astype(np.float32))
             return np.concatenate(channels + [np.ones((height, width, 1), np.float32)], axis=2)
 
-        def _trace_part(self, sensor, frame_pass, tables, values, pixel, number, records, valid):
-            """Traces some samples of a pass and hands them to the frame; in halves if they have too many vertices."""
+        def _trace_part(self, sensor, frame_pass, tables, values, part, valid):
+            """Traces some samples of a pass and hands them to the frame."""
             with self._timed("pilot" if frame_pass.kind == odis.PassKind.PILOT else "guided"):
-                samples = make_samples(pixel, number, values, records)
+                samples = path.Samples(array_of(mi.UInt32, part.pixel), array_of(mi.UInt32, part.number), values,
+                                       result=dr.zeros(mi.Float, 4 * part.pixel.size))
                 # An opaque number, so that the same kernel serves all seeds.
                 seed = dr.opaque(mi.UInt64, hash_seed(frame_pass.seed))
-                recorder = trace_samples(self.scene, Camera(sensor, seed, *self.pixel_filter), self.settings,
-                                         self.known, tables, records, samples)
-                dr.sync_thread()
-            vertices = None
-            if recorder is not None:
-                count = int(recorder.count[0])
-                if count > ROWS and pixel.size > 1:
-                    for half in (slice(0, pixel.size // 2), slice(pixel.size // 2, None)):
-                        self._trace_part(sensor, frame_pass, tables, values, pixel[half], number[half], records, valid)
-                    return
-                vertices = recording.path_vertices(recorder, min(count, ROWS))
+                vertices = self._trace(Camera(sensor, seed, *self.pixel_filter), tables, samples, part.recorded)
             with self._timed("add"):
                 result = np.asarray(samples.result).reshape(-1, 4)
                 tags = result[:, 3].view(np.uint32)
                 rays = tags & np.uint32(path.VALID - 1)
                 self.rays += int(rays.sum())
                 if valid is not None:
-                    valid += np.bincount(pixel, weights=tags >> 31, minlength=valid.size)
-                self.frame.add_samples(pixel, number, result[:, :3], rays, vertices)
+                    valid += np.bincount(part.pixel, weights=tags >> 31, minlength=valid.size)
+                self.frame.add_samples(part.pixel, part.number, result[:, :3], rays, vertices)
+
+        def _trace(self, camera, tables, samples, recorded):
+            """Traces samples; returns the vertices of those that are recorded, None without any. Should these be too
+            many at once, it hands all but the last ones to the frame."""
+            vertices = None
+            pending = [(np.flatnonzero(recorded), True), (np.flatnonzero(~recorded), False)]
+            while pending:
+                places, records = pending.pop()
+                if not places.size:
+                    continue
+                chosen = choose_samples(samples, places.astype(np.uint32), records)
+                recorder = trace_samples(self.scene, camera, self.settings, self.known, tables, records, chosen)
+                if not records:
+                    continue
+                count = int(recorder.count[0])
+                if count > ROWS and places.size > 1:
+                    pending += [(half, True) for half in np.array_split(places, 2)]
+                    continue
+                if vertices is not None:
+                    none = np.zeros(0, np.uint32)
+                    self.frame.add_samples(none, none, np.zeros((0, 3), np.float32), none, vertices)
+                vertices = recording.path_vertices(recorder, min(count, ROWS))
+            return vertices
 
         @contextmanager
         def _timed(self, stage):

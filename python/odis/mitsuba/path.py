@@ -33,24 +33,25 @@ class SceneTables:
 
 @dataclass
 class Samples:
-    """The samples of a kernel, and the results that it writes."""
+    """Samples, and which of them a kernel traces."""
 
-    pixel: object  # UInt32 [count]
-    number: object  # UInt32 [count]: of the sample in its pixel
-    count: object  # UInt32
-    lane: object  # UInt32 [lanes]: 0, 1, ...: as many samples are under way at once
-    lanes: object  # UInt32
+    pixel: object  # UInt32 [sample]
+    number: object  # UInt32 [sample]: in its pixel
     pixel_values: object  # Float [pixel]: luminance of the pixel as the frame estimates it; None without tables
-    # Float [count][4]: what the sample adds to its pixel, in linear sRGB; and, as a UInt32, its number of rays, shadow
+    # Float [sample][4]: what the sample adds to its pixel, in linear sRGB; and, as a UInt32, its number of rays, shadow
     # rays included, with the highest bit set where something opaque or an environment was met, for alpha.
     result: object
-    last_row: object  # UInt32 [count]: of the path's last recorded vertex; None without a recorder
+    chosen: object = None  # UInt32 [count]: the samples of the kernel
+    count: object = None  # UInt32
+    lane: object = None  # UInt32 [lanes]: 0, 1, ...: as many samples are under way at once
+    lanes: object = None  # UInt32
+    last_row: object = None  # UInt32 [count]: of the path's last recorded vertex; None without a recorder
 
 
 def ray_counts(samples):
-    """The number of rays of each sample, UInt32."""
+    """The number of rays of each sample of the kernel, UInt32."""
     tags = dr.reinterpret_array(mi.UInt32, samples.result)
-    return dr.gather(mi.UInt32, tags, dr.arange(mi.UInt32, dr.width(samples.pixel)) * 4 + 3) & (VALID - 1)
+    return dr.gather(mi.UInt32, tags, samples.chosen * 4 + 3) & (VALID - 1)
 
 
 def power_heuristic(pdf, other):
@@ -75,36 +76,30 @@ class Scattering:
     map_pdf: object
     sample: object
     weight: object
-    # Densities of the lobes that are no delta lobes, alone.
-    light_alone: object
-    map_alone: object
-    sample_alone: object
+    share_of_smooth: object  # how often it draws from lobes that are no delta lobes
 
 
 def scatter(bsdf, si, toward_light, toward_map, u_lobe, u, any_delta, active):
     """All that is asked of a BSDF, in one call, so that what the answers share is computed once."""
 
     def ask(bsdf, si, toward_light, toward_map, u_lobe, u, active):
-        context, alone = mi.BSDFContext(), mi.BSDFContext()
-        alone.type_mask = mi.BSDFFlags.Smooth
+        context = mi.BSDFContext()
         light_value, light_pdf, sample, weight = bsdf.eval_pdf_sample(context, si, toward_light, u_lobe, u, active)
         map_value, map_pdf = mi.Spectrum(0), mi.Float(0)
         if toward_map is not None:
             map_value, map_pdf = bsdf.eval_pdf(context, si, toward_map, active)
-        result = Scattering(light_value, light_pdf, map_value, map_pdf, sample, weight, *[mi.Float(0)] * 3)
+        share = mi.Float(1)
         if any_delta:
-            result.light_alone = bsdf.pdf(alone, si, toward_light, active)
-            result.sample_alone = bsdf.pdf(alone, si, sample.wo, active)
+            # The density over that of these lobes alone, which is the same for all directions that have one.
+            wo, pdf = dr.select(light_pdf > 0, toward_light, sample.wo), dr.select(light_pdf > 0, light_pdf, sample.pdf)
             if toward_map is not None:
-                result.map_alone = bsdf.pdf(alone, si, toward_map, active)
-        return result
+                wo, pdf = dr.select(map_pdf > 0, toward_map, wo), dr.select(map_pdf > 0, map_pdf, pdf)
+            context.type_mask = mi.BSDFFlags.Smooth
+            alone = bsdf.pdf(context, si, wo, active)
+            share = dr.select(alone > 0, pdf / alone, 1)
+        return Scattering(light_value, light_pdf, map_value, map_pdf, sample, weight, share)
 
     return dr.dispatch(bsdf, ask, si, toward_light, toward_map, u_lobe, u, active)
-
-
-def part_of(pdf, alone, mixes):
-    """How often a BSDF draws from lobes that are no delta lobes: its density over that of these lobes alone."""
-    return dr.select(mixes & (alone > 0), pdf / alone, 1)
 
 
 @dr.syntax
@@ -121,7 +116,7 @@ def trace(scene, camera, settings, known, tables, recorder, samples):
     index = mi.UInt32(samples.lane)
     under_way = mi.Bool(False)  # a path is
     more = index < samples.count
-    pixel, number, pixel_value = mi.UInt32(0), mi.UInt32(0), mi.Float(1)
+    sample, pixel, number, pixel_value = mi.UInt32(0), mi.UInt32(0), mi.UInt32(0), mi.Float(1)
     rng, ray = RandomNumbers(mi.UInt32(0), mi.UInt32(0)), dr.zeros(mi.Ray3f)
     radiance, throughput, eta = mi.Spectrum(0), mi.Spectrum(0), mi.Float(1)
     depth, rays, valid = mi.UInt32(0), mi.UInt32(0), mi.Bool(False)
@@ -134,8 +129,9 @@ def trace(scene, camera, settings, known, tables, recorder, samples):
     while dr.hint(more, label="odis: paths", exclude=[known, tables, recorder, lights, samples, camera]):
         # The next sample, where none is under way.
         begins = more & ~under_way
-        pixel = dr.select(begins, dr.gather(mi.UInt32, samples.pixel, index, begins), pixel)
-        number = dr.select(begins, dr.gather(mi.UInt32, samples.number, index, begins), number)
+        sample = dr.select(begins, dr.gather(mi.UInt32, samples.chosen, index, begins), sample)
+        pixel = dr.select(begins, dr.gather(mi.UInt32, samples.pixel, sample, begins), pixel)
+        number = dr.select(begins, dr.gather(mi.UInt32, samples.number, sample, begins), number)
         new_rng, new_ray, ray_weight = camera(pixel, number)
         rng, ray = dr.select(begins, new_rng, rng), dr.select(begins, new_ray, ray)
         throughput, radiance = dr.select(begins, ray_weight, throughput), dr.select(begins, 0, radiance)
@@ -228,23 +224,23 @@ def trace(scene, camera, settings, known, tables, recorder, samples):
         sampled, weight, bsdf_pdf = scattered.sample, scattered.weight, scattered.light_pdf
         discrete = mi.has_flag(sampled.sampled_type, mi.BSDFFlags.Delta)
         mixes = ((flags & HAS_DELTA) != 0) & ((flags & GUIDABLE) != 0)
+        share_of_smooth = dr.select(mixes, scattered.share_of_smooth, 1)
         wi, pdf = si.to_world(sampled.wo), mi.Float(sampled.pdf)
-        light_mix_pdf, alone = mi.Float(bsdf_pdf), mi.Float(scattered.sample_alone)
+        light_mix_pdf = mi.Float(bsdf_pdf)
         guidable_pdf = pdf
         if dr.hint(tables is not None, mode="scalar"):
             other_pdf = vertex_map.pdf(dr.select(from_map, toward.d, wi), guided)
             light_map_pdf, map_pdf = dr.select(from_map, other_pdf, map_pdf), dr.select(from_map, map_pdf, other_pdf)
             from_map &= ~discrete
             wi, pdf = dr.select(from_map, map_direction, wi), dr.select(from_map, scattered.map_pdf, pdf)
-            alone = dr.select(from_map, scattered.map_alone, alone)
             guidable_pdf = pdf
-            mixed = dr.fma(1 - fraction, map_pdf * part_of(pdf, alone, mixes) - pdf, pdf)
+            mixed = dr.fma(1 - fraction, map_pdf * share_of_smooth - pdf, pdf)
             reweighed = guided & ~discrete & (mixed > 0)
             weight = dr.select(from_map, scattered.map_value / mixed,
                                dr.select(reweighed, weight * (pdf / mixed), weight))
             pdf = dr.select(reweighed, mixed, pdf)
-            light_map_pdf *= part_of(bsdf_pdf, scattered.light_alone, mixes)
-            light_mix_pdf = dr.select(guided, dr.fma(1 - fraction, light_map_pdf - bsdf_pdf, bsdf_pdf), bsdf_pdf)
+            light_mix_pdf = dr.fma(1 - fraction, light_map_pdf * share_of_smooth - bsdf_pdf, bsdf_pdf)
+            light_mix_pdf = dr.select(guided, light_mix_pdf, bsdf_pdf)
 
         mis = dr.select(toward.delta, 1, power_heuristic(toward_pdf, light_mix_pdf))
         unweighted = scattered.light_value * light
@@ -287,7 +283,7 @@ def trace(scene, camera, settings, known, tables, recorder, samples):
                                                dr.select(seen & ~toward.delta, toward_pdf, 0)], has_row)
             group, group_choice = lights.group_of(place, choice * shadow, lightable)
             can_guide = (flags & GUIDABLE) != 0
-            guidable = part_of(guidable_pdf, alone, mixes & ~discrete)
+            guidable = dr.select(discrete, 1, share_of_smooth)
             recording.write(recorder, row, 3, [bsdf_pdf, dr.select(can_guide, bsdf_pdf, 0), recording.bits(group),
                                                group_choice,
                                                dr.select(can_guide, guidable_pdf, 0), dr.select(can_guide, guidable, 0),
@@ -311,7 +307,7 @@ def trace(scene, camera, settings, known, tables, recorder, samples):
         ends = more & ~under_way
         color = to_rgb(radiance, ray.wavelengths)
         count = recording.bits(rays | dr.select(valid, mi.UInt32(VALID), 0))
-        dr.scatter(samples.result, mi.Vector4f(color.x, color.y, color.z, count), index, ends)
+        dr.scatter(samples.result, mi.Vector4f(color.x, color.y, color.z, count), sample, ends)
         if dr.hint(recorder is not None, mode="scalar"):
             dr.scatter(samples.last_row, row, index, ends)
         index += dr.select(ends, samples.lanes, 0)

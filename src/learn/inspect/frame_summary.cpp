@@ -32,6 +32,7 @@ std::vector<ChosenOption> chosenOptions(const core::SavedOptions& saved) {
   ofFrame("oracleSamples", &core::FrameOptions::oracleSamples);
   ofFrame("guided", &core::FrameOptions::guided);
   ofFrame("adaptive", &core::FrameOptions::adaptive);
+  ofFrame("guidedCost", &core::FrameOptions::guidedCost);
   ofFrame("keepPilotVertices", &core::FrameOptions::keepPilotVertices);
   ofGuide("cellsPerDiagonal", &core::GuideOptions::cellsPerDiagonal);
   for (size_t level = 0; level < kCellLevels; ++level)

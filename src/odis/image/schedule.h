@@ -35,6 +35,8 @@ class Schedule {
   uint32_t lastRefinement() const { return m_lastRefinement; }
   // After how many of them it is settled how many samples each pixel has; 0: all have as many.
   uint32_t spreadAfter() const { return m_spreadAfter; }
+  // Has the guide built no more.
+  void endRefinement() { m_lastRefinement = 0; }
   // Settles that, spreadAfter() being done: `counts` are of all of a pixel's samples.
   void spread(std::vector<uint32_t> counts);
   // How many samples each pixel has, if that is settled; and settles it as it was in a saved frame. Returns

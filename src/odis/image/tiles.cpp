@@ -6,8 +6,6 @@
 #include <tuple>
 #include <utility>
 
-#include "odis/image/tile_order.h"
-
 namespace odis::core {
 
 namespace {
@@ -100,15 +98,18 @@ std::vector<uint32_t> TileCollector::tilesOf(bool byThreads, size_t count,
   constexpr size_t kBlock = 8192;
   std::vector<uint32_t> tiles(count);
   forEach(byThreads, (count + kBlock - 1) / kBlock, [&](size_t block) {
-    uint32_t pixel = ~0u, sample = 0, tile = TileOrder::kNone;
+    // Neighbours are of one pixel for the most part.
+    uint32_t pixel = ~0u, tile = TileOrder::kNone;
+    SampleRange due;
     for (size_t i = block * kBlock; i < std::min((block + 1) * kBlock, count); ++i) {
       const auto identity = identityAt(i);
-      if (identity.pixel != pixel || identity.sample != sample) {
+      if (identity.pixel != pixel) {
         pixel = identity.pixel;
-        sample = identity.sample;
-        tile = isDue(pixel, sample) ? tileOf(pixel) : TileOrder::kNone;
+        const bool inImage = pixel < m_width * m_height;
+        due = inImage ? m_due(pixel) : SampleRange();
+        tile = inImage ? tileOf(pixel) : TileOrder::kNone;
       }
-      tiles[i] = tile;
+      tiles[i] = identity.sample - due.first < due.count ? tile : TileOrder::kNone;
     }
   });
   return tiles;
@@ -128,23 +129,31 @@ void TileCollector::addTiles(ArrayView<const FrameSample> samples, const VertexS
   std::vector<uint32_t> tiles;
   for (uint32_t tile = std::min(sampleOrder.first(), vertexOrder.first());
        tile < std::max(sampleOrder.end(), vertexOrder.end()); ++tile)
-    if (!sampleOrder.of(tile).empty() || !vertexOrder.of(tile).empty()) tiles.push_back(tile);
+    if (sampleOrder.count(tile) + vertexOrder.count(tile) > 0) tiles.push_back(tile);
   for (const uint32_t tile : tiles) requireOpen(tile);
   forEach(isLarge && tiles.size() >= kTilesForThreads, tiles.size(), [&](size_t t) {
-    std::vector<FrameSample> ofTile;
-    ofTile.reserve(sampleOrder.of(tiles[t]).size());
-    for (const size_t i : sampleOrder.of(tiles[t])) ofTile.push_back(samples[i]);
-    addToTile(tiles[t], ofTile, inOrder(vertices, vertexOrder.of(tiles[t])));
+    const size_t count = sampleOrder.count(tiles[t]);
+    std::vector<FrameSample> sorted;
+    if (!sampleOrder.isSorted())
+      for (size_t i = 0; i < count; ++i) sorted.push_back(samples[sampleOrder.index(tiles[t], i)]);
+    const ArrayView<const FrameSample> ofTile =
+        sampleOrder.isSorted() && count > 0
+            ? ArrayView<const FrameSample>(&samples[sampleOrder.index(tiles[t], 0)], count)
+            : ArrayView<const FrameSample>(sorted);
+    addToTile(tiles[t], ofTile, inOrder(vertices, vertexOrder, tiles[t]));
   });
   m_refused += vertices.size() - vertexOrder.size();
 }
 
 // Vertices of a tile in the order in which they are handed on.
-std::vector<PathVertex> TileCollector::inOrder(const VertexSource& vertices,
-                                               ArrayView<const size_t> indices) const {
+std::vector<PathVertex> TileCollector::inOrder(const VertexSource& vertices, const TileOrder& byTile,
+                                               uint32_t tile) const {
   std::vector<std::pair<uint64_t, size_t>> order;  // vertices of the same order stay as they came
-  order.reserve(indices.size());
-  for (const size_t i : indices) order.emplace_back(orderInTile(vertices.identity(i)), i);
+  order.reserve(byTile.count(tile));
+  for (size_t k = 0; k < byTile.count(tile); ++k) {
+    const size_t i = byTile.index(tile, k);
+    order.emplace_back(orderInTile(vertices.identity(i)), i);
+  }
   if (!std::is_sorted(order.begin(), order.end())) std::sort(order.begin(), order.end());
   std::vector<PathVertex> ordered;
   ordered.reserve(order.size());
@@ -207,10 +216,11 @@ void TileCollector::handOn(uint32_t tile, ArrayView<const FrameSample> samples, 
   // Sums over a pixel depend on the order of its own samples alone.
   uint32_t next[kTileSize * kTileSize] = {};
   bool inOrder = true;
+  uint32_t pixel = ~0u, place = 0;
   for (const FrameSample& s : samples) {
-    uint32_t& least = next[placeInTile(s.pixel)];
-    inOrder = inOrder && s.sample >= least;
-    least = s.sample + 1;
+    if (s.pixel != pixel) place = placeInTile(pixel = s.pixel);
+    inOrder = inOrder && s.sample >= next[place];
+    next[place] = s.sample + 1;
   }
   std::vector<FrameSample> orderedSamples;
   if (!inOrder) {

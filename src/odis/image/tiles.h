@@ -7,6 +7,7 @@
 #include <mutex>
 #include <vector>
 
+#include "odis/image/tile_order.h"
 #include "odis/image/tile_vertices.h"
 #include "odis/record/vertex_source.h"
 #include "odis/work/tasks.h"
@@ -68,7 +69,8 @@ class TileCollector {
   void forEach(bool byThreads, size_t count, const Body& body) const;
   template <class IdentityAt>
   std::vector<uint32_t> tilesOf(bool byThreads, size_t count, const IdentityAt& identityAt) const;
-  std::vector<PathVertex> inOrder(const VertexSource& vertices, ArrayView<const size_t> indices) const;
+  std::vector<PathVertex> inOrder(const VertexSource& vertices, const TileOrder& byTile,
+                                  uint32_t tile) const;
   void requireOpen(uint32_t tile) const;
   void addTiles(ArrayView<const FrameSample> samples, const VertexSource& vertices);
   void addToTile(uint32_t tile, ArrayView<const FrameSample> samples, TileVertices vertices);

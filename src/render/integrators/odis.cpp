@@ -28,6 +28,7 @@ FrameOptions guidedFrameOptions(const RenderJob& job) {
   frame.adaptive = options.samples != SampleSpread::even;
   frame.pilotSamplesPerPixel = options.pilotSpp;
   frame.pilotWeight = float(options.pilotWeight);
+  frame.guidedCost = options.guidedCost;
   frame.refinementSamples = uint32_t(options.refineSpp);
   frame.oracleSamples = options.guide == GuideKind::oracle ? uint32_t(options.oracleSpp) : 0;
   frame.keepPilotVertices = options.records;

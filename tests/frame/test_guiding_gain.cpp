@@ -1,0 +1,117 @@
+// Whether guiding pays: what is measured of the first guided samples, and what follows from it.
+#include <random>
+
+#include "frame/run_frame.h"
+#include "odis/image/guiding_gain.h"
+
+namespace odis::test {
+
+namespace {
+
+constexpr uint32_t kWidth = 96;
+
+// An image whose pixels have the value 1 + x / 32, and one sample each, whose variance is `variance` times the
+// value squared; exponentially distributed noise has heavy tails. Each costs `rays`.
+std::vector<PixelSums> noisyImage(double variance, uint32_t rays, uint32_t seed) {
+  std::mt19937 engine(seed);
+  std::exponential_distribution<double> noise(1);
+  std::vector<PixelSums> image(size_t(kWidth) * kWidth);
+  for (size_t i = 0; i < image.size(); ++i) {
+    const double value = 1 + double(i % kWidth) / 32;
+    const auto sample = float(value * (1 + std::sqrt(variance) * (noise(engine) - 1)));
+    addSample(image[i], {sample, sample, sample}, rays);
+  }
+  return image;
+}
+
+TEST(GuidingGain, IsTheRatioOfVariancesTimesThatOfRays) {
+  for (const double variance : {0.2, 0.5, 1.0, 2.0}) {
+    const auto ratio = core::guidedOverUnguided(noisyImage(1, 10, 1), noisyImage(variance, 8, 2), kWidth);
+    ASSERT_TRUE(ratio);
+    // The mean of the pixels around has an eighth of the guided samples' variance.
+    const double expected = (variance + variance / 8) / (1 + variance / 8) * 0.8;
+    EXPECT_NEAR(*ratio, expected, 0.08 * expected) << variance;
+  }
+}
+
+// A pilot of a quarter of a sample is compared with the guided samples of its own pixels.
+TEST(GuidingGain, ComparesPixelsThatHaveBoth) {
+  std::vector<PixelSums> pilot = noisyImage(1, 10, 3);
+  for (size_t i = 0; i < pilot.size(); ++i)
+    if (i % kWidth % 2 != 0 || i / kWidth % 2 != 0) pilot[i] = {};
+  const auto ratio = core::guidedOverUnguided(pilot, noisyImage(0.25, 10, 4), kWidth);
+  ASSERT_TRUE(ratio);
+  EXPECT_NEAR(*ratio, 0.28 / 1.03, 0.05);
+}
+
+TEST(GuidingGain, IsUnknownWithFewPixelsOrWithoutLight) {
+  const std::vector<PixelSums> image = noisyImage(1, 1, 5), none(image.size());
+  const ArrayView<const PixelSums> few(image.data(), size_t(kWidth) * 20);
+  EXPECT_FALSE(core::guidedOverUnguided(few, few, kWidth));
+  EXPECT_FALSE(core::guidedOverUnguided(image, none, kWidth));
+  EXPECT_FALSE(core::guidedOverUnguided(none, image, kWidth));
+  std::vector<PixelSums> black(image.size());
+  for (PixelSums& pixel : black) addSample(pixel, {}, 1);
+  EXPECT_FALSE(core::guidedOverUnguided(black, black, kWidth));
+}
+
+// [pass] whether it has a guide.
+std::vector<bool> guidedPasses(Frame& frame, const FrameOptions& options) {
+  const ToyHost host({}, options.width, options.height);
+  std::vector<bool> guided;
+  while (const FramePass* pass = frame.beginPass()) {
+    guided.push_back(pass->guide->cellCount > 0);
+    if (guided.size() > 2 && !guided.back()) EXPECT_FALSE(pass->wantsVertices);
+    runPass(frame, *pass, host, options.width * options.height);
+    frame.endPass();
+  }
+  return guided;
+}
+
+TEST(GuidingGain, FramesStopGuidingWhereItDoesNotPay) {
+  FrameOptions options = toyOptions(64, 64, 16);
+  options.guidedCost = 0.01f;  // a gain by any means
+  Frame pays(options);
+  const std::vector<bool> with = guidedPasses(pays, options);
+  ASSERT_GT(with.size(), 3u);
+  EXPECT_FALSE(with[0]);
+  EXPECT_EQ(std::count(with.begin() + 1, with.end(), false), 0);
+
+  options.guidedCost = 1000;
+  Frame doesNotPay(options);
+  const std::vector<bool> without = guidedPasses(doesNotPay, options);
+  EXPECT_TRUE(without[1]);
+  EXPECT_EQ(std::count(without.begin() + 2, without.end(), true), 0);
+  EXPECT_EQ(doesNotPay.guide().view().cellCount, 0u);
+  EXPECT_TRUE(doesNotPay.guideIsFinal());
+  EXPECT_NEAR(double(doesNotPay.statistics().samples), 64 * 64 * 16, 64 * 64 * 2);
+
+  options.guidedCost = 0;
+  Frame always(options);
+  EXPECT_EQ(guidedPasses(always, options), with);
+}
+
+// Which frames stop is decided by their samples: by a half of them, here.
+TEST(GuidingGain, StoppingKeepsTheMean) {
+  FrameOptions options = toyOptions(48, 48, 8);
+  options.pilotSamplesPerPixel = 1;
+  FrameOptions path = options;
+  path.guided = false;
+  options.guidedCost = 2.3f;
+  int stopped = 0;
+  constexpr int kSeeds = 64;
+  for (uint64_t seed = 0; seed < 16; ++seed) {
+    FrameOptions own = options;
+    own.seed = seed;
+    Frame frame(own);
+    runFrame(frame, own, {});
+    stopped += frame.guide().view().cellCount == 0;
+  }
+  EXPECT_GT(stopped, 0);
+  EXPECT_LT(stopped, 16);
+  expectSameExpectation(estimate(options, {}, kSeeds, 0), estimate(path, {}, kSeeds, 1000));
+}
+
+}  // namespace
+
+}  // namespace odis::test
