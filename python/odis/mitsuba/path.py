@@ -80,26 +80,23 @@ class Scattering:
 
 
 def scatter(bsdf, si, toward_light, toward_map, u_lobe, u, any_delta, active):
-    """All that is asked of a BSDF, in one call, so that what the answers share is computed once."""
-
-    def ask(bsdf, si, toward_light, toward_map, u_lobe, u, active):
-        context = mi.BSDFContext()
-        light_value, light_pdf, sample, weight = bsdf.eval_pdf_sample(context, si, toward_light, u_lobe, u, active)
-        map_value, map_pdf = mi.Spectrum(0), mi.Float(0)
+    """Asks BSDFs for all that a vertex needs. (dr.dispatch would ask once for everything, but is traced in Python for
+    each BSDF of the scene, in every pass.)"""
+    context = mi.BSDFContext()
+    light_value, light_pdf, sample, weight = bsdf.eval_pdf_sample(context, si, toward_light, u_lobe, u, active)
+    map_value, map_pdf = mi.Spectrum(0), mi.Float(0)
+    if toward_map is not None:
+        map_value, map_pdf = bsdf.eval_pdf(context, si, toward_map, active)
+    share = mi.Float(1)
+    if any_delta:
+        # The density over that of these lobes alone, which is the same for all directions that have one.
+        wo, pdf = dr.select(light_pdf > 0, toward_light, sample.wo), dr.select(light_pdf > 0, light_pdf, sample.pdf)
         if toward_map is not None:
-            map_value, map_pdf = bsdf.eval_pdf(context, si, toward_map, active)
-        share = mi.Float(1)
-        if any_delta:
-            # The density over that of these lobes alone, which is the same for all directions that have one.
-            wo, pdf = dr.select(light_pdf > 0, toward_light, sample.wo), dr.select(light_pdf > 0, light_pdf, sample.pdf)
-            if toward_map is not None:
-                wo, pdf = dr.select(map_pdf > 0, toward_map, wo), dr.select(map_pdf > 0, map_pdf, pdf)
-            context.type_mask = mi.BSDFFlags.Smooth
-            alone = bsdf.pdf(context, si, wo, active)
-            share = dr.select(alone > 0, pdf / alone, 1)
-        return Scattering(light_value, light_pdf, map_value, map_pdf, sample, weight, share)
-
-    return dr.dispatch(bsdf, ask, si, toward_light, toward_map, u_lobe, u, active)
+            wo, pdf = dr.select(map_pdf > 0, toward_map, wo), dr.select(map_pdf > 0, map_pdf, pdf)
+        context.type_mask = mi.BSDFFlags.Smooth
+        alone = bsdf.pdf(context, si, wo, active)
+        share = dr.select(alone > 0, pdf / alone, 1)
+    return Scattering(light_value, light_pdf, map_value, map_pdf, sample, weight, share)
 
 
 @dr.syntax
