@@ -4,7 +4,7 @@ BUILD := build/$(PRESET)
 JOBS ?= $(shell nproc)
 SECONDS ?= 60
 ifeq ($(PRESET),tsan)
-export TSAN_OPTIONS ?= suppressions=$(CURDIR)/tests/support/thread_sanitizer/suppressions
+export TSAN_OPTIONS ?= history_size=7:suppressions=$(CURDIR)/tests/support/thread_sanitizer/suppressions
 endif
 
 .PHONY: help setup build demo test bench agreement train-small weights fuzz format format-check lint clean

@@ -1,4 +1,5 @@
 // --save-every and --resume of the built command, killed at any moment.
+#include <chrono>
 #include <random>
 
 #include "command_runner.h"
@@ -20,14 +21,17 @@ const std::string kOptions =
     "render room.xml -q --resolution 150x100 --spp 24 --seed 4 --aov all --variance ";
 
 TEST_F(SavedRenderings, KilledAtAnyMomentGoOn) {
+  const auto begin = std::chrono::steady_clock::now();
   ASSERT_EQ(run(kOptions + "-o whole.exr").code, 0);
+  const std::chrono::duration<double> whole = std::chrono::steady_clock::now() - begin;
   std::mt19937 engine(1);
   const std::string save = kOptions + "-o image.exr --save-every 0.0002";
   for (int runs = 0; !exists("image.exr"); ++runs) {
     ASSERT_LT(runs, 500);
     const std::string resume = exists("image.exr.odis") ? " --resume image.exr.odis" : "";
-    // Later and later, for slow machines.
-    const double seconds = 0.05 + 0.001 * runs + 0.1 * std::generate_canonical<double, 20>(engine);
+    // Later and later: starting may take longer than rendering.
+    const double share = 0.2 + 0.004 * runs + 0.4 * std::generate_canonical<double, 20>(engine);
+    const double seconds = share * whole.count();
     const Outcome outcome =
         runShell("timeout -s KILL " + std::to_string(seconds) + " '" ODIS_COMMAND "' " + save + resume);
     EXPECT_TRUE(outcome.code == 0 || outcome.code == 137) << outcome.code << outcome.text;
