@@ -47,16 +47,18 @@ std::unique_ptr<Scene> Scene::load(const std::string& path, const LoadOptions& o
     } else if (node.tag == "integrator" || node.tag == "sensor") {
       const Properties*& first = node.tag == "sensor" ? sensor : integrator;
       if (first)
-        warnings.add(node.location, "a scene has one " + node.tag + " only, this further one is ignored");
+        warnings.add(node.location, "a scene has one " + node.tag + " only, this further one is ignored",
+                     node.tag == "sensor" ? Effect::same : Effect::difference);
       if (!first) first = &node;
     } else if (node.id.empty() && node.tag != "film" && node.tag != "sampler") {
       // With an id others may refer to it.
       warnings.add(node.location,
-                   "the " + node.tag + " '" + node.type + "' belongs to nothing and is ignored");
+                   "the " + node.tag + " '" + node.type + "' belongs to nothing and has no effect",
+                   Effect::none);
     }
   }
   for (const auto& [name, parameter] : root.parameters)
-    warnings.add(parameter.location, "unknown parameter '" + name + "' of the scene is ignored");
+    warnings.add(parameter.location, "'" + name + "' of the scene has no effect", Effect::none);
   scene->finish();
 
   // Scenes of 0.5 may keep film and sampler beside the sensor.
@@ -73,12 +75,13 @@ std::unique_ptr<Scene> Scene::load(const std::string& path, const LoadOptions& o
     if (sensor->child("medium")) shapes.warnOfMedia(*sensor);
     builder.warnUnqueried(*sensor);
   } else {
-    warnings.add({path}, "the scene has no sensor, all of it is shown from its +z side");
+    warnings.add({path}, "the scene has no sensor, all of it is shown from its +z side", Effect::same);
     scene->setSensor(defaultSensor(scene->bounds(), resolution));
   }
   scene->m_files = parsed.files;
   scene->m_files.insert(scene->m_files.end(), builder.files().begin(), builder.files().end());
-  if (scene->shapes().empty() && scene->instances().empty()) warnings.add({path}, "the scene has no shapes");
+  if (scene->shapes().empty() && scene->instances().empty())
+    warnings.add({path}, "the scene has no shapes", Effect::same);
   if (scene->emitters().empty()) warnings.add({path}, "the scene has no emitter, its image is black");
   return scene;
 }

@@ -112,7 +112,8 @@ void ShapeLoader::loadInstance(const Properties& node) {
   const Matrix4 toWorld = node.transform("to_world");
   m_builder.warnUnqueried(node);
   if (shapes->empty()) {
-    m_builder.warn(node.location, "the shape group of this instance is empty, there is nothing to draw");
+    m_builder.warn(node.location, "the shape group of this instance is empty, there is nothing to draw",
+                   Effect::same);
     return;
   }
   m_scene.addInstance({shapes, toWorld});
