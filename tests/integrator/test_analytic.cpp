@@ -85,6 +85,28 @@ TEST_P(AnalyticTest, SphereLightOverAFloor) {
   expectMean(test::renderScene(*scene, options(256)), 0.5 * 10 * 0.25 / 9, 0.01);
 }
 
+TEST_P(AnalyticTest, HiddenEmitters) {
+  const std::string hide =
+      "<integrator type=\"path\"><boolean name=\"hide_emitters\" value=\"true\"/></integrator>";
+  // The floor under the sphere as above, seen through the sphere.
+  const auto floor = test::loadScene(
+      hide + test::sensor("origin=\"0,5,0.001\" target=\"0,0,0\" up=\"0,0,1\"", 0.2f, 4, 4) +
+      "<shape type=\"rectangle\"><transform name=\"to_world\"><scale value=\"10\"/><rotate x=\"1\" "
+      "angle=\"-90\"/></transform>"
+      "<bsdf type=\"diffuse\"><rgb name=\"reflectance\" value=\"0.5\"/></bsdf></shape>"
+      "<shape type=\"sphere\"><point name=\"center\" x=\"0\" y=\"3\" z=\"0\"/><float name=\"radius\" "
+      "value=\"0.5\"/><bsdf type=\"diffuse\"><rgb name=\"reflectance\" value=\"0\"/></bsdf>"
+      "<emitter type=\"area\"><rgb name=\"radiance\" value=\"10\"/></emitter></shape>");
+  expectMean(test::renderScene(*floor, options(256)), 0.5 * 10 * 0.25 / 9, 0.01);
+  // A white veil of opacity 1/4 shows a quarter of the sky's radiance; the rest would be the sky itself.
+  const auto veil = test::loadScene(
+      hide + test::sensor("origin=\"0,0,1\" target=\"0,0,0\" up=\"0,1,0\"", 40, 8, 8) +
+      "<shape type=\"rectangle\"><bsdf type=\"mask\"><float name=\"opacity\" value=\"0.25\"/><bsdf "
+      "type=\"diffuse\"><rgb name=\"reflectance\" value=\"1\"/></bsdf></bsdf></shape>"
+      "<emitter type=\"constant\"><rgb name=\"radiance\" value=\"1\"/></emitter>");
+  expectMean(test::renderScene(*veil, options(1024)), 0.25, 0.02);
+}
+
 INSTANTIATE_TEST_SUITE_P(Integrators, AnalyticTest,
                          ::testing::Values(Kind{"path", IntegratorKind::path, GuideKind::histogram, 0},
                                            Kind{"odis", IntegratorKind::odis, GuideKind::histogram, 0},

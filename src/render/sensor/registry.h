@@ -11,5 +11,7 @@ namespace odis::render {
 // Makes the sensor of a <sensor> element for a full image of this size. Throws SceneError; a type that isn't
 // known is seen through a pinhole, with a warning.
 std::shared_ptr<const Sensor> makeSensor(const Properties& node, const Vec2i& resolution, Warnings& warnings);
+// The types that there are, in the order of the alphabet.
+std::vector<std::string> sensorTypes();
 
 }  // namespace odis::render
