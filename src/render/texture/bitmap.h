@@ -24,6 +24,7 @@ class BitmapTexture final : public Texture {
   // Exact derivative of the bilinear patch; zero with `nearest`.
   Vec2 gradient(const Vec2& uv) const override;
   Rgb mean() const override { return m_mean; }
+  Vec2i resolution() const override { return {m_image->width(), m_image->height()}; }
   bool isConstant() const override { return m_constant; }
 
  private:

@@ -23,6 +23,8 @@ class Texture {
   }
   // The average over the texture's domain; exact for constants, an average of texels for bitmaps.
   virtual Rgb mean() const = 0;
+  // Texels along u and v; (1, 1) where there are none.
+  virtual Vec2i resolution() const { return {1, 1}; }
   // Whether the value is the same everywhere (then it is `mean()`).
   virtual bool isConstant() const { return false; }
 };
