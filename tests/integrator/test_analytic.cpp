@@ -107,6 +107,35 @@ TEST_P(AnalyticTest, HiddenEmitters) {
   expectMean(test::renderScene(*veil, options(1024)), 0.25, 0.02);
 }
 
+TEST_P(AnalyticTest, IrradianceOfShapes) {
+  const std::string meter =
+      "<sensor type=\"irradiancemeter\"><film type=\"hdrfilm\"><integer name=\"width\" "
+      "value=\"4\"/><integer name=\"height\" value=\"4\"/><rfilter type=\"box\"/></film>"
+      "</sensor></shape>";
+  // A sphere of radiance L and radius r at distance d fills 2 pi (1 - cos) sr, sin = r / d = 1/10, and gives
+  // a surface that faces it pi L sin^2. Small things of other shapes have means that their cosines say: a
+  // sphere 1/4, a cylinder on its side 1/pi.
+  const double facing = kPi * 0.01, solidAngle = 2 * kPi * (1 - std::sqrt(0.99));
+  const std::string lamp =
+      "<shape type=\"sphere\"><point name=\"center\" x=\"0\" y=\"0\" z=\"10\"/><emitter type=\"area\"><rgb "
+      "name=\"radiance\" value=\"100\"/></emitter></shape>";
+  const std::string small =
+      "<transform name=\"to_world\"><scale value=\"0.01\"/></transform><bsdf type=\"diffuse\"/>";
+  const std::pair<const char*, double> shapes[] = {
+      {"rectangle", 100 * facing}, {"disk", 100 * facing}, {"sphere", 100 * solidAngle / 4}};
+  for (const auto& [shape, expected] : shapes)
+    expectMean(test::renderScene(
+                   *test::loadScene("<shape type=\"" + std::string(shape) + "\">" + small + meter + lamp),
+                   options(2048)),
+               expected, 0.04);
+  // Whatever is convex receives pi times the radiance of a constant sky.
+  for (const char* shape : {"cube", "cylinder", "sphere"})
+    expectMean(test::renderScene(*test::loadScene("<shape type=\"" + std::string(shape) + "\">" + small +
+                                                  meter + "<emitter type=\"constant\"/>"),
+                                 options(512)),
+               kPi, 0.02);
+}
+
 INSTANTIATE_TEST_SUITE_P(Integrators, AnalyticTest,
                          ::testing::Values(Kind{"path", IntegratorKind::path, GuideKind::histogram, 0},
                                            Kind{"odis", IntegratorKind::odis, GuideKind::histogram, 0},

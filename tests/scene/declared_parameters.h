@@ -58,6 +58,7 @@ inline std::vector<ElementType> allElementTypes() {
   const auto find = [&](const std::string& type) -> ElementType& {
     return *std::find_if(all.begin(), all.end(), [&](const ElementType& e) { return e.type == type; });
   };
+  find("mesh_attribute").parameters["name"] = "<string name='name' value='vertex_color'/>";
   find("blendbsdf").parameters["weight"] = "<float name='weight' value='0.5'/>";
   // The default would be a table that takes a while.
   for (const char* type : {"sky", "sunsky"})

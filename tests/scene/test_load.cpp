@@ -196,6 +196,39 @@ TEST(Load, TakesTexturesForSpectraAndSpectraForTextures) {
       bsdf("<spectrum name='reflectance' type='foo'/>").second.warnsOf("the texture 'foo' is unknown"));
 }
 
+// What Mitsuba 3.9 looks up in the same mesh.
+TEST(Load, LooksUpAttributesOfMeshes) {
+  const TemporaryFolder folder;
+  folder.write(
+      "m.ply",
+      "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n"
+      "property float color_0\nproperty float color_1\nproperty float color_2\nelement face 1\n"
+      "property list uchar int vertex_indices\nproperty float c_0\nproperty float c_1\n"
+      "property float c_2\nend_header\n"
+      "0 0 0 0.1 0.2 0.3\n1 0 0 0.4 0.5 0.6\n0 1 0 0.7 0.8 0.9\n3 0 1 2 0.1 0.2 0.3\n");
+  const auto albedo = [&](const std::string& name, Warnings& warnings) {
+    const std::string path =
+        folder.write("scene.xml",
+                     "<scene version='3.0.0'><shape type='ply'><string name='filename' value='m.ply'/>"
+                     "<bsdf type='twosided'><bsdf type='diffuse'><texture name='reflectance' "
+                     "type='mesh_attribute'><string name='name' value='" +
+                         name + "'/></texture></bsdf></bsdf></shape>" + kLight + "</scene>");
+    const auto scene = Scene::load(path, {}, warnings);
+    SurfacePoint at;
+    EXPECT_TRUE(scene->intersect({Vec3(0.2f, 0.3f, 1), Vec3(0, 0, -1)}, at));
+    return at.shape->bsdf().features(at, {0, 0, 1}).albedo;
+  };
+  const auto expect = [&](const std::string& name, const Rgb& expected, size_t differences) {
+    Warnings warnings;
+    const Rgb found = albedo(name, warnings);
+    for (int c = 0; c < 3; ++c) EXPECT_NEAR(found[c], expected[c], 1e-5f) << name;
+    EXPECT_EQ(warnings.texts().size(), differences) << name;
+  };
+  expect("vertex_color", {0.34f, 0.44f, 0.54f}, 0);
+  expect("face_c", {0.1f, 0.2f, 0.3f}, 0);
+  expect("vertex_none", {0, 0, 0}, 1);
+}
+
 TEST(Load, FindsPathsOfIncludedFilesBesideTheScene) {
   const TemporaryFolder folder;
   folder.write("meshes/m.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");

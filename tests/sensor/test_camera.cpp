@@ -140,6 +140,16 @@ TEST(Orthographic, IsThatOfMitsuba) {
   EXPECT_TRUE(warnings.texts().empty());
 }
 
+TEST(RadianceMeter, LooksAlongItsDirection) {
+  Properties node = camera("radiancemeter");
+  set(node, "origin", Vec3(1, 2, 3));
+  set(node, "direction", Vec3(0, 3, 4));
+  Warnings warnings;
+  const Ray ray = makeSensor(node, kWide, warnings)->ray({7, 9}, {0.2f, 0.3f});
+  expectNear(ray.origin, {1, 2, 3}, "origin");
+  expectNear(ray.direction, {0, 0.6f, 0.8f}, "direction");
+}
+
 TEST(ThinLens, FocusesOnAPlane) {
   Properties node = camera("thinlens");
   set(node, "fov", 90.0);

@@ -93,8 +93,9 @@ uint32_t tileCount(const Crop& crop) {
 
 Ray cameraRay(const Scene& scene, Vec2i pixel, Sampler& sampler, float& filterWeight) {
   const FilterSample offset = scene.film().filter->sample(sampler.get2D());
-  filterWeight = offset.weight * scene.sensor().weight();
-  const Ray ray = scene.sensor().ray(Vec2(pixel.x + 0.5f, pixel.y + 0.5f) + offset.offset, sampler.get2D());
+  const Vec2 film = Vec2(pixel.x + 0.5f, pixel.y + 0.5f) + offset.offset;
+  filterWeight = offset.weight * scene.sensor().weight(film);
+  const Ray ray = scene.sensor().ray(film, sampler.get2D());
   return scene.integrator().hideEmitters ? beyondEmitters(scene, ray) : ray;
 }
 

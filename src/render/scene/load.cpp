@@ -23,16 +23,15 @@ std::shared_ptr<const Sensor> defaultSensor(const SceneBounds& bounds, const Vec
   return std::make_shared<Perspective>(toWorld, Projection(fov, resolution));
 }
 
-}  // namespace
-
-std::unique_ptr<Scene> Scene::load(const std::string& path, const LoadOptions& options, Warnings& warnings) {
-  const ParsedScene parsed = parseScene(path, options.defines, warnings);
-  const Properties& root = *parsed.root;
-  Builder builder(warnings, parsed.folders);
-  auto scene = std::make_unique<Scene>();
-  ShapeLoader shapes(*scene, builder);
-
+// What of a scene there is one of; null if there is none.
+struct Singles {
   const Properties *integrator = nullptr, *sensor = nullptr;
+};
+
+// Adds shapes and emitters to the scene.
+Singles loadObjects(const Properties& root, Scene& scene, ShapeLoader& shapes, Builder& builder) {
+  Warnings& warnings = builder.warnings();
+  Singles result;
   for (const Properties::Child& child : root.children) {
     const Properties& node = *child.node;
     if (node.tag == "shape") {
@@ -41,11 +40,11 @@ std::unique_ptr<Scene> Scene::load(const std::string& path, const LoadOptions& o
       // Shapes refer to such a light by its id.
       if (node.id.empty()) warnings.add(node.location, "an area light outside of a shape lights nothing");
     } else if (node.tag == "emitter") {
-      for (EmitterPtr& emitter : builder.emitters(node)) scene->addEmitter(std::move(emitter));
+      for (EmitterPtr& emitter : builder.emitters(node)) scene.addEmitter(std::move(emitter));
     } else if (node.tag == "medium") {
       shapes.warnOfMedia(node);
     } else if (node.tag == "integrator" || node.tag == "sensor") {
-      const Properties*& first = node.tag == "sensor" ? sensor : integrator;
+      const Properties*& first = node.tag == "sensor" ? result.sensor : result.integrator;
       if (first)
         warnings.add(node.location, "a scene has one " + node.tag + " only, this further one is ignored",
                      node.tag == "sensor" ? Effect::same : Effect::difference);
@@ -59,8 +58,23 @@ std::unique_ptr<Scene> Scene::load(const std::string& path, const LoadOptions& o
   }
   for (const auto& [name, parameter] : root.parameters)
     warnings.add(parameter.location, "'" + name + "' of the scene has no effect", Effect::none);
+  return result;
+}
+
+}  // namespace
+
+std::unique_ptr<Scene> Scene::load(const std::string& path, const LoadOptions& options, Warnings& warnings) {
+  const ParsedScene parsed = parseScene(path, options.defines, warnings);
+  const Properties& root = *parsed.root;
+  Builder builder(warnings, parsed.folders);
+  auto scene = std::make_unique<Scene>();
+  ShapeLoader shapes(*scene, builder);
+
+  auto [integrator, sensor] = loadObjects(root, *scene, shapes, builder);
   scene->finish();
 
+  const ShapeLoader::Meter meter = sensor ? ShapeLoader::Meter() : shapes.meter();
+  if (meter.node) sensor = meter.node;
   // Scenes of 0.5 may keep film and sampler beside the sensor.
   const auto part = [&](const char* tag) {
     const Properties* nested = sensor ? sensor->child(tag) : nullptr;
@@ -71,7 +85,8 @@ std::unique_ptr<Scene> Scene::load(const std::string& path, const LoadOptions& o
   scene->setIntegrator(loadIntegrator(integrator, part("sampler"), warnings));
   const Vec2i resolution(film.width, film.height);
   if (sensor) {
-    scene->setSensor(makeSensor(*sensor, resolution, warnings));
+    scene->setSensor(meter.shape ? makeMeter(*sensor, resolution, meter.shape)
+                                 : makeSensor(*sensor, resolution, warnings));
     if (sensor->child("medium")) shapes.warnOfMedia(*sensor);
     builder.warnUnqueried(*sensor);
   } else {

@@ -3,7 +3,9 @@
 
 #include "render/scene/factory_table.h"
 #include "render/sensor/field_of_view.h"
+#include "render/sensor/irradiance_meter.h"
 #include "render/sensor/orthographic.h"
+#include "render/sensor/radiance_meter.h"
 #include "render/sensor/thinlens.h"
 #include "render/xml/names.h"
 
@@ -54,11 +56,24 @@ SensorPtr makeOrthographic(const Properties& node, const Vec2i& resolution, Warn
   return std::make_shared<Orthographic>(node.transform("to_world"), resolution, readClipRange(node));
 }
 
+SensorPtr makeRadianceMeter(const Properties& node, const Vec2i&, Warnings&) {
+  const Matrix4 toWorld = node.transform("to_world");
+  const Vec3 origin = node.vector("origin", transformPoint(toWorld, Vec3(0)));
+  const Vec3 direction = node.vector("direction", transformVector(toWorld, Vec3(0, 0, 1)));
+  if (node.has("origin") != node.has("direction") || (node.has("origin") && node.has("to_world")))
+    throw SceneError(node.location,
+                     "found only one of 'origin' and 'direction', or one with 'to_world', expected both or "
+                     "'to_world' alone");
+  if (!(length(direction) > 0)) node.refuse("direction", "0 0 0", "a direction with a length");
+  return std::make_shared<RadianceMeter>(Ray{origin, normalize(direction)});
+}
+
 using SensorFactory = SensorPtr (*)(const Properties&, const Vec2i&, Warnings&);
 
 constexpr std::pair<const char*, SensorFactory> kFactories[] = {
     {"orthographic", makeOrthographic},
     {"perspective", makePerspective},
+    {"radiancemeter", makeRadianceMeter},
     {"thinlens", makeThinLens},
 };
 
@@ -70,6 +85,16 @@ SensorPtr makeSensor(const Properties& node, const Vec2i& resolution, Warnings& 
   warnings.add(node.location, "the sensor '" + node.type + "' is unknown" +
                                   suggestion(node.type, sensorTypes()) + ", a perspective sensor is used");
   return makePerspective(node, resolution, warnings);
+}
+
+SensorPtr makeMeter(const Properties& node, const Vec2i& resolution,
+                    const std::shared_ptr<const Shape>& shape) {
+  if (node.type != "irradiancemeter")
+    throw SceneError(node.location,
+                     "found the sensor '" + node.type + "' in a shape, expected an irradiancemeter");
+  if (!(shape->area() > 0))
+    throw SceneError(node.location, "found an irradiancemeter on a shape without area, expected one with");
+  return std::make_shared<IrradianceMeter>(shape, resolution);
 }
 
 std::vector<std::string> sensorTypes() {

@@ -14,6 +14,8 @@ class CheckerboardTexture final : public Texture {
   Rgb rgb(const Vec2& uv) const override { return m_colors[cell(uv)]->rgb(uv); }
   // Swapped, as Mitsuba does.
   float scalar(const Vec2& uv) const override { return m_colors[1 - cell(uv)]->scalar(uv); }
+  Rgb rgbAt(const SurfacePoint& at) const override { return m_colors[cell(at.uv)]->rgbAt(at); }
+  float scalarAt(const SurfacePoint& at) const override { return m_colors[1 - cell(at.uv)]->scalarAt(at); }
   // Of the cell's own texture: the steps between cells have no derivative.
   Vec2 gradient(const Vec2& uv) const override { return m_colors[1 - cell(uv)]->gradient(uv); }
   Rgb mean() const override { return (m_colors[0]->mean() + m_colors[1]->mean()) * 0.5f; }

@@ -3,7 +3,7 @@
 
 #include <memory>
 
-#include "render/math/vec.h"
+#include "render/math/surface_point.h"
 
 namespace odis::render {
 
@@ -15,6 +15,9 @@ class Texture {
   virtual Rgb rgb(const Vec2& uv) const = 0;
   // The value as one number: the luminance of `rgb`, or the stored channel of a single-channel texture.
   virtual float scalar(const Vec2& uv) const { return luminance(rgb(uv)); }
+  // The same at a point of a surface, of which some textures know more than its uv.
+  virtual Rgb rgbAt(const SurfacePoint& at) const { return rgb(at.uv); }
+  virtual float scalarAt(const SurfacePoint& at) const { return scalar(at.uv); }
   // (d scalar/du, d scalar/dv), for bump maps. Default: central differences with a step of 1/1024.
   virtual Vec2 gradient(const Vec2& uv) const {
     constexpr float h = 1.0f / 1024.0f;
