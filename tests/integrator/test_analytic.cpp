@@ -112,21 +112,21 @@ TEST_P(AnalyticTest, IrradianceOfShapes) {
       "<sensor type=\"irradiancemeter\"><film type=\"hdrfilm\"><integer name=\"width\" "
       "value=\"4\"/><integer name=\"height\" value=\"4\"/><rfilter type=\"box\"/></film>"
       "</sensor></shape>";
-  // A sphere of radiance L and radius r at distance d fills 2 pi (1 - cos) sr, sin = r / d = 1/10, and gives
+  // A sphere of radiance L and radius r at distance d fills 2 pi (1 - cos) sr, sin = r / d = 1/2, and gives
   // a surface that faces it pi L sin^2. Small things of other shapes have means that their cosines say: a
-  // sphere 1/4, a cylinder on its side 1/pi.
-  const double facing = kPi * 0.01, solidAngle = 2 * kPi * (1 - std::sqrt(0.99));
+  // sphere 1/4.
+  const double facing = kPi * 0.25, solidAngle = 2 * kPi * (1 - std::sqrt(0.75));
   const std::string lamp =
-      "<shape type=\"sphere\"><point name=\"center\" x=\"0\" y=\"0\" z=\"10\"/><emitter type=\"area\"><rgb "
-      "name=\"radiance\" value=\"100\"/></emitter></shape>";
+      "<shape type=\"sphere\"><point name=\"center\" x=\"0\" y=\"0\" z=\"10\"/><float name=\"radius\" "
+      "value=\"5\"/><emitter type=\"area\"><rgb name=\"radiance\" value=\"1\"/></emitter></shape>";
   const std::string small =
       "<transform name=\"to_world\"><scale value=\"0.01\"/></transform><bsdf type=\"diffuse\"/>";
   const std::pair<const char*, double> shapes[] = {
-      {"rectangle", 100 * facing}, {"disk", 100 * facing}, {"sphere", 100 * solidAngle / 4}};
+      {"rectangle", facing}, {"disk", facing}, {"sphere", solidAngle / 4}};
   for (const auto& [shape, expected] : shapes)
     expectMean(test::renderScene(
                    *test::loadScene("<shape type=\"" + std::string(shape) + "\">" + small + meter + lamp),
-                   options(2048)),
+                   options(8192)),
                expected, 0.04);
   // Whatever is convex receives pi times the radiance of a constant sky.
   for (const char* shape : {"cube", "cylinder", "sphere"})

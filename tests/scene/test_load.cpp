@@ -165,7 +165,8 @@ TEST(Load, ReadsWhatIntegratorsShow) {
   EXPECT_TRUE(settings("direct", hide).hideEmitters);
   EXPECT_TRUE(settings("aov", "<integrator type='path'>" + hide + "</integrator>").hideEmitters);
   const Loaded depth = load("<integrator type='depth'/>");
-  EXPECT_TRUE(depth.warnsOf("integrator 'depth' is unknown, the radiance that paths bring is shown"));
+  EXPECT_TRUE(depth.warnsOf(
+      "integrator 'depth' shows something else than radiance, the radiance that paths bring is shown"));
 }
 
 TEST(Load, TakesTexturesForSpectraAndSpectraForTextures) {

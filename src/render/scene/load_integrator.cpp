@@ -19,6 +19,8 @@ const std::vector<std::string> kPathIntegrators = {
     "path",           "photonmapper",     "ppm",        "prb",     "prb_basic",
     "prb_projective", "prbvolpath",       "pssmlt",     "ptracer", "sppm",
     "volpath",        "volpath_simple",   "volpathmis", "vpl"};
+// Those that show something else.
+const std::vector<std::string> kOtherIntegrators = {"ao", "depth", "field"};
 // Those that show direct light, and those that measure another integrator's picture and hold it.
 const std::vector<std::string> kDirectIntegrators = {"direct", "direct_projective"},
                                kWrappingIntegrators = {"adaptive", "aov",          "irrcache",
@@ -33,18 +35,21 @@ void warnOfType(const Properties& node, bool holdsOther, Warnings& warnings) {
   const std::string name = "the integrator '" + type + "' ";
   // "" if the file leaves it to a variable that has no value.
   if (type.empty() || type == "path" || type == "odis") return;
-  if (isIn(kPathIntegrators, type) || isIn(kDirectIntegrators, type)) {
-    warnings.add(node.location, name + "finds the picture that this program's integrator finds as well",
-                 Effect::same);
+  if (isIn(kPathIntegrators, type)) {
+    warnings.add(node.location, name + "is replaced by this program's, which shows the same", Effect::same);
+  } else if (isIn(kDirectIntegrators, type)) {
+    warnings.add(node.location, name + "is replaced by this program's with paths of depth 2", Effect::same);
   } else if (isIn(kWrappingIntegrators, type) && holdsOther) {
     warnings.add(node.location, name + "is left out, the picture is that of the integrator in it",
                  Effect::same);
   } else {
     std::vector<std::string> known = kPathIntegrators;
-    for (const auto& list : {kDirectIntegrators, kWrappingIntegrators})
+    for (const auto& list : {kDirectIntegrators, kWrappingIntegrators, kOtherIntegrators})
       known.insert(known.end(), list.begin(), list.end());
-    warnings.add(node.location,
-                 name + "is unknown" + suggestion(type, known) + ", the radiance that paths bring is shown");
+    const std::string fault = isIn(kWrappingIntegrators, type) ? "holds no other"
+                              : isIn(kOtherIntegrators, type)  ? "shows something else than radiance"
+                                                               : "is unknown" + suggestion(type, known);
+    warnings.add(node.location, name + fault + ", the radiance that paths bring is shown");
   }
 }
 
