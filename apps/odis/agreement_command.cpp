@@ -13,6 +13,7 @@
 #include "output.h"
 #include "render/film/filter.h"
 #include "render/image/write.h"
+#include "scene_warnings.h"
 #include "validators.h"
 
 namespace odis::app {
@@ -33,6 +34,7 @@ eval::Estimate renderEstimate(const AgreementArguments& a, const Outputs& output
   load.resolution = render::Vec2i(width, height);
   render::Warnings warnings;
   const std::unique_ptr<render::Scene> scene = render::Scene::load(a.scene, load, warnings);
+  tellWarnings(a.scene, warnings, {.quiet = a.quiet});
   outputs.rejectInputs(scene->files());
   render::FilmSettings film = scene->film();
   film.filter = render::makeBoxFilter();
@@ -135,7 +137,7 @@ Command addAgreementCommand(CLI::App& parent) {
       ->check(within(kThreadCount))
       ->capture_default_str();
   app->add_flag("--json", a->json, "Print JSON");
-  app->add_flag("-q,--quiet", a->quiet, "No progress");
+  app->add_flag("-q,--quiet", a->quiet, "No progress, of warnings only those of a picture that changes");
   return {app, [a] { return runAgreement(*a); }};
 }
 

@@ -11,6 +11,7 @@
 #include "console.h"
 #include "eval/analysis_text.h"
 #include "output.h"
+#include "scene_warnings.h"
 #include "validators.h"
 
 namespace odis::app {
@@ -44,8 +45,7 @@ static int runAnalyze(AnalyzeArguments& a) {
     progress.setTitle(eval::sceneName(path));
     render::Warnings warnings;
     eval::SceneAnalysis scene = eval::analyzeScene(settings, path, warnings, progress);
-    for (const std::string& text : warnings.texts())
-      if (!a.quiet) say(fmt::format("warning: {}\n", text));
+    tellWarnings(path, warnings, {.quiet = a.quiet, .strict = a.part.strict});
     if (InterruptScope::interrupted()) break;
     if (!a.json) fmt::print("{}\n", eval::analysisTable(scene, settings.methods));
     std::fflush(stdout);
@@ -100,7 +100,7 @@ Command addAnalyzeCommand(CLI::App& parent) {
       ->capture_default_str();
   app->add_option("-o,--output", a->output, "JSON file to write as well");
   app->add_flag("--json", a->json, "Print JSON");
-  app->add_flag("-q,--quiet", a->quiet, "No progress");
+  app->add_flag("-q,--quiet", a->quiet, "No progress, of warnings only those of a picture that changes");
   a->part.addTo(*app);
   return {app, [a] { return runAnalyze(*a); }};
 }

@@ -10,6 +10,7 @@
 #include "console.h"
 #include "eval/benchmark.h"
 #include "eval/compare.h"
+#include "scene_warnings.h"
 #include "validators.h"
 
 namespace odis::app {
@@ -72,6 +73,7 @@ static int runBench(BenchArguments& a) {
     render::LoadOptions load;
     load.pixels = a.pixels;
     const std::unique_ptr<render::Scene> scene = render::Scene::load(path, load, warnings);
+    tellWarnings(path, warnings, {.quiet = a.quiet});
     row.secondsLoad = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     row.result = eval::benchmark(*scene, a.settings, progress);
     if (InterruptScope::interrupted()) return kInterrupted;
@@ -116,7 +118,7 @@ Command addBenchCommand(CLI::App& parent) {
       ->check(within(kThreadCount))
       ->capture_default_str();
   app->add_flag("--json", a->json, "Print JSON");
-  app->add_flag("-q,--quiet", a->quiet, "No progress");
+  app->add_flag("-q,--quiet", a->quiet, "No progress, of warnings only those of a picture that changes");
   return {app, [a] { return runBench(*a); }};
 }
 

@@ -41,7 +41,7 @@ void CompareArguments::addTo(CLI::App& app) {
       ->capture_default_str();
   app.add_flag("--fresh", settings.fresh, "Forget earlier results; references are kept");
   app.add_option("--threads", threads, "0: one a core")->check(within(kThreadCount))->capture_default_str();
-  app.add_flag("-q,--quiet", quiet, "Print the tables only");
+  app.add_flag("-q,--quiet", quiet, "Print the tables, and what changes a scene's picture, only");
   part.addTo(app);
 }
 

@@ -20,6 +20,7 @@
 #include "eval/summary.h"
 #include "output.h"
 #include "render/files/replace_file.h"
+#include "scene_warnings.h"
 
 namespace odis::app {
 
@@ -28,8 +29,11 @@ namespace {
 // A bar for each rendering if stderr is a terminal, otherwise a line.
 class ConsoleObserver : public eval::CompareObserver {
  public:
-  explicit ConsoleObserver(bool quiet)
-      : m_quiet(quiet), m_terminal(isatty(STDERR_FILENO) == 1), m_progress(quiet || !m_terminal) {}
+  ConsoleObserver(bool quiet, bool strict)
+      : m_quiet(quiet),
+        m_strict(strict),
+        m_terminal(isatty(STDERR_FILENO) == 1),
+        m_progress(quiet || !m_terminal) {}
 
   void start(const std::string& what, const eval::Outlook& outlook) override {
     std::string title = fmt::format("[{}/{}", outlook.done + 1, outlook.total);
@@ -38,14 +42,13 @@ class ConsoleObserver : public eval::CompareObserver {
     m_progress.setTitle(title);
     if (!m_quiet && !m_terminal) say(title + "\n");
   }
-  void warnings(const render::Warnings& warnings) override {
-    for (const std::string& text : warnings.texts())
-      if (!m_quiet) say(fmt::format("warning: {}\n", text));
+  void warnings(const std::string& scene, const render::Warnings& warnings) override {
+    tellWarnings(scene, warnings, {.quiet = m_quiet, .strict = m_strict});
   }
   render::Progress& progress() override { return m_progress; }
 
  private:
-  bool m_quiet, m_terminal;
+  bool m_quiet, m_strict, m_terminal;
   ConsoleProgress m_progress;
 };
 
@@ -87,7 +90,7 @@ static int runCompare(CompareArguments& a) {
   prepareFolder(settings);
 
   const InterruptScope interruptible;
-  ConsoleObserver observer(a.quiet);
+  ConsoleObserver observer(a.quiet, a.part.strict);
   const eval::Comparison comparison = eval::compare(settings, observer);
   if (comparison.measurements.empty()) {
     say("interrupted before there was a result; nothing is written\n");

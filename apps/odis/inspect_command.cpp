@@ -14,6 +14,7 @@
 #include "output.h"
 #include "render/image/limits.h"
 #include "render_arguments.h"
+#include "scene_warnings.h"
 #include "validators.h"
 
 namespace odis::app {
@@ -94,8 +95,7 @@ int runInspect(InspectArguments& a) {
   Warnings warnings;
   const std::unique_ptr<Scene> scene = Scene::load(a.file, a.part.loadOptions(), warnings);
   outputs.rejectInputs(scene->files());
-  if (!a.quiet)
-    for (const std::string& text : warnings.texts()) say(fmt::format("warning: {}\n", text));
+  tellWarnings(a.file, warnings, {.quiet = a.quiet, .strict = a.part.strict});
   const IntegratorSettings& asked = scene->integrator();
   options.spp = a.spp.value_or(asked.samplesPerPixel > 0 ? asked.samplesPerPixel : options.spp);
   options.maxDepth = a.maxDepth.value_or(asked.maxDepth);

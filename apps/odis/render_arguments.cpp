@@ -62,6 +62,8 @@ void SceneArguments::addTo(CLI::App& app) {
       ->group(group);
   app.add_option("--crop", crop, "Part of the image to render: x,y,width,height, each 0 to 65536")
       ->group(group);
+  app.add_flag("--strict", strict, "What would be a warning, as it changes the picture, is an error")
+      ->group(group);
 }
 
 LoadOptions SceneArguments::loadOptions() const {
@@ -105,8 +107,8 @@ void RenderArguments::addTo(CLI::App& app) {
   app.add_option("--records", recordsFile, "Write the pilot's vertices as a NumPy array, .npy");
   app.add_option("--tev", tev, "Show the image in tev, at host:port");
   app.add_option("--replay", replay, "x,y,sample: print that one path instead of rendering");
-  app.add_flag("-q,--quiet", quiet, "Print errors only");
-  app.add_flag("-v,--verbose", verbose, "Say what is done");
+  app.add_flag("-q,--quiet", quiet, "Print errors and what changes the picture only");
+  app.add_flag("-v,--verbose", verbose, "Say what is done, and what in the scene has no effect");
   method.addTo(app);
   part.addTo(app);
 }

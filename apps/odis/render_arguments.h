@@ -27,6 +27,7 @@ struct MethodArguments {
 struct SceneArguments {
   std::vector<std::string> defines;
   std::string resolution, crop;
+  bool strict = false;  // whether what changes the picture is an error
 
   void addTo(CLI::App& app);
   // Throws UsageError.

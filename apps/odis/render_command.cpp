@@ -15,6 +15,7 @@
 #include "render/image/tev.h"
 #include "render_arguments.h"
 #include "saved_rendering.h"
+#include "scene_warnings.h"
 #include "stats.h"
 
 namespace odis::app {
@@ -113,8 +114,7 @@ static int runRender(RenderArguments& a) {
   outputs.rejectInputs(scene->files());
   RunStats stats;
   stats.secondsLoad = secondsSince(start);
-  if (!a.quiet)
-    for (const std::string& text : warnings.texts()) say(fmt::format("warning: {}\n", text));
+  tellWarnings(a.scene, warnings, {a.quiet, a.verbose, a.part.strict});
   const RenderOptions options = renderOptions(a, *scene, layers);
   if (!a.replay.empty()) return printReplay(a, *scene, options);
   if (a.verbose)

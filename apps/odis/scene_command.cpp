@@ -7,6 +7,7 @@
 #include "command.h"
 #include "render/scene/info.h"
 #include "render_arguments.h"
+#include "scene_warnings.h"
 
 namespace odis::app {
 
@@ -25,6 +26,8 @@ Command addSceneCommand(CLI::App& parent) {
             render::Warnings warnings;
             const auto scene = render::Scene::load(arguments->scene, arguments->part.loadOptions(), warnings);
             fmt::print("{}", render::describe(*scene, warnings));
+            if (arguments->part.strict)
+              tellWarnings(arguments->scene, warnings, {.quiet = true, .strict = true});
             return int(kOk);
           }};
 }

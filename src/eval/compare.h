@@ -60,7 +60,7 @@ class CompareObserver {
  public:
   virtual ~CompareObserver() = default;
   virtual void start(const std::string& what, const Outlook& outlook) = 0;
-  virtual void warnings(const render::Warnings& warnings) = 0;
+  virtual void warnings(const std::string& scene, const render::Warnings& warnings) = 0;
   virtual render::Progress& progress() = 0;
 };
 

@@ -21,7 +21,7 @@ SceneRun::SceneRun(const CompareSettings& settings, const std::string& path, Res
   observer.start(m_record.name, schedule.outlook());
   Warnings warnings;
   m_scene = Scene::load(path, settings.load, warnings);
-  observer.warnings(warnings);
+  observer.warnings(path, warnings);
   m_record.hash = hashScene(path, settings.load.defines);
   m_record.width = m_scene->film().crop.width;
   m_record.height = m_scene->film().crop.height;

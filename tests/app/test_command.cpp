@@ -54,6 +54,44 @@ TEST_F(Odis, WrongUsageIsTwo) {
   expectFailure("compare room.xml -o out --methods a= --equal-time", 2, "there is only one");
 }
 
+// What of a scene changes the picture, is another way to the same, or changes nothing.
+TEST_F(Odis, SaysWhatChangesThePicture) {
+  write("words.xml", R"(<scene version="3.0.0">
+  <integrator type="volpath"/>
+  <sensor type="perspective"><float name="focus_distance" value="3"/>
+    <film type="hdrfilm"><integer name="width" value="4"/><integer name="height" value="4"/></film>
+  </sensor>
+  <shape type="sphere"><bsdf type="velvet"/></shape>
+  <shape type="hair"/>
+  <emitter type="constant"/>
+</scene>)");
+  const std::string command = "render words.xml --spp 1 ";
+  const std::string difference = "warning: words.xml:6:24: the bsdf 'velvet' is unknown",
+                    sum = "words.xml: 2 differences change the picture\n", note = "note: words.xml:2:3: ",
+                    hint = "note: words.xml:3:30: 'focus_distance' of the sensor 'perspective' has no effect";
+  const struct {
+    const char* option;
+    bool note, hint;
+  } cases[] = {{"", true, false}, {"-q", false, false}, {"-v", true, true}};
+  for (const auto& c : cases) {
+    const Outcome outcome = run(command + c.option);
+    const auto says = [&](const std::string& text) { return outcome.text.find(text) != std::string::npos; };
+    EXPECT_EQ(outcome.code, 0) << outcome.text;
+    EXPECT_TRUE(says(difference) && says(sum)) << c.option << outcome.text;
+    EXPECT_EQ(says(note), c.note) << c.option << outcome.text;
+    EXPECT_EQ(says(hint), c.hint) << c.option << outcome.text;
+  }
+  for (const std::string strict : {"render words.xml -q", "scene info words.xml",
+                                   "compare words.xml -o out -q", "analyze words.xml -q"}) {
+    const Outcome outcome = run(strict + " --strict");
+    EXPECT_EQ(outcome.code, 3) << strict;
+    EXPECT_NE(outcome.text.find("error: words.xml:6:24: the bsdf 'velvet'"), std::string::npos)
+        << outcome.text;
+    EXPECT_NE(outcome.text.find("error: " + sum), std::string::npos) << outcome.text;
+  }
+  EXPECT_EQ(run("render room.xml -q --spp 1 --strict").text, "");
+}
+
 TEST_F(Odis, BadSceneIsThreeAndLeavesNothing) {
   write("broken.xml", "<scene version=\"3.0.0\">\n  <shape type=\"sphere\">\n</scene>");
   write("number.xml",

@@ -4,7 +4,9 @@
 #include "render/emitter/area.h"
 #include "render/emitter/directional.h"
 #include "render/emitter/point.h"
+#include "render/emitter/projector.h"
 #include "render/emitter/spot.h"
+#include "render/sensor/perspective.h"
 #include "render/shape/shape.h"
 #include "support/chi2.h"
 
@@ -170,7 +172,7 @@ TEST(DirectionalLight, IsTheSameEverywhere) {
 // Full to 20 degrees, none from 30 on, half in the middle of the ring, at a distance of 2.
 TEST(SpotLight, FallsOffLinearlyInAngle) {
   constexpr float kDegree = kPi / 180;
-  const SpotLight light({0, 0, 0}, {0, 0, 1}, Rgb(4, 4, 4), 30 * kDegree, 20 * kDegree);
+  const SpotLight light(Matrix4(), Rgb(4, 4, 4), {30 * kDegree, 20 * kDegree, nullptr});
   const auto irradiance = [&](float degrees) {
     const EmitterSample s =
         light.sample(0, {2 * std::sin(degrees * kDegree), 0, 2 * std::cos(degrees * kDegree)}, {0, 0});
@@ -185,8 +187,71 @@ TEST(SpotLight, FallsOffLinearlyInAngle) {
   EXPECT_EQ(irradiance(179), 0);
 }
 
+// The cone of 40 degrees touches the sides of the texture's unit square: what Mitsuba 3.9 looks up.
+TEST(SpotLight, ShinesThroughItsTexture) {
+  constexpr float kDegree = kPi / 180;
+  Matrix4 toWorld;
+  toWorld[3][0] = 7;
+  const SpotLight light(toWorld, Rgb(2, 2, 2), {40 * kDegree, 40 * kDegree, std::make_shared<Pattern>()});
+  for (const Vec2& p : {Vec2(0.1f, -0.2f), Vec2(-0.3f, -0.1f), Vec2(0.1f, 0.2f), Vec2(-0.5f, -0.4f)}) {
+    const Vec3 place = Vec3(p.x, p.y, 1) * 3.0f;
+    const Rgb found = light.sample(0, place + Vec3(7, 0, 0), {0, 0}).radiance * lengthSquared(place);
+    const Vec2 uv(0.5f + p.x / (2 * std::tan(40 * kDegree)), 0.5f + p.y / (2 * std::tan(40 * kDegree)));
+    const Rgb expected = Pattern().rgb(uv) * 2.0f;
+    for (int c = 0; c < 3; ++c) EXPECT_NEAR(found[c], expected[c], 1e-4f) << p.x << ", " << p.y;
+  }
+}
+
+// A camera in the projector's place would see the image as it is; a plane at distance one receives pi times
+// its values (Mitsuba 3.9).
+TEST(Projector, ThrowsWhatACameraWouldSee) {
+  const Vec2i size(200, 100);
+  Matrix4 toWorld;  // looks along +x, from (5, 0, 2)
+  toWorld = Matrix4(0, -1, 0, 0, 0, 0, 1, 0, 1, 0, 0, 0, 5, 0, 2, 1);
+  const double fov = 1;
+  const float halfWidth = float(std::tan(fov / 2));
+  const Projector light(toWorld, std::make_shared<Pattern>(), {halfWidth, halfWidth / 2, 3});
+  const Perspective camera(toWorld, Projection(fov, size));
+  for (const Vec2& uv : {Vec2(0.1f, 0.2f), Vec2(0.9f, 0.3f), Vec2(0.5f, 0.49f), Vec2(0.3f, 0.8f)}) {
+    const Ray ray = camera.ray({uv.x * float(size.x), uv.y * float(size.y)}, {});
+    const Vec3 place = ray.origin + ray.direction * 4.0f;
+    const EmitterSample sample = light.sample(0, place, {0, 0});
+    EXPECT_TRUE(sample.delta);
+    EXPECT_NEAR(dot(sample.wi, ray.direction), -1, 1e-6f);
+    const float cosine = ray.direction.x;
+    const Rgb expected = Pattern().rgb(uv) * (3 * kPi / (16 * cosine * cosine * cosine));
+    for (int c = 0; c < 3; ++c)
+      EXPECT_NEAR(sample.radiance[c], expected[c], 1e-4f * (1 + expected[c])) << uv.x << ", " << uv.y;
+  }
+  for (const Vec2& uv : {Vec2(-0.01f, 0.2f), Vec2(1.01f, 0.2f), Vec2(0.5f, -0.01f)}) {
+    const Ray ray = camera.ray({uv.x * float(size.x), uv.y * float(size.y)}, {});
+    EXPECT_EQ(light.sample(0, ray.origin + ray.direction, {0, 0}).pdf, 0);
+    EXPECT_EQ(light.sample(0, ray.origin - ray.direction, {0, 0}).pdf, 0);
+  }
+}
+
+// What the image brings to a plane of any distance is pi times its mean times its area at distance one.
+TEST(Projector, GivesItsEnergyToAPlaneAtAnyDistance) {
+  const Projector light(Matrix4(), std::make_shared<Pattern>(), {0.6f, 0.4f, 2});
+  for (const float distance : {1.0f, 5.0f}) {
+    Rgb sum(0, 0, 0);
+    constexpr int kSteps = 200;
+    for (int i = 0; i < kSteps; ++i)
+      for (int j = 0; j < kSteps; ++j) {
+        const Vec3 place = Vec3((2 * (float(i) + 0.5f) / kSteps - 1) * 0.6f,
+                                (2 * (float(j) + 0.5f) / kSteps - 1) * 0.4f, 1) *
+                           distance;
+        const EmitterSample sample = light.sample(0, place, {0, 0});
+        sum += sample.radiance * -sample.wi.z;
+      }
+    const Rgb power = sum * (1.2f * 0.8f * sqr(distance) / (kSteps * kSteps));
+    for (int c = 0; c < 3; ++c)
+      EXPECT_NEAR(power[c], 2 * kPi * Pattern().mean()[c] * 1.2f * 0.8f, 1e-3f) << distance;
+  }
+}
+
 TEST(SpotLight, ABeamAsWideAsTheConeHasASharpRim) {
-  const SpotLight light({0, 0, 0}, {0, 0, 1}, Rgb(1, 1, 1), 0.5f, 0.5f);
+  const SpotLight light(Matrix4(), Rgb(1, 1, 1), {0.5f, 0.5f, nullptr});
   EXPECT_NEAR(light.sample(0, {std::sin(0.499f), 0, std::cos(0.499f)}, {0, 0}).radiance.x, 1, 1e-5f);
   EXPECT_EQ(light.sample(0, {std::sin(0.501f), 0, std::cos(0.501f)}, {0, 0}).pdf, 0);
 }

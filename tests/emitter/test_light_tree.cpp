@@ -7,6 +7,7 @@
 #include "render/emitter/directional.h"
 #include "render/emitter/light_sampler.h"
 #include "render/emitter/point.h"
+#include "render/emitter/projector.h"
 #include "render/emitter/spot.h"
 #include "render/math/warp.h"
 #include "render/shape/mesh.h"
@@ -112,10 +113,12 @@ TEST(LightTree, EveryLightThatShinesCanBeDrawn) {
   const Sphere ball({1, 2, 3}, 2, {Vec3d(1, 0, 0), Vec3d(0, 1, 0), Vec3d(0, 0, 1)}, false);
   AreaLight round(ball, uniform(0.01f));
   PointLight point({0, -1, 2}, Rgb(1e-4f, 0, 0));
-  SpotLight narrow({-3, 0, 0}, {1, 0, 0}, Rgb(1, 1, 1), 0.4f, 0.1f),
-      wide({3, 0, 0}, {0, 1, 0}, Rgb(1, 1, 1), 2.5f, 0);
+  SpotLight narrow(Matrix4(0, 1, 0, 0, 0, 0, 1, 0, 1, 0, 0, 0, -3, 0, 0, 1), Rgb(1, 1, 1),
+                   {0.4f, 0.1f, nullptr}),
+      wide(Matrix4(0, 0, 1, 0, 1, 0, 0, 0, 0, 1, 0, 0, 3, 0, 0, 1), Rgb(1, 1, 1), {2.5f, 0, nullptr});
+  Projector image(Matrix4(0, 0, 1, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, -2, 0, 1), uniform(1), {0.7f, 0.4f, 1});
   ConstantEnvironment sky(Rgb(1e-3f, 0, 0));
-  const auto emitters = indexed({&area, &round, &point, &narrow, &wide, &sky});
+  const auto emitters = indexed({&area, &round, &point, &narrow, &wide, &image, &sky});
   const LightSampler sampler(emitters);
   int shining = 0, excluded = 0;
   for (int i = 0; i < 400; ++i) {

@@ -23,7 +23,9 @@ std::vector<Case> cases() {
           {"gaussian", [] { return makeGaussianFilter(0.3f); }},
           {"mitchell", [] { return makeMitchellFilter(); }},
           {"mitchell", [] { return makeMitchellFilter(1.0f, 0.0f); }},
-          {"catmullrom", [] { return makeMitchellFilter(0.0f, 0.5f); }}};
+          {"catmullrom", [] { return makeMitchellFilter(0.0f, 0.5f); }},
+          {"lanczos", [] { return makeLanczosFilter(); }},
+          {"lanczos", [] { return makeLanczosFilter(2); }}};
 }
 
 // Midpoint quadrature of value(x, y) g(x, y) over the support.
@@ -45,6 +47,7 @@ TEST(Filter, NamesAndRadii) {
   EXPECT_FLOAT_EQ(makeTentFilter()->radius(), 1.0f);
   EXPECT_FLOAT_EQ(makeGaussianFilter()->radius(), 2.0f);
   EXPECT_FLOAT_EQ(makeMitchellFilter()->radius(), 2.0f);
+  EXPECT_FLOAT_EQ(makeLanczosFilter()->radius(), 3.0f);
 }
 
 TEST(Filter, IntegratesToOneAndEndsAtItsRadius) {

@@ -85,6 +85,57 @@ TEST_P(AnalyticTest, SphereLightOverAFloor) {
   expectMean(test::renderScene(*scene, options(256)), 0.5 * 10 * 0.25 / 9, 0.01);
 }
 
+TEST_P(AnalyticTest, HiddenEmitters) {
+  const std::string hide =
+      "<integrator type=\"path\"><boolean name=\"hide_emitters\" value=\"true\"/></integrator>";
+  // The floor under the sphere as above, seen through the sphere.
+  const auto floor = test::loadScene(
+      hide + test::sensor("origin=\"0,5,0.001\" target=\"0,0,0\" up=\"0,0,1\"", 0.2f, 4, 4) +
+      "<shape type=\"rectangle\"><transform name=\"to_world\"><scale value=\"10\"/><rotate x=\"1\" "
+      "angle=\"-90\"/></transform>"
+      "<bsdf type=\"diffuse\"><rgb name=\"reflectance\" value=\"0.5\"/></bsdf></shape>"
+      "<shape type=\"sphere\"><point name=\"center\" x=\"0\" y=\"3\" z=\"0\"/><float name=\"radius\" "
+      "value=\"0.5\"/><bsdf type=\"diffuse\"><rgb name=\"reflectance\" value=\"0\"/></bsdf>"
+      "<emitter type=\"area\"><rgb name=\"radiance\" value=\"10\"/></emitter></shape>");
+  expectMean(test::renderScene(*floor, options(256)), 0.5 * 10 * 0.25 / 9, 0.01);
+  // A white veil of opacity 1/4 shows a quarter of the sky's radiance; the rest would be the sky itself.
+  const auto veil = test::loadScene(
+      hide + test::sensor("origin=\"0,0,1\" target=\"0,0,0\" up=\"0,1,0\"", 40, 8, 8) +
+      "<shape type=\"rectangle\"><bsdf type=\"mask\"><float name=\"opacity\" value=\"0.25\"/><bsdf "
+      "type=\"diffuse\"><rgb name=\"reflectance\" value=\"1\"/></bsdf></bsdf></shape>"
+      "<emitter type=\"constant\"><rgb name=\"radiance\" value=\"1\"/></emitter>");
+  expectMean(test::renderScene(*veil, options(1024)), 0.25, 0.02);
+}
+
+TEST_P(AnalyticTest, IrradianceOfShapes) {
+  const std::string meter =
+      "<sensor type=\"irradiancemeter\"><film type=\"hdrfilm\"><integer name=\"width\" "
+      "value=\"4\"/><integer name=\"height\" value=\"4\"/><rfilter type=\"box\"/></film>"
+      "</sensor></shape>";
+  // A sphere of radiance L and radius r at distance d fills 2 pi (1 - cos) sr, sin = r / d = 1/2, and gives
+  // a surface that faces it pi L sin^2. Small things of other shapes have means that their cosines say: a
+  // sphere 1/4.
+  const double facing = kPi * 0.25, solidAngle = 2 * kPi * (1 - std::sqrt(0.75));
+  const std::string lamp =
+      "<shape type=\"sphere\"><point name=\"center\" x=\"0\" y=\"0\" z=\"10\"/><float name=\"radius\" "
+      "value=\"5\"/><emitter type=\"area\"><rgb name=\"radiance\" value=\"1\"/></emitter></shape>";
+  const std::string small =
+      "<transform name=\"to_world\"><scale value=\"0.01\"/></transform><bsdf type=\"diffuse\"/>";
+  const std::pair<const char*, double> shapes[] = {
+      {"rectangle", facing}, {"disk", facing}, {"sphere", solidAngle / 4}};
+  for (const auto& [shape, expected] : shapes)
+    expectMean(test::renderScene(
+                   *test::loadScene("<shape type=\"" + std::string(shape) + "\">" + small + meter + lamp),
+                   options(8192)),
+               expected, 0.04);
+  // Whatever is convex receives pi times the radiance of a constant sky.
+  for (const char* shape : {"cube", "cylinder", "sphere"})
+    expectMean(test::renderScene(*test::loadScene("<shape type=\"" + std::string(shape) + "\">" + small +
+                                                  meter + "<emitter type=\"constant\"/>"),
+                                 options(512)),
+               kPi, 0.02);
+}
+
 INSTANTIATE_TEST_SUITE_P(Integrators, AnalyticTest,
                          ::testing::Values(Kind{"path", IntegratorKind::path, GuideKind::histogram, 0},
                                            Kind{"odis", IntegratorKind::odis, GuideKind::histogram, 0},

@@ -103,10 +103,28 @@ struct OpenRoom {
   static constexpr int kMaxDepth = 4;
 };
 
+// The lamp room with lights that throw images.
+struct ImageRoom {
+  static std::string text() {
+    const std::string checkered =
+        " type=\"checkerboard\"><rgb name=\"color0\" value=\"3 2 1\"/><rgb "
+        "name=\"color1\" value=\"0.2 0.5 0\"/></texture>";
+    return lampRoom(16) +
+           "<emitter type=\"projector\"><float name=\"fov\" value=\"60\"/><transform "
+           "name=\"to_world\"><lookat "
+           "origin=\"-0.5,1.5,2\" target=\"0,0,0\" up=\"0,1,0\"/></transform><texture name=\"irradiance\"" +
+           checkered +
+           "</emitter><emitter type=\"spot\"><transform name=\"to_world\"><lookat origin=\"1,1.5,1\" "
+           "target=\"0,0,0\" up=\"0,1,0\"/></transform><texture name=\"texture\"" +
+           checkered + "</emitter>";
+  }
+  static constexpr int kMaxDepth = 5;
+};
+
 template <class Scene>
 class UnbiasedLights : public test::AgainstPath<Scene> {
  protected:
-  static constexpr int kTests = 7;
+  static constexpr int kTests = 8;
   static RenderOptions guidedOptions() {
     RenderOptions options = test::AgainstPath<Scene>::guidedOptions();
     options.guideOptions.cellsPerDiagonal = 3;  // so that the few samples are enough to be believed
@@ -131,6 +149,7 @@ class UnbiasedLights : public test::AgainstPath<Scene> {
 };
 using UnbiasedLightsTest = UnbiasedLights<LampRoom>;
 using UnbiasedRegionsTest = UnbiasedLights<OpenRoom>;
+using UnbiasedImagesTest = UnbiasedLights<ImageRoom>;
 
 TEST_F(UnbiasedLightsTest, Learned) {
   expectLearnedUnbiased();
@@ -150,6 +169,10 @@ TEST_F(UnbiasedLightsTest, Stubborn) {
 
 TEST_F(UnbiasedLightsTest, Adversarial) {
   expectAdversarialUnbiased();
+}
+
+TEST_F(UnbiasedImagesTest, Learned) {
+  expectLearnedUnbiased();
 }
 
 TEST_F(UnbiasedRegionsTest, Learned) {

@@ -38,9 +38,9 @@ inline std::vector<ElementType> allElementTypes() {
   all.push_back({"emitter", "area"});
   for (const std::string& type : render::emitterTypes()) all.push_back({"emitter", type});
   for (const std::string& type : render::shapeTypes()) all.push_back({"shape", type});
-  for (const char* type : {"perspective", "thinlens"}) all.push_back({"sensor", type});
+  for (const std::string& type : render::sensorTypes()) all.push_back({"sensor", type});
   all.push_back({"film", "hdrfilm"});
-  for (const char* type : {"box", "catmullrom", "gaussian", "mitchell", "tent"})
+  for (const char* type : {"box", "catmullrom", "gaussian", "lanczos", "mitchell", "tent"})
     all.push_back({"rfilter", type});
   all.push_back({"sampler", "independent"});
   all.push_back({"integrator", "path"});
@@ -58,6 +58,7 @@ inline std::vector<ElementType> allElementTypes() {
   const auto find = [&](const std::string& type) -> ElementType& {
     return *std::find_if(all.begin(), all.end(), [&](const ElementType& e) { return e.type == type; });
   };
+  find("mesh_attribute").parameters["name"] = "<string name='name' value='vertex_color'/>";
   find("blendbsdf").parameters["weight"] = "<float name='weight' value='0.5'/>";
   // The default would be a table that takes a while.
   for (const char* type : {"sky", "sunsky"})

@@ -40,6 +40,9 @@ TEST(Errors, SayWhereWhatAndWhatWasExpected) {
        "test.xml:3:2: found the unknown element <shpe> (did you mean 'shape'?), expected an element of "
        "Mitsuba's scene "
        "format"},
+      {"<emiter type='point'><rgb name='intensity' value='1'/></emiter>",
+       "test.xml:2:1: found the unknown element <emiter> (did you mean 'emitter'?), expected an element of "
+       "Mitsuba's scene format"},
       {"<shape/>",
        "test.xml:2:1: <shape> has no attribute 'type', found no attributes, expected type=\"...\""},
       {"<shape type='sphere' size='2'/>",
@@ -81,9 +84,9 @@ TEST(Errors, SayWhereWhatAndWhatWasExpected) {
       {"<bsdf type='x'>\n stray words</bsdf>",
        "test.xml:3:2: found the text 'stray', expected elements only"},
       {"<include filename='none.xml'/>",
-       "test.xml:2:1: there is no file 'none.xml', expected one relative to the folder of this file"},
+       "test.xml:2:1: there is no file 'none.xml', expected one relative to '.'"},
       {"<path value='no such folder'/>",
-       "test.xml:2:1: found the path 'no such folder', expected a folder that exists"},
+       "test.xml:2:1: there is no folder 'no such folder', expected one relative to '.'"},
       {"<float name='a' value='1'><float name='b' value='1'/></float>",
        "test.xml:2:1: found something inside <float>, expected an empty element <float .../>"}};
   for (const auto& [body, expected] : cases) EXPECT_EQ(errorIn(body), expected) << body;

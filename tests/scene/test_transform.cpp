@@ -33,7 +33,27 @@ TEST(Transform, RotatesCounterclockwise) {
   expectPoint("<rotate x='1' angle='90'/>", {0, 1, 0}, {0, 0, 1});
   expectPoint("<rotate y='1' angle='90'/>", {0, 0, 1}, {1, 0, 0});
   // A third of a turn about the diagonal takes x to y, y to z and z to x.
-  expectPoint("<rotate value='2 2 2' angle='120'/>", {1, 2, 3}, {3, 1, 2});
+  expectPoint("<rotate value='0.57735027 0.57735027 0.57735027' angle='120'/>", {1, 2, 3}, {3, 1, 2});
+}
+
+TEST(Transform, StretchesAboutAnAxisOfAnotherLengthAsMitsuba3DoesButNotBefore) {
+  const std::string shape =
+      "<shape type='sphere'><transform name='toWorld'><rotate x='2' y='2' angle='90'/></transform></shape>";
+  const auto turned = [&](const std::string& version, render::Warnings& warnings) {
+    const auto root = parse("<scene version='" + version + "'>" + shape + "</scene>", {}, &warnings);
+    return render::transformPoint(root->children.at(0).node->transform("to_world"), {1, 0, 0});
+  };
+  render::Warnings warnings, none;
+  // The columns of the matrix that Mitsuba 3.9 makes of it.
+  const Vec3 stretched = turned("3.0.0", warnings), rotated = turned("0.6.0", none);
+  const float root2 = std::sqrt(2.0f);
+  for (int i = 0; i < 3; ++i) {
+    EXPECT_NEAR(stretched[i], Vec3(4, 4, -2)[i], 1e-5f);
+    EXPECT_NEAR(rotated[i], Vec3(0.5f, 0.5f, -1 / root2)[i], 1e-5f);
+  }
+  ASSERT_EQ(warnings.texts(render::Effect::same).size(), 1u);
+  EXPECT_NE(warnings.texts(render::Effect::same)[0].find("stretches"), std::string::npos);
+  EXPECT_TRUE(none.texts(render::Effect::same).empty());
 }
 
 TEST(Transform, ReadsMatricesOfColumnVectors) {

@@ -89,7 +89,8 @@ TEST(Perspective, StandsAndMirrorsInTheWorld) {
   set(node, "to_world", toWorld);
   Warnings warnings;
   const Ray ray = makeSensor(node, kWide, warnings)->ray({0, 0}, {});
-  EXPECT_EQ(ray.origin, Vec3(0, 7, 0));
+  // Half a diagonal of the film away from its middle, at the near plane.
+  expectNear(ray.origin, {-0.01f, 7 + 0.005f, 0.01f}, "near plane");
   expectNear(atDepthOne(ray), {-1, 0.5f, 1}, "mirrored");
   EXPECT_TRUE(warnings.texts().empty());
 }
@@ -107,6 +108,48 @@ TEST(Perspective, LeavesOutScaleWithAWarning) {
   EXPECT_EQ(warnings.texts()[0].rfind("test.xml:4:7: ", 0), 0u);
 }
 
+TEST(Perspective, SeesWhatLiesBetweenItsPlanes) {
+  Properties node = camera();
+  set(node, "fov", 90.0);
+  set(node, "near_clip", 2.0);
+  set(node, "far_clip", 5.0);
+  Warnings warnings;
+  const Ray ray = makeSensor(node, kWide, warnings)->ray({0, 0}, {});
+  expectNear(ray.origin, {2, 1, 2}, "near plane");
+  expectNear(ray.origin + ray.direction * ray.tMax, {5, 2.5f, 5}, "far plane");
+}
+
+// What Mitsuba 3.9 makes of these sensors and places.
+TEST(Orthographic, IsThatOfMitsuba) {
+  Properties node = camera("orthographic");
+  Warnings warnings;
+  Ray ray = makeSensor(node, kWide, warnings)->ray({0, 0}, {});
+  expectNear(ray.origin, {1, 0.5f, 0.01f}, "corner");
+  expectNear(ray.direction, {0, 0, 1}, "direction");
+  EXPECT_FLOAT_EQ(ray.tMax, 9999.99f);
+  expectNear(makeSensor(node, kTall, warnings)->ray({100, 200}, {}).origin, {-1, -2, 0.01f}, "tall");
+  Matrix4 toWorld;
+  for (int i = 0; i < 3; ++i) toWorld[i][i] = std::array{3.0f, 2.0f, 5.0f}[size_t(i)];
+  set(node, "to_world", toWorld);
+  set(node, "near_clip", 1.0);
+  set(node, "far_clip", 7.0);
+  ray = makeSensor(node, kWide, warnings)->ray({0, 0}, {});
+  expectNear(ray.origin, {3, 1, 5}, "scaled");
+  expectNear(ray.direction, {0, 0, 1}, "direction");
+  EXPECT_FLOAT_EQ(ray.tMax, 6);
+  EXPECT_TRUE(warnings.texts().empty());
+}
+
+TEST(RadianceMeter, LooksAlongItsDirection) {
+  Properties node = camera("radiancemeter");
+  set(node, "origin", Vec3(1, 2, 3));
+  set(node, "direction", Vec3(0, 3, 4));
+  Warnings warnings;
+  const Ray ray = makeSensor(node, kWide, warnings)->ray({7, 9}, {0.2f, 0.3f});
+  expectNear(ray.origin, {1, 2, 3}, "origin");
+  expectNear(ray.direction, {0, 0.6f, 0.8f}, "direction");
+}
+
 TEST(ThinLens, FocusesOnAPlane) {
   Properties node = camera("thinlens");
   set(node, "fov", 90.0);
@@ -121,10 +164,11 @@ TEST(ThinLens, FocusesOnAPlane) {
   for (float u = 0; u < 1; u += 0.125f)
     for (float v = 0; v < 1; v += 0.125f) {
       const Ray ray = sensor->ray({50, 25}, {u, v});
-      EXPECT_EQ(ray.origin.z, 0);
-      widest = std::max(widest, length(ray.origin - Vec3(3, 0, 0)));
+      const Vec3 start = ray.origin - ray.direction * (0.01f / ray.direction.z);
+      EXPECT_NEAR(ray.origin.z, 0.01f, 1e-6f);
+      widest = std::max(widest, length(start - Vec3(3, 0, 0)));
       // A quarter of the film from its corner: (0.5, 0.25) at depth one, so (2.5, 1.25) in focus.
-      const Vec3 focus = ray.origin + ray.direction * (5 / ray.direction.z);
+      const Vec3 focus = start + ray.direction * (5 / ray.direction.z);
       EXPECT_NEAR(focus.x, 3 + 2.5f, 1e-4f);
       EXPECT_NEAR(focus.y, 1.25f, 1e-4f);
     }
@@ -166,6 +210,12 @@ TEST(Sensor, RejectsWhatCannotSee) {
   set(clip, "aperture_radius", 0.1);
   set(clip, "far_clip", -1.0);
   EXPECT_EQ(error(clip).rfind("test.xml:4:7: found -1 for 'far_clip'", 0), 0u);
+  Properties crossed = camera();
+  set(crossed, "fov", 40.0);
+  set(crossed, "near_clip", 2.0);
+  set(crossed, "far_clip", 1.0);
+  EXPECT_EQ(error(crossed),
+            "test.xml:4:7: found a near_clip of 2 and a far_clip of 1, expected the first to be less");
   Properties focal = camera();
   set(focal, "focal_length", std::string("50cm"));
   EXPECT_EQ(error(focal), "test.xml:4:7: found '50cm' for 'focal_length', expected a finite number");

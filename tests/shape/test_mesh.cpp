@@ -90,10 +90,15 @@ TEST(Mesh, TransformsAreBakedIn) {
 TEST(Mesh, DropsBrokenTriangles) {
   MeshData data = triangle();
   data.positions.emplace_back(NAN, 0, 0);
-  data.triangles.push_back({0, 1, 3});
+  data.triangles.insert(data.triangles.begin(), {0, 1, 3});
+  data.attributes = {
+      {"face_a", 1, {0.25f, 0.5f}}, {"vertex_b", 1, {1, 2, 3, 4}}, {"face_wrong", 3, {1, 2, 3}}};
   Warnings warnings;
   const auto mesh = Mesh::make(data, {}, {"m.ply"}, warnings);
   EXPECT_EQ(mesh->primitiveCount(), 1u);
+  EXPECT_EQ(mesh->attribute("face_a", mesh->pointOn(0, {0.2f, 0.3f})), Rgb(0.5f));
+  EXPECT_NEAR(mesh->attribute("vertex_b", mesh->pointOn(0, {0.2f, 0.3f}))->x, 0.5f + 0.4f + 0.9f, 1e-6f);
+  EXPECT_FALSE(mesh->attribute("face_wrong", mesh->pointOn(0, {0, 0})));
   ASSERT_EQ(warnings.texts().size(), 1u);
   EXPECT_NE(warnings.texts()[0].find("dropped 1 triangles"), std::string::npos);
 
@@ -101,6 +106,37 @@ TEST(Mesh, DropsBrokenTriangles) {
   EXPECT_EQ(warnings.texts().size(), 2u);
   data.triangles.push_back({0, 1, 4});
   EXPECT_THROW(Mesh::make(data, {}, {"m.ply"}, warnings), SceneError);
+}
+
+// Four walls of a prism about a regular corner each: normals are shared across an edge that bends less than
+// the angle, and not across one that bends more; corners of one place count whether they share a vertex or
+// not.
+TEST(Mesh, SmoothsButForItsCreases) {
+  MeshData data;
+  // Two squares that meet along z at a right angle, the second without shared vertices.
+  data.positions = {{1, 0, 0}, {1, 0, 1}, {0, 0, 1}, {0, 0, 0}, {0, 0, 1}, {0, 0, 0}, {0, 1, 0}, {0, 1, 1}};
+  data.triangles = {{0, 1, 2}, {0, 2, 3}, {5, 4, 7}, {5, 7, 6}};
+  data.uvs = std::vector<Vec2>(8, Vec2(0, 0));
+  data.uvs[6] = {0.5f, 0.25f};
+  data.attributes = {{"vertex_a", 1, {0, 1, 2, 3, 4, 5, 6, 7}}};
+  const auto normalAt = [&](float degrees, uint32_t triangle, const Vec2& b) {
+    MeshOptions options;
+    options.maxSmoothAngle = degrees * (kPi / 180);
+    return meshOf(data, options)->pointOn(triangle, b).shading.n;
+  };
+  const Vec3 first = normalAt(80, 1, {0, 1}), second = normalAt(80, 3, {0, 1});
+  EXPECT_NEAR(std::abs(first.y), 1, 1e-6f);
+  EXPECT_NEAR(std::abs(second.x), 1, 1e-6f);
+  // In between at the edge, each square's own far from it.
+  const Vec3 bent = normalAt(100, 1, {0, 1});
+  EXPECT_NEAR(std::abs(bent.x), std::sqrt(0.5f), 1e-5f);
+  EXPECT_NEAR(std::abs(bent.y), std::sqrt(0.5f), 1e-5f);
+  EXPECT_NEAR(std::abs(normalAt(100, 0, {0, 0}).y), 1, 1e-6f);
+  MeshOptions options;
+  options.maxSmoothAngle = 0.5f;
+  const auto mesh = meshOf(data, options);
+  EXPECT_EQ(mesh->pointOn(3, {0, 1}).uv, Vec2(0.5f, 0.25f));
+  EXPECT_EQ(mesh->attribute("vertex_a", mesh->pointOn(3, {0, 1})), Rgb(6));
 }
 
 TEST(Mesh, TrianglesWithoutAreaAreNeverSampled) {

@@ -1,5 +1,6 @@
 #include <bit>
 #include <cstring>
+#include <map>
 
 #include "render/shape/mesh_files.h"
 #include "shape/support.h"
@@ -89,6 +90,27 @@ TEST(Ply, ReadsNormals) {
       "property list uchar int vertex_indices\nend_header\n0 0 0 0 1 0\n1 0 0 0 1 0\n0 1 0 1 0 0\n3 0 1 2\n");
   ASSERT_EQ(mesh.normals.size(), 3u);
   EXPECT_EQ(mesh.normals[2], Vec3(1, 0, 0));
+}
+
+// What Mitsuba 3.9 makes of these names.
+TEST(Ply, ReadsAttributes) {
+  const MeshData mesh = parsePly(
+      "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty float z\n"
+      "property uchar red\nproperty uchar green\nproperty uchar blue\nproperty float weight\n"
+      "property float heat_0\nproperty float pair_0\nproperty float pair_1\nelement face 2\n"
+      "property float color_0\nproperty list uchar int vertex_indices\nproperty float color_1\n"
+      "property float color_2\nend_header\n"
+      "0 0 0 1 2 3 9 0.5 9 9\n1 0 0 4 5 6 9 0.6 9 9\n1 1 0 7 8 9 9 0.7 9 9\n0 1 0 10 11 12 9 0.8 9 9\n"
+      "0.1 4 0 1 2 3 0.2 0.3\n0.4 3 0 1 2 0.5 0.6\n");
+  std::map<std::string, MeshAttribute> found;
+  for (const MeshAttribute& attribute : mesh.attributes) found[attribute.name] = attribute;
+  ASSERT_EQ(found.size(), 3u);
+  EXPECT_EQ(found["vertex_color"].values, (std::vector<float>{1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12}));
+  EXPECT_EQ(found["vertex_heat"].values, (std::vector<float>{0.5f, 0.6f, 0.7f, 0.8f}));
+  EXPECT_EQ(found["vertex_heat"].channels, 1u);
+  // A polygon gives its own to all triangles that it becomes.
+  EXPECT_EQ(found["face_color"].values,
+            (std::vector<float>{0.1f, 0.2f, 0.3f, 0.1f, 0.2f, 0.3f, 0.4f, 0.5f, 0.6f}));
 }
 
 TEST(Ply, RefusesWhatCannotBe) {

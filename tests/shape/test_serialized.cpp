@@ -90,6 +90,9 @@ TEST(Serialized, ReadsBothVersionsAndPrecisions) {
       EXPECT_EQ(third.data.positions[0], Vec3(9, 0, 0));
       EXPECT_EQ(third.data.normals[2], Vec3(0, 1, 0));
       EXPECT_EQ(third.data.uvs[1], Vec2(1, 0));
+      ASSERT_EQ(third.data.attributes.size(), 1u);
+      EXPECT_EQ(third.data.attributes[0].name, "vertex_color");
+      EXPECT_EQ(third.data.attributes[0].values, std::vector<float>(9, 1.0f));
       EXPECT_EQ(third.data.triangles[0], (Triangle{0, 1, 2}));
       EXPECT_THROW(parseSerialized(bytes, 3), SceneError);
       EXPECT_THROW(parseSerialized(bytes, -1), SceneError);

@@ -38,7 +38,9 @@ TEST(Checkerboard, CellsOfMitsuba) {
     EXPECT_EQ(texture.rgb(uv), Rgb(0.1f)) << uv.x << ", " << uv.y;
   for (const Vec2& uv : {Vec2(0.75f, 0.25f), Vec2(0.5f, 0.75f), Vec2(-0.25f, 0.25f)})
     EXPECT_EQ(texture.rgb(uv), Rgb(0.9f)) << uv.x << ", " << uv.y;
-  EXPECT_EQ(texture.scalar({0.75f, 0.25f}), 0.9f);
+  // Single numbers are swapped: what Mitsuba 3.9 looks up as opacity or roughness.
+  EXPECT_EQ(texture.scalar({0.25f, 0.25f}), 0.9f);
+  EXPECT_EQ(texture.scalar({0.75f, 0.25f}), 0.1f);
   EXPECT_NEAR(texture.mean().x, 0.5f, 1e-6f);
   EXPECT_FALSE(texture.isConstant());
   const CheckerboardTexture fine(constant(Rgb(0.1f)), constant(Rgb(0.9f)), {{2, 0}, {0, 3}, {0, 0}});

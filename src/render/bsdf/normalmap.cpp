@@ -18,7 +18,7 @@ class NormalMap final : public Perturbed {
 
  private:
   Vec3 normal(const SurfacePoint& at) const override {
-    const Rgb c = m_normals->rgb(at.uv);
+    const Rgb c = m_normals->rgbAt(at);
     const Vec3 n(2 * c.x - 1, 2 * c.y - 1, 2 * c.z - 1);
     return lengthSquared(n) > 0 ? normalize(n) : Vec3(0, 0, 1);
   }

@@ -82,8 +82,8 @@ ComplexIor readComplexIor(const Properties& properties, Builder& builder) {
                    k = builder.optionalTexture(properties, "k", declaration);
   if (eta || k || material == "none") {
     if (material != "none")
-      builder.warn(properties.location,
-                   "found both \"material\" and \"eta\", \"k\"; the material is ignored");
+      builder.warn(properties.location, "found both \"material\" and \"eta\", \"k\"; the material is ignored",
+                   Effect::same);
     result.eta = eta ? RgbParameter(eta) : RgbParameter(Rgb(0.0f));
     result.k = k ? RgbParameter(k) : RgbParameter(Rgb(1.0f));
   } else {

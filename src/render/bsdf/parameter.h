@@ -29,7 +29,7 @@ class RgbParameter {
     if (!m_texture) return m_mean;
     if (at.texture != m_texture.get()) {
       at.texture = m_texture.get();
-      at.textureValue = m_texture->rgb(at.uv);
+      at.textureValue = m_texture->rgbAt(at);
     }
     return m_clamped ? clampUnit(at.textureValue) : at.textureValue;
   }
@@ -55,7 +55,7 @@ class ScalarParameter {
   }
 
   float operator()(const SurfacePoint& at) const {
-    return m_texture ? clamped(m_texture->scalar(at.uv)) : m_mean;
+    return m_texture ? clamped(m_texture->scalarAt(at)) : m_mean;
   }
   float mean() const { return m_mean; }
   bool isConstant() const { return !m_texture; }

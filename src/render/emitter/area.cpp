@@ -61,7 +61,7 @@ EmitterSample AreaLight::emitterSample(const ShapeSample& point) const {
 
 Rgb AreaLight::radiance(const SurfacePoint& at, const Vec3& wo) const {
   if (!(dot(at.shading.n, wo) > 0)) return {0, 0, 0};
-  return m_radiance->rgb(at.uv);
+  return m_radiance->rgbAt(at);
 }
 
 float AreaLight::pdf(const Vec3& ref, const SurfacePoint& at) const {

@@ -9,6 +9,7 @@ std::vector<EmitterPtr> makeConstant(const Properties& node, Builder& builder);
 std::vector<EmitterPtr> makeDirectional(const Properties& node, Builder& builder);
 std::vector<EmitterPtr> makeEnvironmentMap(const Properties& node, Builder& builder);
 std::vector<EmitterPtr> makePoint(const Properties& node, Builder& builder);
+std::vector<EmitterPtr> makeProjector(const Properties& node, Builder& builder);
 std::vector<EmitterPtr> makeSky(const Properties& node, Builder& builder);
 std::vector<EmitterPtr> makeSpot(const Properties& node, Builder& builder);
 std::vector<EmitterPtr> makeSun(const Properties& node, Builder& builder);

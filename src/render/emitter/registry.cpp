@@ -11,6 +11,7 @@ constexpr std::pair<const char*, EmitterFactory> kFactories[] = {
     {"directional", makeDirectional},
     {"envmap", makeEnvironmentMap},
     {"point", makePoint},
+    {"projector", makeProjector},
     {"sky", makeSky},
     {"spot", makeSpot},
     {"sun", makeSun},

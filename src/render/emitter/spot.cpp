@@ -5,33 +5,43 @@
 //   cutoff_angle   number          degrees from the axis beyond which there is no light; default 20
 //   beam_width     number          degrees from the axis within which the light is full; default 3/4 of
 //                                  cutoff_angle
+//   texture        texture, rgb or number   multiplies the intensity; the cone of cutoff_angle is
+//                                  inscribed in its unit square, u along +x, v along +y; default: none
 #include "render/emitter/spot.h"
 
 #include "render/emitter/factories.h"
+#include "render/xml/element.h"
 
 namespace odis::render {
 
-SpotLight::SpotLight(const Vec3& position, const Vec3& axis, const Rgb& intensity, float cutoff,
-                     float beamWidth)
-    : m_position(position),
-      m_axis(axis),
+SpotLight::SpotLight(const Matrix4& toWorld, const Rgb& intensity, const Beam& beam)
+    : m_position(transformPoint(toWorld, Vec3(0, 0, 0))),
+      m_axis(normalize(transformVector(toWorld, Vec3(0, 0, 1)))),
+      m_toLocal(toWorld.inverse()),
       m_intensity(intensity),
-      m_cutoff(cutoff),
-      m_beamWidth(beamWidth),
-      m_cosCutoff(std::cos(cutoff)),
-      m_cosBeam(std::cos(beamWidth)),
-      m_inverseTransition(cutoff > beamWidth ? 1 / (cutoff - beamWidth) : 0) {}
+      m_beam(beam),
+      m_cosCutoff(std::cos(beam.cutoff)),
+      m_cosBeam(std::cos(beam.beamWidth)),
+      m_inverseTransition(beam.cutoff > beam.beamWidth ? 1 / (beam.cutoff - beam.beamWidth) : 0) {}
 
 // Full within the beam, and nothing beyond the rim; importance fades with the cosine from one to the other,
 // so the two are kept within a right angle.
 LightBounds SpotLight::bounds(uint32_t) const {
-  const float full = std::max(m_beamWidth, m_cutoff - kPi / 2);
+  const float full = std::max(m_beam.beamWidth, m_beam.cutoff - kPi / 2);
+  const Rgb mean = m_beam.texture ? m_intensity * m_beam.texture->mean() : m_intensity;
   return {.min = m_position,
           .max = m_position,
           .axis = m_axis,
           .thetaO = full,
-          .thetaE = m_cutoff - full,
-          .phi = average(m_intensity) / axialIntensity(full)};
+          .thetaE = m_beam.cutoff - full,
+          .phi = average(mean) / axialIntensity(full)};
+}
+
+Rgb SpotLight::textureTowards(const Vec3& ref) const {
+  const Vec3 local = transformPoint(m_toLocal, ref);
+  const float scale = 0.5f / (local.z * std::tan(m_beam.cutoff));
+  const Vec2 uv(0.5f + local.x * scale, 0.5f + local.y * scale);
+  return std::isfinite(uv.x + uv.y) ? m_beam.texture->rgb(uv) : Rgb(0, 0, 0);
 }
 
 EmitterSample SpotLight::sample(uint32_t, const Vec3& ref, const Vec2&) const {
@@ -41,12 +51,11 @@ EmitterSample SpotLight::sample(uint32_t, const Vec3& ref, const Vec2&) const {
   const Vec3 wi = toLight / distance;
   const float cosTheta = -dot(wi, m_axis);
   if (!(cosTheta > m_cosCutoff)) return {};
-  const float falloff = cosTheta >= m_cosBeam ? 1.0f : (m_cutoff - std::acos(cosTheta)) * m_inverseTransition;
-  return {.wi = wi,
-          .distance = distance,
-          .radiance = m_intensity * (falloff / sqr(distance)),
-          .pdf = 1,
-          .delta = true};
+  const float falloff =
+      cosTheta >= m_cosBeam ? 1.0f : (m_beam.cutoff - std::acos(cosTheta)) * m_inverseTransition;
+  Rgb intensity = m_intensity * falloff;
+  if (m_beam.texture) intensity *= textureTowards(ref);
+  return {.wi = wi, .distance = distance, .radiance = intensity / sqr(distance), .pdf = 1, .delta = true};
 }
 
 std::vector<EmitterPtr> makeSpot(const Properties& node, Builder& builder) {
@@ -58,13 +67,14 @@ std::vector<EmitterPtr> makeSpot(const Properties& node, Builder& builder) {
                  "the beam_width of a spot light is more than its cutoff_angle; it is clamped");
     beamWidth = cutoff;
   }
-  const Vec3 position = transformPoint(toWorld, Vec3(0, 0, 0)),
-             axis = transformVector(toWorld, Vec3(0, 0, 1));
-  if (!isFinite(position) || !isFinite(axis) || !(length(axis) > 0))
+  const TexturePtr texture = builder.optionalTexture(node, "texture", {"colour or texture", kEmissionRange});
+  if (texture && !isFinite(texture->mean()))
+    throw SceneError(node.placeOf("texture"), "the texture of a spot light is not a finite number");
+  if (!isInvertibleAffine(toWorld))
     throw SceneError(node.location, "the to_world of a spot light is not a finite, invertible transform");
   constexpr float kDegree = kPi / 180;
-  return {std::make_shared<SpotLight>(position, normalize(axis), emission(node, "intensity"),
-                                      cutoff * kDegree, beamWidth * kDegree)};
+  return {std::make_shared<SpotLight>(toWorld, emission(node, "intensity"),
+                                      SpotLight::Beam{cutoff * kDegree, beamWidth * kDegree, texture})};
 }
 
 }  // namespace odis::render

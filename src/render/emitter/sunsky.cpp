@@ -17,9 +17,9 @@
 //   sun_aperture       number         of Mitsuba 3: the sun's apparent diameter in degrees, in place of
 //                                     sun_radius_scale; default 0.5358
 //
-// Up is +Y, north -Z, east +X, as in Mitsuba 0.6. Mitsuba 3 has up at +Z, north at -X, east at -Y; this holds
-// as soon as a parameter is given that only Mitsuba 3 knows: sun_aperture or complex_sun (true is drawn as
-// false).
+// Up is +Y, north -Z, east +X in Mitsuba 0.6; up +Z, north -X, east -Y in Mitsuba 3, which knows `sunsky`
+// only. An element is of the latter if it has sun_aperture or complex_sun (true is drawn as false), and so is
+// the sunsky of a scene of version 2 or later without a parameter that only Mitsuba 0.6 knows.
 //
 // Sun and sky are two lights, the sky exactly the model's, the sun a disc of constant radiance. Colours and
 // units: daylight.h.
@@ -69,8 +69,18 @@ Vec3 directionFromTime(const Properties& node, bool zUp) {
   return {east, up, -north};
 }
 
+// Whether the element is one of Mitsuba 3.
+bool hasUpAlongZ(const Properties& node) {
+  const auto hasAny = [&](std::initializer_list<const char*> names) {
+    return std::any_of(names.begin(), names.end(), [&](const char* name) { return node.has(name); });
+  };
+  if (hasAny({"sun_aperture", "complex_sun"})) return true;
+  return node.type == "sunsky" && !node.before2 &&
+         !hasAny({"extend", "resolution", "scale", "stretch", "sun_radius_scale"});
+}
+
 Daylight readDaylight(const Properties& node) {
-  const bool zUp = node.has("sun_aperture") || node.has("complex_sun");
+  const bool zUp = hasUpAlongZ(node);
   Daylight result;
   result.toWorld = node.transform("to_world");
   if (zUp) result.toWorld = kZUp * result.toWorld;

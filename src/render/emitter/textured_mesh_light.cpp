@@ -64,7 +64,7 @@ float TexturedMeshLight::meanRadiance(const Cell& cell) const {
   for (uint32_t i = 0; i < kAveragedTexels * kAveragedTexels; ++i) {
     const Vec2 within = pointInSubdivision(kAveragedTexels, i, Vec2(1.0f / 3));
     sum += average(
-        texture().rgb(m_mesh.pointOn(cell.triangle, pointInSubdivision(cell.n, cell.index, within)).uv));
+        texture().rgbAt(m_mesh.pointOn(cell.triangle, pointInSubdivision(cell.n, cell.index, within))));
   }
   const float mean = sum / float(kAveragedTexels * kAveragedTexels);
   return std::isfinite(mean) ? std::max(mean, 0.0f) : average(texture().mean());

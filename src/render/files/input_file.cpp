@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cerrno>
 #include <cstring>
+#include <string_view>
 
 namespace odis::render {
 
@@ -21,6 +22,17 @@ std::string kindText(mode_t mode) {
   return "it is a device, expected a regular file";
 }
 
+// What Git leaves in place of a large file until it is asked for it (github.com/git-lfs/git-lfs,
+// docs/spec.md).
+bool isLfsPointer(int descriptor, uint64_t size) {
+  constexpr std::string_view kStart = "version https://git-lfs.github.com/spec/v1";
+  constexpr uint64_t kMostBytes = 1024;
+  char start[kStart.size()];
+  return size >= kStart.size() && size < kMostBytes &&
+         pread(descriptor, start, kStart.size(), 0) == ssize_t(kStart.size()) &&
+         std::string_view(start, kStart.size()) == kStart;
+}
+
 }  // namespace
 
 // Without O_NONBLOCK opening a pipe would wait for somebody who writes to it.
@@ -33,8 +45,9 @@ InputFile::InputFile(const std::string& path)
     if (!kind.empty()) throw ReadError(kind);
     throw ReadError(reason == ENOENT || reason == ENOTDIR ? "there is no such file" : std::strerror(reason));
   }
-  const std::string problem =
-      fstat(m_descriptor, &status) != 0 ? std::strerror(errno) : kindText(status.st_mode);
+  std::string problem = fstat(m_descriptor, &status) != 0 ? std::strerror(errno) : kindText(status.st_mode);
+  if (problem.empty() && isLfsPointer(m_descriptor, uint64_t(status.st_size)))
+    problem = "it is a Git LFS pointer, the file that it stands for was not fetched: `git lfs pull` does so";
   if (!problem.empty()) {
     close(m_descriptor);
     throw ReadError(problem);

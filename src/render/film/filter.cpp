@@ -125,6 +125,22 @@ struct GaussianProfile {
   float radius, exponent, offset, scale;
 };
 
+// The sinc function under the central lobe of one that is stretched to the radius (Lanczos; Duchon 1979,
+// "Lanczos Filtering in One and Two Dimensions"). Takes x >= 0.
+struct LanczosProfile {
+  explicit LanczosProfile(int lobes) : radius(float(lobes)) {
+    // Its integral is near one but has no closed form: midpoint rule.
+    constexpr int kSteps = 1 << 14;
+    double sum = 0;
+    for (int i = 0; i < kSteps; ++i) sum += (*this)((float(i) + 0.5f) / kSteps * radius);
+    scale = float(kSteps / (2 * sum * radius));
+  }
+  float operator()(float x) const { return sinc(x) * sinc(x / radius) * scale; }
+  static float sinc(float x) { return x < 1e-4f ? 1.0f : std::sin(kPi * x) / (kPi * x); }
+
+  float radius, scale = 1;
+};
+
 // The cubics of Mitchell and Netravali 1988, "Reconstruction Filters in Computer Graphics"; their integral is
 // one for every b and c. Takes x >= 0.
 struct MitchellProfile {
@@ -152,6 +168,11 @@ std::unique_ptr<Filter> makeTentFilter(float radius) {
 std::unique_ptr<Filter> makeGaussianFilter(float stddev) {
   require(stddev, kFilterRadius, "the standard deviation of a gaussian filter");
   return std::make_unique<TabulatedFilter<GaussianProfile>>(GaussianProfile(stddev), "gaussian");
+}
+
+std::unique_ptr<Filter> makeLanczosFilter(int lobes) {
+  require(float(lobes), kFilterLobes, "the number of lobes of a lanczos filter");
+  return std::make_unique<TabulatedFilter<LanczosProfile>>(LanczosProfile(lobes), "lanczos");
 }
 
 std::unique_ptr<Filter> makeMitchellFilter(float b, float c) {

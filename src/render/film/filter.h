@@ -32,10 +32,14 @@ inline constexpr NumberRange kFilterRadius = between(0.001, 100);
 // The range of b and c: beyond it the filter's lobes cancel each other and only noise is left.
 inline constexpr NumberRange kMitchellRange = between(0, 1);
 
+// More lobes are more noise than sharpness.
+inline constexpr NumberRange kFilterLobes = between(1, 16);
+
 // Parameters and defaults as in Mitsuba; throw std::invalid_argument. Separable.
 std::unique_ptr<Filter> makeBoxFilter(float radius = 0.5f);
 std::unique_ptr<Filter> makeTentFilter(float radius = 1.0f);
 std::unique_ptr<Filter> makeGaussianFilter(float stddev = 0.5f);  // radius 4 stddev
+std::unique_ptr<Filter> makeLanczosFilter(int lobes = 3);         // radius lobes
 std::unique_ptr<Filter> makeMitchellFilter(float b = 1.0f / 3.0f, float c = 1.0f / 3.0f);
 
 }  // namespace odis::render

@@ -53,6 +53,10 @@ void meetEmission(const PathSettings& settings, Batch& batch, Bounces bounces) {
       arriveAt(batch, bounce);
     else if (batch.recording)
       batch.recorder.escape(path.handle);
+    if (!hit && path.hidesEnvironment) {
+      bounce.scatters = false;
+      continue;
+    }
     forEachEmission(*settings.scene, path.ray, hit ? &bounce.vertex->at : nullptr,
                     path.bySampling ? &path.previous : nullptr,
                     [&](const Emission& met) { addEmission(settings, batch, bounce, met); });

@@ -55,6 +55,16 @@ void collect(const Pass& pass, std::span<const Path> paths, TileResult& result) 
   }
 }
 
+// The rest of a camera's ray behind the lights that it meets first, one after another.
+Ray beyondEmitters(const Scene& scene, Ray ray) {
+  SurfacePoint at;
+  while (scene.intersect(ray, at) && at.shape->emitter()) {
+    const Ray rest = Scene::spawn(at, ray.direction);
+    ray = {rest.origin, ray.direction, ray.tMax - dot(rest.origin - ray.origin, ray.direction)};
+  }
+  return ray;
+}
+
 // Traces all samples of a tile, one of each pixel at a time, or several where few pixels are left that have
 // one.
 void renderTile(const Pass& pass, uint32_t tile, TileResult& result) {
@@ -83,8 +93,10 @@ uint32_t tileCount(const Crop& crop) {
 
 Ray cameraRay(const Scene& scene, Vec2i pixel, Sampler& sampler, float& filterWeight) {
   const FilterSample offset = scene.film().filter->sample(sampler.get2D());
-  filterWeight = offset.weight;
-  return scene.sensor().ray(Vec2(pixel.x + 0.5f, pixel.y + 0.5f) + offset.offset, sampler.get2D());
+  const Vec2 film = Vec2(pixel.x + 0.5f, pixel.y + 0.5f) + offset.offset;
+  filterWeight = offset.weight * scene.sensor().weight(film);
+  const Ray ray = scene.sensor().ray(film, sampler.get2D());
+  return scene.integrator().hideEmitters ? beyondEmitters(scene, ray) : ray;
 }
 
 Path cameraPath(const Pass& pass, uint32_t index, uint32_t sample) {
@@ -95,6 +107,7 @@ Path cameraPath(const Pass& pass, uint32_t index, uint32_t sample) {
   float filterWeight;
   const Ray ray = cameraRay(*pass.path.scene, pixel, sampler, filterWeight);
   Path path(ray, sampler);
+  path.hidesEnvironment = pass.path.scene->integrator().hideEmitters;
   path.identity = {index, sample, filterWeight};
   if (!pass.pixelValues.empty()) path.pixelValue = pass.pixelValues[index];
   return path;

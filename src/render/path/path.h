@@ -59,9 +59,10 @@ struct Path {
 
   // How things stand while the path is traced.
   Rgb throughput{1, 1, 1};
-  float eta = 1;            // product of the relative indices passed
-  bool bySampling = false;  // whether the ray's direction competes with next-event estimation
-  float directionPdf = 0;   // solid-angle density of the ray's direction, if so
+  float eta = 1;                  // product of the relative indices passed
+  bool bySampling = false;        // whether the ray's direction competes with next-event estimation
+  float directionPdf = 0;         // solid-angle density of the ray's direction, if so
+  bool hidesEnvironment = false;  // whether the ray is one that doesn't see the surroundings
   float uSurvival = 0;      // random number that decides, where the ray arrives, whether the path goes on
   LightReference previous;  // where the ray started
   float distance = 0;       // length of the path from the camera to there

@@ -62,12 +62,14 @@ struct DirectionOrigin {
   bool bySampling = false;
   float pdf = 0;
   LightReference from;
+  bool hidesEnvironment = false;
 };
 
 // Emission that a ray met (`at`: a surface, null: none), weighted against next-event estimation at its start.
 Rgb emissionMet(const PathSettings& settings, const DirectionOrigin& origin, const Ray& ray,
                 const SurfacePoint* at) {
   Rgb sum(0, 0, 0);
+  if (!at && origin.hidesEnvironment) return sum;
   forEachEmission(
       *settings.scene, ray, at, origin.bySampling ? &origin.from : nullptr, [&](const Emission& met) {
         if (isBlack(met.radiance)) return;
@@ -91,7 +93,7 @@ void findSample(const PathSettings& settings, const BsdfSample& drawn, Sampler& 
   SecondaryPoint s;
   ++path.counts.rays;
   const bool hit = settings.scene->intersect(ray, s.at);
-  const DirectionOrigin origin{true, drawn.pdf, lightReference(point.at, point.wo)};
+  const DirectionOrigin origin{true, drawn.pdf, lightReference(point.at, point.wo), false};
   path.radiance += weight * emissionMet(settings, origin, ray, hit ? &s.at : nullptr);
   if (!hit || (settings.maxDepth >= 0 && depth >= settings.maxDepth)) return;
 
@@ -139,6 +141,7 @@ RestirPath traceRestirPath(const PathSettings& settings, const Ray& cameraRay, S
   Rgb throughput(1, 1, 1);
   float eta = 1;
   DirectionOrigin origin;
+  origin.hidesEnvironment = settings.scene->integrator().hideEmitters;
   for (int depth = 1;; ++depth) {
     sampler.startVertex(depth);
     ++path.counts.rays;
@@ -165,6 +168,7 @@ RestirPath traceRestirPath(const PathSettings& settings, const Ray& cameraRay, S
         findSample(settings, next, sampler, further, path);
       } else {
         Path beyond = pathBeyond(at, wo, next, further);
+        beyond.hidesEnvironment = origin.hidesEnvironment && next.lobe == Lobe::null;
         traceBeyond(settings, depth, beyond, path.counts);
         path.radiance += throughput * next.weight * beyond.radiance;
       }
@@ -180,7 +184,7 @@ RestirPath traceRestirPath(const PathSettings& settings, const Ray& cameraRay, S
       if (!(uSurvival < survival)) return path;
       throughput /= survival;
     }
-    origin = {!isDiscrete(next.lobe), next.pdf, from};
+    origin = {!isDiscrete(next.lobe), next.pdf, from, origin.hidesEnvironment && next.lobe == Lobe::null};
     ray = Scene::spawn(at, at.shading.toWorld(next.wi));
   }
 }

@@ -1,10 +1,11 @@
 #include "render/scene/builder.h"
 
 #include <algorithm>
-#include <filesystem>
+#include <map>
 
 #include "render/image/image.h"
 #include "render/texture/constant.h"
+#include "render/xml/find_file.h"
 #include "render/xml/names.h"
 
 namespace odis::render {
@@ -14,12 +15,21 @@ std::string unknownType(const Properties& node, const std::vector<std::string>& 
   return "the " + node.tag + " '" + node.type + "' is unknown" + suggestion(node.type, known);
 }
 
-// Parameters of other programs that change nothing in an image.
-bool isHarmless(const std::string& name) {
-  static const char* const names[] = {"banner",           "pixel_format",  "file_format",
-                                      "component_format", "near_clip",     "far_clip",
-                                      "shutter_open",     "shutter_close", "sampling_weight"};
-  return std::find(std::begin(names), std::end(names), name) != std::end(names);
+// Parameters of Mitsuba that change nothing in an image that is traced by this program.
+bool isWithoutEffect(const Properties& node, const std::string& name) {
+  static const std::map<std::string, std::vector<std::string>> known = {
+      // The distance of focus is one of all of Mitsuba's cameras; only thinlens has a lens to focus.
+      {"sensor", {"focus_distance", "sampling_weight", "shutter_close", "shutter_open"}},
+      {"emitter", {"mis_compensation", "sampling_weight"}},
+      // Hints for hierarchies of boxes and the order of triangles.
+      {"shape",
+       {"collapse", "kd_exact_primitive_threshold", "kd_intersection_cost", "kd_max_depth", "kd_min_max_bins",
+        "kd_parallel_build", "kd_retract_bad_splits", "kd_stop_primitives", "kd_traversal_cost",
+        "silhouette_sampling_weight"}},
+      {"texture", {"accel", "cache", "format", "max_anisotropy"}}};
+  const auto names = known.find(node.tag);
+  return names != known.end() &&
+         std::find(names->second.begin(), names->second.end(), name) != names->second.end();
 }
 
 }  // namespace
@@ -90,28 +100,18 @@ std::vector<EmitterPtr> Builder::emitters(const Properties& node) {
 }
 
 void Builder::warnUnqueried(const Properties& node) {
-  for (const auto& [name, location] : node.unqueried())
-    if (!isHarmless(name))
-      warn(location, "unknown parameter '" + name + "' of the " + node.tag + " '" + node.type +
-                         "' is ignored" + node.suggestionFor(name));
+  for (const auto& [name, location] : node.unqueried()) {
+    const std::string what = "'" + name + "' of the " + node.tag + " '" + node.type + "'";
+    if (isWithoutEffect(node, name))
+      warn(location, what + " has no effect", Effect::none);
+    else
+      warn(location, "unknown parameter " + what + " is ignored" + node.suggestionFor(name));
+  }
 }
 
 std::string Builder::resolvePath(const std::string& fileName, const SourceLocation& at) {
-  namespace fs = std::filesystem;
-  // Files written on Windows.
-  std::string portable = fileName;
-  std::replace(portable.begin(), portable.end(), '\\', '/');
-  std::vector<fs::path> folders = {fs::path(at.file).parent_path()};
-  folders.insert(folders.end(), m_folders.begin(), m_folders.end());
-  for (const fs::path& folder : folders)
-    for (const std::string& name : {fileName, portable}) {
-      std::error_code error;
-      if (name.empty() || !fs::exists(fs::symlink_status(folder / name, error))) continue;
-      m_files.push_back((folder / name).string());
-      return m_files.back();
-    }
-  throw SceneError(at, "there is no file '" + fileName + "', expected one relative to '" +
-                           (folders[0].empty() ? "." : folders[0].string()) + "'");
+  m_files.push_back(findFile(fileName, m_folders, at));
+  return m_files.back();
 }
 
 std::shared_ptr<const Image> Builder::image(const std::string& path, bool srgb, const SourceLocation& at) {

@@ -49,9 +49,11 @@ class Builder {
   std::string resolvePath(const std::string& fileName, const SourceLocation& at);
   // Those that were resolved.
   const std::vector<std::string>& files() const { return m_files; }
-  void warn(const SourceLocation& at, const std::string& message) { m_warnings.add(at, message); }
+  void warn(const SourceLocation& at, const std::string& message, Effect effect = Effect::difference) {
+    m_warnings.add(at, message, effect);
+  }
   Warnings& warnings() { return m_warnings; }
-  // Lists the parameters that no getter has asked for.
+  // Lists the parameters that no getter has asked for, apart by whether Mitsuba knows them as of no effect.
   void warnUnqueried(const Properties& node);
 
   // Image files, read once for all who use them. `srgb`: decode the sRGB curve of 8-bit files.

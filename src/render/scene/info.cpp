@@ -48,8 +48,13 @@ std::string describe(const Scene& scene, const Warnings& warnings) {
   if (integrator.samplesPerPixel > 0)
     text += fmt::format(", {} samples per pixel", integrator.samplesPerPixel);
   text += fmt::format("\nmemory       {:.1f} MiB\n", double(scene.bytes()) / (1024 * 1024));
-  text += fmt::format("warnings     {}\n", warnings.texts().size());
-  for (const std::string& warning : warnings.texts()) text += "  " + warning + "\n";
+  constexpr std::pair<const char*, Effect> lists[] = {
+      {"differences ", Effect::difference}, {"notes       ", Effect::same}, {"no effect   ", Effect::none}};
+  for (const auto& [name, effect] : lists) {
+    if (warnings.texts(effect).empty() && effect != Effect::difference) continue;
+    text += fmt::format("{} {}\n", name, warnings.texts(effect).size());
+    for (const std::string& warning : warnings.texts(effect)) text += "  " + warning + "\n";
+  }
   return text;
 }
 

@@ -7,7 +7,8 @@
 
 namespace odis::render {
 
-// A few lines of text, the warnings last.
+// A few lines of text; last what differs from what the scene describes, and what doesn't for all that it
+// says.
 std::string describe(const Scene& scene, const Warnings& warnings);
 
 }  // namespace odis::render

@@ -23,6 +23,44 @@ std::shared_ptr<const Sensor> defaultSensor(const SceneBounds& bounds, const Vec
   return std::make_shared<Perspective>(toWorld, Projection(fov, resolution));
 }
 
+// What of a scene there is one of; null if there is none.
+struct Singles {
+  const Properties *integrator = nullptr, *sensor = nullptr;
+};
+
+// Adds shapes and emitters to the scene.
+Singles loadObjects(const Properties& root, Scene& scene, ShapeLoader& shapes, Builder& builder) {
+  Warnings& warnings = builder.warnings();
+  Singles result;
+  for (const Properties::Child& child : root.children) {
+    const Properties& node = *child.node;
+    if (node.tag == "shape") {
+      shapes.load(node);
+    } else if (node.tag == "emitter" && node.type == "area") {
+      // Shapes refer to such a light by its id.
+      if (node.id.empty()) warnings.add(node.location, "an area light outside of a shape lights nothing");
+    } else if (node.tag == "emitter") {
+      for (EmitterPtr& emitter : builder.emitters(node)) scene.addEmitter(std::move(emitter));
+    } else if (node.tag == "medium") {
+      shapes.warnOfMedia(node);
+    } else if (node.tag == "integrator" || node.tag == "sensor") {
+      const Properties*& first = node.tag == "sensor" ? result.sensor : result.integrator;
+      if (first)
+        warnings.add(node.location, "a scene has one " + node.tag + " only, this further one is ignored",
+                     node.tag == "sensor" ? Effect::same : Effect::difference);
+      if (!first) first = &node;
+    } else if (node.id.empty() && node.tag != "film" && node.tag != "sampler") {
+      // With an id others may refer to it.
+      warnings.add(node.location,
+                   "the " + node.tag + " '" + node.type + "' belongs to nothing and has no effect",
+                   Effect::none);
+    }
+  }
+  for (const auto& [name, parameter] : root.parameters)
+    warnings.add(parameter.location, "'" + name + "' of the scene has no effect", Effect::none);
+  return result;
+}
+
 }  // namespace
 
 std::unique_ptr<Scene> Scene::load(const std::string& path, const LoadOptions& options, Warnings& warnings) {
@@ -32,33 +70,11 @@ std::unique_ptr<Scene> Scene::load(const std::string& path, const LoadOptions& o
   auto scene = std::make_unique<Scene>();
   ShapeLoader shapes(*scene, builder);
 
-  const Properties *integrator = nullptr, *sensor = nullptr;
-  for (const Properties::Child& child : root.children) {
-    const Properties& node = *child.node;
-    if (node.tag == "shape") {
-      shapes.load(node);
-    } else if (node.tag == "emitter" && node.type == "area") {
-      // Shapes refer to such a light by its id.
-      if (node.id.empty()) warnings.add(node.location, "an area light outside of a shape lights nothing");
-    } else if (node.tag == "emitter") {
-      for (EmitterPtr& emitter : builder.emitters(node)) scene->addEmitter(std::move(emitter));
-    } else if (node.tag == "medium") {
-      shapes.warnOfMedia(node);
-    } else if (node.tag == "integrator" || node.tag == "sensor") {
-      const Properties*& first = node.tag == "sensor" ? sensor : integrator;
-      if (first)
-        warnings.add(node.location, "a scene has one " + node.tag + " only, this further one is ignored");
-      if (!first) first = &node;
-    } else if (node.id.empty() && node.tag != "film" && node.tag != "sampler") {
-      // With an id others may refer to it.
-      warnings.add(node.location,
-                   "the " + node.tag + " '" + node.type + "' belongs to nothing and is ignored");
-    }
-  }
-  for (const auto& [name, parameter] : root.parameters)
-    warnings.add(parameter.location, "unknown parameter '" + name + "' of the scene is ignored");
+  auto [integrator, sensor] = loadObjects(root, *scene, shapes, builder);
   scene->finish();
 
+  const ShapeLoader::Meter meter = sensor ? ShapeLoader::Meter() : shapes.meter();
+  if (meter.node) sensor = meter.node;
   // Scenes of 0.5 may keep film and sampler beside the sensor.
   const auto part = [&](const char* tag) {
     const Properties* nested = sensor ? sensor->child(tag) : nullptr;
@@ -69,16 +85,18 @@ std::unique_ptr<Scene> Scene::load(const std::string& path, const LoadOptions& o
   scene->setIntegrator(loadIntegrator(integrator, part("sampler"), warnings));
   const Vec2i resolution(film.width, film.height);
   if (sensor) {
-    scene->setSensor(makeSensor(*sensor, resolution, warnings));
+    scene->setSensor(meter.shape ? makeMeter(*sensor, resolution, meter.shape)
+                                 : makeSensor(*sensor, resolution, warnings));
     if (sensor->child("medium")) shapes.warnOfMedia(*sensor);
     builder.warnUnqueried(*sensor);
   } else {
-    warnings.add({path}, "the scene has no sensor, all of it is shown from its +z side");
+    warnings.add({path}, "the scene has no sensor, all of it is shown from its +z side", Effect::same);
     scene->setSensor(defaultSensor(scene->bounds(), resolution));
   }
   scene->m_files = parsed.files;
   scene->m_files.insert(scene->m_files.end(), builder.files().begin(), builder.files().end());
-  if (scene->shapes().empty() && scene->instances().empty()) warnings.add({path}, "the scene has no shapes");
+  if (scene->shapes().empty() && scene->instances().empty())
+    warnings.add({path}, "the scene has no shapes", Effect::same);
   if (scene->emitters().empty()) warnings.add({path}, "the scene has no emitter, its image is black");
   return scene;
 }

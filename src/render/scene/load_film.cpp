@@ -44,10 +44,11 @@ std::shared_ptr<const Filter> loadFilter(const Properties* node, Warnings& warni
   if (node->type == "tent") return makeTentFilter(node->number("radius", kFilterRadius, 1.0f));
   if (node->type == "gaussian") return makeGaussianFilter(node->number("stddev", kFilterRadius, 0.5f));
   if (node->type == "mitchell") return loadMitchell(*node);
+  if (node->type == "lanczos") return makeLanczosFilter(int(node->integer("lobes", kFilterLobes, 3)));
   if (node->type == "catmullrom") return makeMitchellFilter(0.0f, 0.5f);
   warnings.add(node->location,
                "the filter '" + node->type + "' is unknown" +
-                   suggestion(node->type, {"box", "tent", "gaussian", "mitchell", "catmullrom"}) +
+                   suggestion(node->type, {"box", "tent", "gaussian", "mitchell", "catmullrom", "lanczos"}) +
                    ", a gaussian is used");
   return makeGaussianFilter();
 }
@@ -57,10 +58,14 @@ std::shared_ptr<const Filter> loadFilter(const Properties* node, Warnings& warni
 FilmSettings loadFilm(const Properties* node, const LoadOptions& options, Warnings& warnings) {
   const Properties absent;
   const Properties& film = node ? *node : absent;
-  if (node && node->type != "hdrfilm" && node->type != "ldrfilm" && node->type != "mfilm")
-    warnings.add(node->location, "the film '" + node->type + "' is unknown" +
-                                     suggestion(node->type, {"hdrfilm", "ldrfilm", "mfilm"}) +
-                                     ", only its size and filter are used");
+  const std::string& type = film.type;
+  if (type == "specfilm")
+    warnings.add(film.location, "the film 'specfilm' is drawn as RGB, its spectral bands are left out");
+  else if (node && type != "hdrfilm" && type != "ldrfilm" && type != "mfilm" && type != "tiledhdrfilm")
+    warnings.add(film.location,
+                 "the film '" + type + "' is unknown" +
+                     suggestion(type, {"hdrfilm", "ldrfilm", "mfilm", "specfilm", "tiledhdrfilm"}) +
+                     ", its size and filter are used");
   FilmSettings result;
   result.width = int(film.integer("width", kSizes, 768));
   result.height = int(film.integer("height", kSizes, 576));

@@ -1,34 +1,80 @@
+// max_depth, rr_depth and hide_emitters of integrators of any type, the number of samples of any sampler.
+// What else they have says how Mitsuba finds the picture, not what it shows.
 #include "render/scene/load_integrator.h"
 
+#include <algorithm>
 #include <limits>
+
+#include "render/xml/names.h"
 
 namespace odis::render {
 namespace {
 
 constexpr int kMost = std::numeric_limits<int>::max();
 
-void readDepths(const Properties* node, IntegratorSettings& settings, Warnings& warnings) {
+// Integrators of Mitsuba 3 and 0.6 that show the radiance that paths of all lengths bring, as this program
+// does.
+const std::vector<std::string> kPathIntegrators = {
+    "bdpt",           "emission_volpath", "erpt",       "mlt",     "odis",
+    "path",           "photonmapper",     "ppm",        "prb",     "prb_basic",
+    "prb_projective", "prbvolpath",       "pssmlt",     "ptracer", "sppm",
+    "volpath",        "volpath_simple",   "volpathmis", "vpl"};
+// Those that show something else.
+const std::vector<std::string> kOtherIntegrators = {"ao", "depth", "field"};
+// Those that show direct light, and those that measure another integrator's picture and hold it.
+const std::vector<std::string> kDirectIntegrators = {"direct", "direct_projective"},
+                               kWrappingIntegrators = {"adaptive", "aov",          "irrcache",
+                                                       "moment",   "multichannel", "stokes"};
+
+bool isIn(const std::vector<std::string>& list, const std::string& name) {
+  return std::find(list.begin(), list.end(), name) != list.end();
+}
+
+void warnOfType(const Properties& node, bool holdsOther, Warnings& warnings) {
+  const std::string& type = node.type;
+  const std::string name = "the integrator '" + type + "' ";
+  // "" if the file leaves it to a variable that has no value.
+  if (type.empty() || type == "path" || type == "odis") return;
+  if (isIn(kPathIntegrators, type)) {
+    warnings.add(node.location, name + "is replaced by this program's, which shows the same", Effect::same);
+  } else if (isIn(kDirectIntegrators, type)) {
+    warnings.add(node.location, name + "is replaced by this program's with paths of depth 2", Effect::same);
+  } else if (isIn(kWrappingIntegrators, type) && holdsOther) {
+    warnings.add(node.location, name + "is left out, the picture is that of the integrator in it",
+                 Effect::same);
+  } else {
+    std::vector<std::string> known = kPathIntegrators;
+    for (const auto& list : {kDirectIntegrators, kWrappingIntegrators, kOtherIntegrators})
+      known.insert(known.end(), list.begin(), list.end());
+    const std::string fault = isIn(kWrappingIntegrators, type) ? "holds no other"
+                              : isIn(kOtherIntegrators, type)  ? "shows something else than radiance"
+                                                               : "is unknown" + suggestion(type, known);
+    warnings.add(node.location, name + fault + ", the radiance that paths bring is shown");
+  }
+}
+
+void readIntegrator(const Properties* node, IntegratorSettings& settings, Warnings& warnings) {
   settings.type = node->type;
-  if (node->type != "path" && node->type != "odis" && !node->type.empty())
-    warnings.add(
-        node->location,
-        "the integrator '" + node->type +
-            "' is not one of path and odis, the integrator of this program is used with its path depths");
-  // Integrators that record something about another hold that other one.
-  while (const Properties* nested = node->child("integrator")) node = nested;
+  while (true) {
+    const Properties* nested = node->child("integrator");
+    warnOfType(*node, nested, warnings);
+    if (!nested) break;
+    warnOfMisspelt(*node, warnings);
+    node = nested;
+  }
   settings.maxDepth = int(node->integer("max_depth", between(-1, kMost), -1));
+  if (isIn(kDirectIntegrators, node->type)) settings.maxDepth = kDirectLightDepth;
   // 0.6 counts it from one, too, but allows a zero.
   settings.rrDepth = int(node->integer("rr_depth", between(0, kMost), 5));
-  if (node->boolean("hide_emitters", false))
-    warnings.add(node->placeOf("hide_emitters"), "'hide_emitters' is not supported and is ignored");
+  settings.hideEmitters = node->boolean("hide_emitters", false);
   warnOfMisspelt(*node, warnings);
 }
 
 int readSampleCount(const Properties& sampler, Warnings& warnings) {
   if (sampler.type != "independent" && sampler.type != "sobol")
-    warnings.add(sampler.location, "the sampler '" + sampler.type +
-                                       "' is not one of independent and sobol, the sampler of this program "
-                                       "is used with its sample count");
+    warnings.add(sampler.location,
+                 "in place of the sampler '" + sampler.type + "' this program's draws as many samples",
+                 Effect::same);
   const int64_t count = sampler.integer("sample_count", between(1, kMost), 1);
   warnOfMisspelt(sampler, warnings);
   return sampler.has("sample_count") ? int(count) : 0;
@@ -40,7 +86,7 @@ IntegratorSettings loadIntegrator(const Properties* integrator, const Properties
                                   Warnings& warnings) {
   IntegratorSettings settings;
   settings.type = "";
-  if (integrator) readDepths(integrator, settings, warnings);
+  if (integrator) readIntegrator(integrator, settings, warnings);
   if (sampler) settings.samplesPerPixel = readSampleCount(*sampler, warnings);
   return settings;
 }

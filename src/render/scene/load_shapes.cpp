@@ -58,6 +58,9 @@ ShapePtr ShapeLoader::make(const Properties& node, bool grouped) {
     shape->setBsdf(bsdf);
   }
   for (const Properties* emitter : emitters) setEmitter(*shape, *emitter, grouped);
+  warnOfMissingAttributes(*shape, node);
+  for (const Properties* sensor : childrenOf(node, "sensor"))
+    if (!m_meter.node) m_meter = {sensor, shape};
   if (!childrenOf(node, "medium").empty()) warnOfMedia(node);
   for (const Properties* subsurface : childrenOf(node, "subsurface"))
     m_builder.warn(subsurface->location,
@@ -66,10 +69,27 @@ ShapePtr ShapeLoader::make(const Properties& node, bool grouped) {
   return shape;
 }
 
+void ShapeLoader::warnOfMissingAttributes(const Shape& shape, const Properties& node) {
+  for (const Properties::Child& child : node.children) {
+    const Properties& part = *child.node;
+    if (part.tag != "bsdf" && part.tag != "texture" && part.tag != "emitter") continue;
+    if (part.type == "mesh_attribute" && !shape.hasAttribute(part.string("name", "")))
+      m_builder.warn(part.location, "a shape that it is used on has no attribute '" +
+                                        part.string("name", "") + "', it is black there");
+    warnOfMissingAttributes(shape, part);
+  }
+}
+
 void ShapeLoader::setEmitter(Shape& shape, const Properties& node, bool grouped) {
-  if (node.type != "area") {
-    m_builder.warn(node.location, "a shape can only carry an emitter of type 'area', found '" + node.type +
-                                      "', it is left out");
+  if (node.type == "directionalarea") {
+    m_builder.warn(
+        node.location,
+        "a 'directionalarea' shines along its normals alone, where paths from a sensor never meet it "
+        "(in Mitsuba's `path` neither); it is left out");
+  } else if (node.type != "area") {
+    m_builder.warn(node.location, "the emitter '" + node.type + "' of a shape is unknown" +
+                                      suggestion(node.type, {"area", "directionalarea"}) +
+                                      ", it is left out");
   } else if (grouped) {
     m_builder.warn(node.location, "emitters can't be instanced, this one is left out");
   } else if (shape.emitter()) {
@@ -112,7 +132,8 @@ void ShapeLoader::loadInstance(const Properties& node) {
   const Matrix4 toWorld = node.transform("to_world");
   m_builder.warnUnqueried(node);
   if (shapes->empty()) {
-    m_builder.warn(node.location, "the shape group of this instance is empty, there is nothing to draw");
+    m_builder.warn(node.location, "the shape group of this instance is empty, there is nothing to draw",
+                   Effect::same);
     return;
   }
   m_scene.addInstance({shapes, toWorld});

@@ -15,6 +15,12 @@ class ShapeLoader {
   ShapeLoader(Scene& scene, Builder& builder) : m_scene(scene), m_builder(builder) {}
   // Adds what a <shape> element stands for to the scene. Throws SceneError.
   void load(const Properties& node);
+  // A sensor in a shape, with the shape that was made; null pointers if there is none.
+  struct Meter {
+    const Properties* node = nullptr;
+    std::shared_ptr<const Shape> shape;
+  };
+  const Meter& meter() const { return m_meter; }
   // Media are not drawn: one warning for all of them.
   void warnOfMedia(const Properties& node);
 
@@ -22,6 +28,8 @@ class ShapeLoader {
   using Group = std::shared_ptr<const std::vector<ShapePtr>>;
 
   ShapePtr make(const Properties& node, bool grouped);
+  // Of textures in a BSDF or emitter that look for attributes that the shape hasn't.
+  void warnOfMissingAttributes(const Shape& shape, const Properties& node);
   void setEmitter(Shape& shape, const Properties& node, bool grouped);
   Group group(const Properties& node);
   void collect(const Properties& node, std::vector<ShapePtr>& shapes);
@@ -30,6 +38,7 @@ class ShapeLoader {
   Scene& m_scene;
   Builder& m_builder;
   std::map<const Properties*, Group> m_groups;
+  Meter m_meter;
   BsdfPtr m_defaultBsdf, m_black;
   bool m_warnedOfMedia = false;
 };

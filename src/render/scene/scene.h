@@ -35,12 +35,16 @@ struct SceneBounds {
   float radius = 0;
 };
 
+// The depth of paths that bring emission and direct light.
+inline constexpr int kDirectLightDepth = 2;
+
 // What the file asks for and the command line may override.
 struct IntegratorSettings {
   std::string type = "odis";  // as named by the file, "" if it names none
   int maxDepth = -1;  // -1: unlimited; 1 is directly visible emission, 2 direct light, as Mitsuba counts
   int rrDepth = 5;
-  int samplesPerPixel = 0;  // 0: the file names none
+  int samplesPerPixel = 0;    // 0: the file names none
+  bool hideEmitters = false;  // whether the camera doesn't see lights, the surroundings neither
 };
 
 struct LoadOptions {

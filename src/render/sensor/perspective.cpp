@@ -10,8 +10,9 @@ Projection::Projection(double fov, const Vec2i& resolution, const Vec2& principa
 }
 
 Ray Perspective::ray(const Vec2& film, const Vec2&) const {
-  return {transformPoint(m_toWorld, Vec3(0)),
-          normalize(transformVector(m_toWorld, m_projection.direction(film)))};
+  const Vec3 direction = m_projection.direction(film);
+  const Ray ray{transformPoint(m_toWorld, Vec3(0)), normalize(transformVector(m_toWorld, direction))};
+  return m_clip.clip(ray, 1 / length(direction));
 }
 
 }  // namespace odis::render

@@ -5,9 +5,11 @@
 //                               Mirroring is allowed; scale is removed, with a warning
 //   fov, fov_axis, focal_length see field_of_view.h
 //   principal_point_offset_x/y  shifts the image, in widths and heights of it (default: 0)
-//   near_clip, far_clip, shutter_open, shutter_close   have no effect
+//   near_clip, far_clip         see clip.h
+//   focus_distance, shutter_open, shutter_close   have no effect
 #pragma once
 
+#include "render/sensor/clip.h"
 #include "render/sensor/sensor.h"
 
 namespace odis::render {
@@ -28,13 +30,15 @@ struct Projection {
 
 class Perspective final : public Sensor {
  public:
-  Perspective(const Matrix4& toWorld, const Projection& projection)
-      : m_toWorld(toWorld), m_projection(projection) {}
+  // `toWorld` keeps lengths.
+  Perspective(const Matrix4& toWorld, const Projection& projection, const ClipRange& clip = {})
+      : m_toWorld(toWorld), m_projection(projection), m_clip(clip) {}
   Ray ray(const Vec2& film, const Vec2& lens) const override;
 
  private:
   Matrix4 m_toWorld;
   Projection m_projection;
+  ClipRange m_clip;
 };
 
 }  // namespace odis::render

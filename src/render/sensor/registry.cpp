@@ -1,11 +1,18 @@
+// The cameras that a scene file can name.
 #include "render/sensor/registry.h"
 
+#include "render/scene/factory_table.h"
 #include "render/sensor/field_of_view.h"
+#include "render/sensor/irradiance_meter.h"
+#include "render/sensor/orthographic.h"
+#include "render/sensor/radiance_meter.h"
 #include "render/sensor/thinlens.h"
 #include "render/xml/names.h"
 
 namespace odis::render {
 namespace {
+
+using SensorPtr = std::shared_ptr<const Sensor>;
 
 // The camera's place without scale, which would bend angles and distances.
 Matrix4 rigidToWorld(const Properties& node, Warnings& warnings) {
@@ -24,28 +31,74 @@ Matrix4 rigidToWorld(const Properties& node, Warnings& warnings) {
   return toWorld;
 }
 
-}  // namespace
-
-std::shared_ptr<const Sensor> makeSensor(const Properties& node, const Vec2i& resolution,
-                                         Warnings& warnings) {
-  const bool lens = node.type == "thinlens";
-  if (!lens && node.type != "perspective")
-    warnings.add(node.location, "the sensor '" + node.type + "' is unknown" +
-                                    suggestion(node.type, {"perspective", "thinlens"}) +
-                                    ", a perspective sensor is used");
+Projection readProjection(const Properties& node, const Vec2i& resolution) {
   // In widths and heights of the film.
   constexpr NumberRange offsets = between(-100, 100);
   const Vec2 offset(node.number("principal_point_offset_x", offsets, 0.0f),
                     node.number("principal_point_offset_y", offsets, 0.0f));
-  const Projection projection(horizontalFieldOfView(node, resolution), resolution, offset);
-  const Matrix4 toWorld = rigidToWorld(node, warnings);
-  if (!lens) return std::make_shared<Perspective>(toWorld, projection);
-  // Squares of distances stay within single precision.
-  constexpr NumberRange distances = between(1e-15, 1e15);
-  const float focusDistance =
-      node.number("focus_distance", distances, node.number("far_clip", distances, 1e4f));
-  const float radius = node.number("aperture_radius", between(0, 1e15));
-  return std::make_shared<ThinLens>(toWorld, projection, radius, focusDistance);
+  return {horizontalFieldOfView(node, resolution), resolution, offset};
+}
+
+SensorPtr makePerspective(const Properties& node, const Vec2i& resolution, Warnings& warnings) {
+  return std::make_shared<Perspective>(rigidToWorld(node, warnings), readProjection(node, resolution),
+                                       readClipRange(node));
+}
+
+SensorPtr makeThinLens(const Properties& node, const Vec2i& resolution, Warnings& warnings) {
+  const ClipRange clip = readClipRange(node);
+  const Lens lens{node.number("aperture_radius", between(0, 1e15)),
+                  node.number("focus_distance", kSensorDistances, clip.farthest)};
+  return std::make_shared<ThinLens>(rigidToWorld(node, warnings), readProjection(node, resolution), clip,
+                                    lens);
+}
+
+SensorPtr makeOrthographic(const Properties& node, const Vec2i& resolution, Warnings&) {
+  return std::make_shared<Orthographic>(node.transform("to_world"), resolution, readClipRange(node));
+}
+
+SensorPtr makeRadianceMeter(const Properties& node, const Vec2i&, Warnings&) {
+  const Matrix4 toWorld = node.transform("to_world");
+  const Vec3 origin = node.vector("origin", transformPoint(toWorld, Vec3(0)));
+  const Vec3 direction = node.vector("direction", transformVector(toWorld, Vec3(0, 0, 1)));
+  if (node.has("origin") != node.has("direction") || (node.has("origin") && node.has("to_world")))
+    throw SceneError(node.location,
+                     "found only one of 'origin' and 'direction', or one with 'to_world', expected both or "
+                     "'to_world' alone");
+  if (!(length(direction) > 0)) node.refuse("direction", "0 0 0", "a direction with a length");
+  return std::make_shared<RadianceMeter>(Ray{origin, normalize(direction)});
+}
+
+using SensorFactory = SensorPtr (*)(const Properties&, const Vec2i&, Warnings&);
+
+constexpr std::pair<const char*, SensorFactory> kFactories[] = {
+    {"orthographic", makeOrthographic},
+    {"perspective", makePerspective},
+    {"radiancemeter", makeRadianceMeter},
+    {"thinlens", makeThinLens},
+};
+
+}  // namespace
+
+SensorPtr makeSensor(const Properties& node, const Vec2i& resolution, Warnings& warnings) {
+  if (const SensorFactory factory = findFactory(kFactories, node.type))
+    return factory(node, resolution, warnings);
+  warnings.add(node.location, "the sensor '" + node.type + "' is unknown" +
+                                  suggestion(node.type, sensorTypes()) + ", a perspective sensor is used");
+  return makePerspective(node, resolution, warnings);
+}
+
+SensorPtr makeMeter(const Properties& node, const Vec2i& resolution,
+                    const std::shared_ptr<const Shape>& shape) {
+  if (node.type != "irradiancemeter")
+    throw SceneError(node.location,
+                     "found the sensor '" + node.type + "' in a shape, expected an irradiancemeter");
+  if (!(shape->area() > 0))
+    throw SceneError(node.location, "found an irradiancemeter on a shape without area, expected one with");
+  return std::make_shared<IrradianceMeter>(shape, resolution);
+}
+
+std::vector<std::string> sensorTypes() {
+  return typesIn(kFactories);
 }
 
 }  // namespace odis::render

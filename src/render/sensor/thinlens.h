@@ -9,19 +9,22 @@
 
 namespace odis::render {
 
+struct Lens {
+  float apertureRadius, focusDistance;
+};
+
 class ThinLens final : public Sensor {
  public:
-  ThinLens(const Matrix4& toWorld, const Projection& projection, float apertureRadius, float focusDistance)
-      : m_toWorld(toWorld),
-        m_projection(projection),
-        m_apertureRadius(apertureRadius),
-        m_focusDistance(focusDistance) {}
+  // `toWorld` keeps lengths.
+  ThinLens(const Matrix4& toWorld, const Projection& projection, const ClipRange& clip, const Lens& lens)
+      : m_toWorld(toWorld), m_projection(projection), m_clip(clip), m_lens(lens) {}
   Ray ray(const Vec2& film, const Vec2& lens) const override;
 
  private:
   Matrix4 m_toWorld;
   Projection m_projection;
-  float m_apertureRadius, m_focusDistance;
+  ClipRange m_clip;
+  Lens m_lens;
 };
 
 }  // namespace odis::render

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "render/math/warp.h"
+#include "render/shape/creases.h"
 #include "render/shape/embree.h"
 #include "render/shape/surface_math.h"
 
@@ -34,6 +35,16 @@ void dropNonFinite(MeshData& data, const SourceLocation& at, Warnings& warnings)
     return !isFinite(data.positions[t[0]]) || !isFinite(data.positions[t[1]]) ||
            !isFinite(data.positions[t[2]]);
   };
+  for (MeshAttribute& attribute : data.attributes) {
+    if (!attribute.ofFaces()) continue;
+    size_t kept = 0;
+    for (size_t i = 0; i < data.triangles.size(); ++i) {
+      if (broken(data.triangles[i])) continue;
+      for (uint32_t c = 0; c < attribute.channels; ++c)
+        attribute.values[kept++] = attribute.values[i * attribute.channels + c];
+    }
+    attribute.values.resize(kept);
+  }
   const size_t dropped = std::erase_if(data.triangles, broken);
   if (dropped > 0) warnings.add(at, fmt::format("dropped {} triangles with non-finite vertices", dropped));
   for (Vec2& uv : data.uvs)
@@ -74,12 +85,18 @@ std::shared_ptr<Mesh> Mesh::make(MeshData data, const MeshOptions& options, cons
       if (vertex >= count)
         throw SceneError(
             at, fmt::format("triangle {} refers to vertex {}, expected less than {}", i, vertex, count));
+  // Two lists of faces, of which one has attributes, make none.
+  std::erase_if(data.attributes, [&](const MeshAttribute& attribute) {
+    return attribute.values.size() !=
+           (attribute.ofFaces() ? data.triangles.size() : count) * attribute.channels;
+  });
   transform(data, options.toWorld);
   dropNonFinite(data, at, warnings);
   if (data.triangles.empty()) {
     warnings.add(at, "the mesh has no triangles and is left out");
     return nullptr;
   }
+  if (options.maxSmoothAngle && !options.faceNormals) data = withCreases(data, *options.maxSmoothAngle);
   return std::shared_ptr<Mesh>(new Mesh(std::move(data), options));
 }
 
@@ -100,6 +117,10 @@ Mesh::Mesh(MeshData data, const MeshOptions& options) : m_flipFaceNormals(option
     if (m_hasUvs) m_vertices[i].uv = data.uvs[i];
   }
   m_triangles = std::move(data.triangles);
+  m_attributes = std::move(data.attributes);
+  for (MeshAttribute& attribute : m_attributes)
+    for (float& value : attribute.values)
+      if (!std::isfinite(value)) value = 0;
 
   double sum = 0;
   std::vector<double> sums;
@@ -177,13 +198,18 @@ void Mesh::findTangents(SurfacePoint& at, const Triangle& t) const {
   at.shading = CoordinateFrame::fromTangent(at.shading.n, at.dpdu);
 }
 
-ShapeSample Mesh::sample(const Vec3& ref, const Vec2& u) const {
+SurfacePoint Mesh::pointOverArea(const Vec2& u) const {
   // The first triangle whose end lies above u: those without area begin where they end, and are never found.
   const auto end = std::upper_bound(m_cdf.begin() + 1, m_cdf.end(), u.x);
-  if (end == m_cdf.end()) return {};
+  if (end == m_cdf.end()) return {};  // of a mesh without area
   const auto triangle = uint32_t(end - m_cdf.begin() - 1);
   const float rest = std::min((u.x - end[-1]) / (end[0] - end[-1]), kOneMinusEpsilon);
-  return uniformAreaSample(ref, pointOn(triangle, squareToTriangle({rest, u.y})), m_area);
+  return pointOn(triangle, squareToTriangle({rest, u.y}));
+}
+
+ShapeSample Mesh::sample(const Vec3& ref, const Vec2& u) const {
+  if (!(m_area > 0)) return {};
+  return uniformAreaSample(ref, pointOverArea(u), m_area);
 }
 
 float Mesh::pdf(const Vec3& ref, const SurfacePoint& at) const {
@@ -228,8 +254,30 @@ float Mesh::primitivePdf(const Vec3& ref, const SurfacePoint& at) const {
   return uniformAreaPdf(ref, at, triangleArea(at.primitive));
 }
 
+const MeshAttribute* Mesh::findAttribute(const std::string& name) const {
+  for (const MeshAttribute& attribute : m_attributes)
+    if (attribute.name == name) return &attribute;
+  return nullptr;
+}
+
+std::optional<Rgb> Mesh::attribute(const std::string& name, const SurfacePoint& at) const {
+  const MeshAttribute* found = findAttribute(name);
+  if (!found) return {};
+  const auto valueOf = [&](uint32_t row) {
+    const float* v = &found->values[size_t(row) * found->channels];
+    return found->channels == 3 ? Rgb(v[0], v[1], v[2]) : Rgb(v[0]);
+  };
+  if (found->ofFaces()) return valueOf(at.primitive);
+  const Triangle& t = m_triangles[at.primitive];
+  const Vec2& b = at.barycentric;
+  return valueOf(t[0]) * (1 - b.x - b.y) + valueOf(t[1]) * b.x + valueOf(t[2]) * b.y;
+}
+
 uint64_t Mesh::bytes() const {
-  return m_vertices.capacity() * sizeof(Vertex) + m_triangles.capacity() * sizeof(Triangle) +
+  uint64_t attributes = 0;
+  for (const MeshAttribute& attribute : m_attributes)
+    attributes += attribute.values.capacity() * sizeof(float);
+  return attributes + m_vertices.capacity() * sizeof(Vertex) + m_triangles.capacity() * sizeof(Triangle) +
          m_cdf.capacity() * sizeof(float);
 }
 

@@ -2,6 +2,8 @@
 #pragma once
 
 #include <array>
+#include <optional>
+#include <string>
 #include <vector>
 
 #include "render/shape/shape.h"
@@ -11,17 +13,29 @@ namespace odis::render {
 
 using Triangle = std::array<uint32_t, 3>;
 
+// Numbers that a file gives vertices or faces, looked up by the texture mesh_attribute.
+struct MeshAttribute {
+  std::string name;           // begins with vertex_ or face_
+  uint32_t channels = 1;      // 1 or 3
+  std::vector<float> values;  // channel by channel of each vertex or triangle
+
+  bool ofFaces() const { return name.starts_with("face_"); }
+};
+
 // A mesh in object space. `normals` and `uvs` are empty or have one element a position.
 struct MeshData {
   std::vector<Vec3> positions, normals;
   std::vector<Vec2> uvs;
   std::vector<Triangle> triangles;
+  std::vector<MeshAttribute> attributes;
 };
 
 struct MeshOptions {
   Matrix4 toWorld;
   bool faceNormals = false;  // shade with the normal of the triangle
   bool flipNormals = false;
+  // Radians: smooth but for edges that bend more, whatever normals the data have; see creases.h.
+  std::optional<float> maxSmoothAngle;
 };
 
 // Without normals in `data`, smooth ones are computed unless face normals are asked for. The side of the
@@ -39,9 +53,13 @@ class Mesh final : public Shape {
   ShapeSample sample(const Vec3& ref, const Vec2& u) const override;  // uniform by area
   float pdf(const Vec3& ref, const SurfacePoint& at) const override;
   uint64_t primitiveCount() const override { return m_triangles.size(); }
+  SurfacePoint pointOverArea(const Vec2& u) const override;
+  float areaWeight(const Vec2&) const override { return 1; }
   PrimitiveExtent extent(uint32_t triangle) const override;
   ShapeSample samplePrimitive(uint32_t triangle, const Vec3& ref, const Vec2& u) const override;  // by area
   float primitivePdf(const Vec3& ref, const SurfacePoint& at) const override;
+  std::optional<Rgb> attribute(const std::string& name, const SurfacePoint& at) const override;
+  bool hasAttribute(const std::string& name) const override { return findAttribute(name) != nullptr; }
   uint64_t bytes() const override;
 
   float triangleArea(uint32_t triangle) const;
@@ -58,10 +76,12 @@ class Mesh final : public Shape {
   Imath::V3d areaVector(const Triangle& t) const;  // twice the area along the normal
 
   Mesh(MeshData data, const MeshOptions& options);
+  const MeshAttribute* findAttribute(const std::string& name) const;
   void findTangents(SurfacePoint& at, const Triangle& t) const;
 
   std::vector<Vertex> m_vertices;
   std::vector<Triangle> m_triangles;
+  std::vector<MeshAttribute> m_attributes;
   bool m_hasNormals = false;  // else face normals
   bool m_hasUvs = false;      // else barycentric coordinates stand in for them
   std::vector<float> m_cdf;   // of the triangles by area, size n + 1

@@ -3,6 +3,8 @@
 //   filename         string           of the file
 //   face_normals     boolean, false   shade with the triangles' own normals
 //   flip_normals     boolean, false   turn the surface inside out
+//   max_smooth_angle number           of Mitsuba 0.6, degrees: normals are made anew, smooth but for edges
+//                                     that bend more
 //   flip_tex_coords  boolean, true    v becomes 1 - v
 //   to_world         transform
 //

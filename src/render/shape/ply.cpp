@@ -3,17 +3,22 @@
 //   filename         string           of the file
 //   face_normals     boolean, false   shade with the triangles' own normals
 //   flip_normals     boolean, false   turn the surface inside out
+//   max_smooth_angle number           of Mitsuba 0.6, degrees: normals are made anew, smooth but for edges
+//                                     that bend more
 //   flip_tex_coords  boolean, false   v becomes 1 - v
 //   to_world         transform
 //
 // Reads x, y, z, nx, ny, nz and u, v (or s, t) of the vertices and the lists vertex_indices (or vertex_index)
-// of the faces; polygons become fans of triangles; other properties and elements are skipped. Without normals
-// in the file, smooth ones are computed.
+// of the faces; polygons become fans of triangles. Without normals in the file, smooth ones are computed.
+// Other properties become attributes for the texture mesh_attribute, if there are one or three of a name:
+// color_0, color_1, color_2 of vertices, or r, g, b, or red, green, blue, make vertex_color, weight_0 of
+// faces makes face_weight. Integers are taken as they are, as Mitsuba does. What is left is skipped.
 #include <fmt/format.h>
 
 #include <bit>
 #include <cmath>
 #include <cstring>
+#include <map>
 #include <optional>
 
 #include "render/shape/factories.h"
@@ -63,6 +68,7 @@ struct Property {
   Scalar type = Scalar::float32;
   std::optional<Scalar> countType;  // of a list
   Role role = Role::none;
+  int attribute = -1;  // index among those of the mesh
 };
 
 struct Element {
@@ -75,6 +81,16 @@ struct Element {
                        [&](const Property& p) { return p.role == role; });
   }
 };
+
+// "color_0" -> "color"; "" for what makes no attribute.
+std::string attributeOf(const Property& property) {
+  const std::string& name = property.name;
+  if (property.countType || property.role != Role::none) return "";
+  for (const char* channel : {"r", "g", "b", "red", "green", "blue"})
+    if (name == channel) return "color";
+  const size_t end = name.rfind('_');
+  return end == std::string::npos ? "" : name.substr(0, end);
+}
 
 class PlyReader {
  public:
@@ -138,6 +154,19 @@ class PlyReader {
       m_cursor.takeLine();
     }
     if (!hasFormat) fail("the header names no format");
+    for (Element& element : m_elements)
+      if (element.name == "vertex" || element.name == "face") findAttributes(element);
+  }
+
+  void findAttributes(Element& element) {
+    std::map<std::string, std::vector<Property*>> named;
+    for (Property& property : element.properties)
+      if (const std::string name = attributeOf(property); !name.empty()) named[name].push_back(&property);
+    for (const auto& [name, properties] : named) {
+      if (properties.size() != 1 && properties.size() != 3) continue;
+      for (Property* property : properties) property->attribute = int(m_data.attributes.size());
+      m_data.attributes.push_back({element.name + "_" + name, uint32_t(properties.size()), {}});
+    }
   }
 
   void readFormat() {
@@ -193,6 +222,7 @@ class PlyReader {
           skip(property);
         else
           values[int(property.role)] = float(next(property.type));
+        if (property.attribute >= 0) valuesOf(property).push_back(values[int(Role::none)]);
       }
       m_data.positions.emplace_back(values[1], values[2], values[3]);
       if (hasNormals) m_data.normals.emplace_back(values[4], values[5], values[6]);
@@ -200,14 +230,26 @@ class PlyReader {
     }
   }
 
+  std::vector<float>& valuesOf(const Property& property) {
+    return m_data.attributes[size_t(property.attribute)].values;
+  }
+
   void readFaces(const Element& element) {
-    for (m_row = 0; m_row < element.count; ++m_row)
+    std::vector<std::pair<const Property*, float>> attributes;  // of the face
+    for (m_row = 0; m_row < element.count; ++m_row) {
+      const size_t first = m_data.triangles.size();
+      attributes.clear();
       for (const Property& property : element.properties) {
         if (property.countType && (property.name == "vertex_indices" || property.name == "vertex_index"))
           readPolygon(property);
+        else if (property.attribute >= 0)
+          attributes.emplace_back(&property, float(next(property.type)));
         else
           skip(property);
       }
+      for (size_t triangle = first; triangle < m_data.triangles.size(); ++triangle)
+        for (const auto& [property, value] : attributes) valuesOf(*property).push_back(value);
+    }
   }
 
   void readPolygon(const Property& property) {

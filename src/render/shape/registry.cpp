@@ -44,10 +44,8 @@ MeshFile::MeshFile(const Properties& node, Builder& builder, bool flipTexCoordsD
   options.faceNormals = node.boolean("face_normals", false);
   options.flipNormals = node.boolean("flip_normals", false);
   flipTexCoords = node.boolean("flip_tex_coords", flipTexCoordsDefault);
-  if (node.optionalNumber("max_smooth_angle", between(0, 180))) {
-    builder.warn(node.placeOf("max_smooth_angle"),
-                 "max_smooth_angle is not supported: normals are smooth everywhere");
-  }
+  if (const auto degrees = node.optionalNumber("max_smooth_angle", between(0, 180)))
+    options.maxSmoothAngle = *degrees * (kPi / 180);
 }
 
 std::shared_ptr<Mesh> MeshFile::makeMesh(MeshData data, Builder& builder) const {

@@ -4,7 +4,11 @@
 //   shape_index   integer, 0       which of the file's meshes
 //   face_normals  boolean, false   shade with the triangles' own normals (the file may ask for it too)
 //   flip_normals  boolean, false   turn the surface inside out
+//   max_smooth_angle number           of Mitsuba 0.6, degrees: normals are made anew, smooth but for edges
+//                                     that bend more
 //   to_world      transform
+//
+// Colours of the vertices become the attribute vertex_color, see the texture mesh_attribute.
 //
 // The file: for each mesh a header (uint16 0x041C, uint16 version) and a zlib stream; at the end the offset
 // of each mesh (uint64, version 3: uint32) and their number (uint32). All little-endian.
@@ -159,6 +163,10 @@ SerializedMesh readSerialized(const std::string& path, int64_t shapeIndex, const
   if (flags & kHasColors) {
     std::vector<Vec3> colors;
     readVectors(in, colors, vertices, isDouble);
+    MeshAttribute& attribute = mesh.data.attributes.emplace_back();
+    attribute = {"vertex_color", 3, {}};
+    attribute.values.reserve(3 * colors.size());
+    for (const Vec3& c : colors) attribute.values.insert(attribute.values.end(), {c.x, c.y, c.z});
   }
   readElements(in, mesh.data.triangles, triangles);
   return mesh;

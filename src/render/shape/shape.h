@@ -2,6 +2,8 @@
 #pragma once
 
 #include <memory>
+#include <optional>
+#include <string>
 
 #include "render/bsdf/bsdf.h"
 #include "render/emitter/emitter.h"
@@ -64,12 +66,22 @@ class Shape {
   virtual SurfacePoint pointAtUv(const Vec2& /*uv*/) const { return {}; }
   // The area there of an element of uv, per its size.
   virtual float areaElement(const Vec2& /*uv*/) const { return 0; }
+  // A point for u, uniform in [0, 1)^2, and what it weighs in a mean over the area, 1 on average: shapes of
+  // one primitive by uv, meshes by area.
+  virtual SurfacePoint pointOverArea(const Vec2& u) const { return pointAtUv(u); }
+  virtual float areaWeight(const Vec2& u) const { return areaElement(u) / area(); }
   virtual PrimitiveExtent extent(uint32_t primitive) const = 0;
   // The same for one primitive: samples it, and the density with which it gives the direction to `at`, on it.
   virtual ShapeSample samplePrimitive(uint32_t /*primitive*/, const Vec3& ref, const Vec2& u) const {
     return sample(ref, u);
   }
   virtual float primitivePdf(const Vec3& ref, const SurfacePoint& at) const { return pdf(ref, at); }
+  // The value of an attribute of the mesh at a point of it, a grey if it is one number; nothing if there is
+  // none of this name.
+  virtual std::optional<Rgb> attribute(const std::string& /*name*/, const SurfacePoint& /*at*/) const {
+    return {};
+  }
+  virtual bool hasAttribute(const std::string& /*name*/) const { return false; }
   virtual uint64_t bytes() const { return 0; }
 
   const Bsdf& bsdf() const { return *m_bsdf; }

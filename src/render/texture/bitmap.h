@@ -21,9 +21,13 @@ class BitmapTexture final : public Texture {
 
   Rgb rgb(const Vec2& uv) const override;
   float scalar(const Vec2& uv) const override;
+  // Without a second virtual call: these are looked up most.
+  Rgb rgbAt(const SurfacePoint& at) const override { return rgb(at.uv); }
+  float scalarAt(const SurfacePoint& at) const override { return scalar(at.uv); }
   // Exact derivative of the bilinear patch; zero with `nearest`.
   Vec2 gradient(const Vec2& uv) const override;
   Rgb mean() const override { return m_mean; }
+  Vec2i resolution() const override { return {m_image->width(), m_image->height()}; }
   bool isConstant() const override { return m_constant; }
 
  private:

@@ -6,6 +6,7 @@ namespace odis::render {
 
 TexturePtr makeBitmapTexture(const Properties&, Builder&);
 TexturePtr makeCheckerboardTexture(const Properties&, Builder&);
+TexturePtr makeMeshAttributeTexture(const Properties&, Builder&);
 TexturePtr makeScaleTexture(const Properties&, Builder&);
 
 namespace {
@@ -13,6 +14,7 @@ namespace {
 constexpr std::pair<const char*, TextureFactory> kFactories[] = {
     {"bitmap", makeBitmapTexture},
     {"checkerboard", makeCheckerboardTexture},
+    {"mesh_attribute", makeMeshAttributeTexture},
     {"scale", makeScaleTexture},
 };
 

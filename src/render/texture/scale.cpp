@@ -19,6 +19,10 @@ float ScaleTexture::scalar(const Vec2& uv) const {
   return m_grey ? m_number * m_nested->scalar(uv) : luminance(rgb(uv));
 }
 
+float ScaleTexture::scalarAt(const SurfacePoint& at) const {
+  return m_grey ? m_number * m_nested->scalarAt(at) : luminance(rgbAt(at));
+}
+
 Vec2 ScaleTexture::gradient(const Vec2& uv) const {
   return m_grey ? m_nested->gradient(uv) * m_number : Texture::gradient(uv);
 }

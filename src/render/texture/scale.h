@@ -11,6 +11,8 @@ class ScaleTexture final : public Texture {
 
   Rgb rgb(const Vec2& uv) const override { return m_nested->rgb(uv) * m_factor->rgb(uv); }
   float scalar(const Vec2& uv) const override;
+  Rgb rgbAt(const SurfacePoint& at) const override { return m_nested->rgbAt(at) * m_factor->rgbAt(at); }
+  float scalarAt(const SurfacePoint& at) const override;
   Vec2 gradient(const Vec2& uv) const override;
   // Exact if one of the two is constant, otherwise the product of the means.
   Rgb mean() const override { return m_nested->mean() * m_factor->mean(); }

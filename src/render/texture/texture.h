@@ -3,7 +3,7 @@
 
 #include <memory>
 
-#include "render/math/vec.h"
+#include "render/math/surface_point.h"
 
 namespace odis::render {
 
@@ -15,6 +15,9 @@ class Texture {
   virtual Rgb rgb(const Vec2& uv) const = 0;
   // The value as one number: the luminance of `rgb`, or the stored channel of a single-channel texture.
   virtual float scalar(const Vec2& uv) const { return luminance(rgb(uv)); }
+  // The same at a point of a surface, of which some textures know more than its uv.
+  virtual Rgb rgbAt(const SurfacePoint& at) const { return rgb(at.uv); }
+  virtual float scalarAt(const SurfacePoint& at) const { return scalar(at.uv); }
   // (d scalar/du, d scalar/dv), for bump maps. Default: central differences with a step of 1/1024.
   virtual Vec2 gradient(const Vec2& uv) const {
     constexpr float h = 1.0f / 1024.0f;
@@ -23,6 +26,8 @@ class Texture {
   }
   // The average over the texture's domain; exact for constants, an average of texels for bitmaps.
   virtual Rgb mean() const = 0;
+  // Texels along u and v; (1, 1) where there are none.
+  virtual Vec2i resolution() const { return {1, 1}; }
   // Whether the value is the same everywhere (then it is `mean()`).
   virtual bool isConstant() const { return false; }
 };

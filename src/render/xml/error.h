@@ -1,6 +1,7 @@
 // Errors and warnings that speak to the user: file:line:column, what was expected, what to do.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <stdexcept>
 #include <string>
@@ -43,17 +44,26 @@ class OptionError : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
+// What becomes of the picture where a scene isn't read as it is written.
+enum class Effect {
+  none,        // nothing: a hint to another program or to the method
+  same,        // it is made in another way
+  difference,  // it is another picture than the scene describes
+};
+
 // Input that can still be drawn. Kept in the order of the file, each text once.
 class Warnings {
  public:
-  void add(const SourceLocation& at, const std::string& message) {
+  void add(const SourceLocation& at, const std::string& message, Effect effect = Effect::difference) {
     std::string text = onOneLine(at.file.empty() ? message : at.text() + ": " + message);
-    if (m_known.insert(text).second) m_texts.push_back(std::move(text));
+    if (m_known.insert(text).second) m_texts[size_t(effect)].push_back(std::move(text));
   }
-  const std::vector<std::string>& texts() const { return m_texts; }
+  const std::vector<std::string>& texts(Effect effect = Effect::difference) const {
+    return m_texts[size_t(effect)];
+  }
 
  private:
-  std::vector<std::string> m_texts;
+  std::array<std::vector<std::string>, 3> m_texts;  // by effect
   std::unordered_set<std::string> m_known;
 };
 

@@ -4,6 +4,7 @@
 #include "render/xml/names.h"
 #include "render/xml/parser.h"
 #include "render/xml/spectrum.h"
+#include "render/xml/spectrum_object.h"
 
 namespace odis::render {
 namespace {
@@ -12,8 +13,13 @@ float decodeSrgb(float x) {
   return x <= 0.04045f ? x / 12.92f : std::pow((x + 0.055f) / 1.055f, 2.4f);
 }
 
-// In kelvin; hotter than any star.
-constexpr NumberRange kTemperatures{0, 1e6, false};
+// What the spectrum of an element is used for, within an emitter or not.
+SpectrumUse useOf(bool inEmitter, const XmlElement& e) {
+  if (inEmitter) return SpectrumUse::emission;
+  const std::string name = snakeCase(e.require("name"));
+  const bool index = name == "eta" || name == "k" || name == "int_ior" || name == "ext_ior";
+  return index ? SpectrumUse::index : SpectrumUse::reflectance;
+}
 
 // "5000" or "5000K".
 double parseTemperature(std::string text, const SourceLocation& at) {
@@ -48,11 +54,6 @@ bool XmlParser::parseNestedValue(const Place& place, const pugi::xml_node& node,
     if (!first) throw SceneError(e.at, "found no <transform> in <animation>, expected at least one");
     m_warnings.add(e.at, "motion is not supported, the first transform of the animation is used");
     addParameter(owner, e, parseTransformSteps(place, first));
-    return true;
-  }
-  if (tag == "spectrum" && e.has("type")) {
-    e.allow({"name", "type", "id"});
-    addParameter(owner, e, parseSpectrumObject(place, *parseObject(place, node, e)));
     return true;
   }
   return false;
@@ -102,7 +103,8 @@ Matrix4 XmlParser::parseTransformSteps(const Place& place, const pugi::xml_node&
   std::vector<XmlElement> steps;
   for (const pugi::xml_node& child : node.children())
     if (child.type() == pugi::node_element) steps.push_back(element(place, child));
-  const Matrix4 matrix = parseTransform(steps);
+  const Matrix4 matrix = parseTransform(steps, m_before2 ? RotationAxis::normalized : RotationAxis::asGiven);
+  for (const XmlElement& step : steps) noteStretchingAxis(step);
   for (int i = 0; i < 16; ++i)
     if (!std::isfinite(matrix[i / 4][i % 4]))
       throw SceneError(place.file.locate(node),
@@ -110,14 +112,32 @@ Matrix4 XmlParser::parseTransformSteps(const Place& place, const pugi::xml_node&
   return matrix;
 }
 
+void XmlParser::noteStretchingAxis(const XmlElement& step) {
+  if (m_before2 || lowerCase(step.tag) != "rotate") return;
+  if (std::abs(length(parseVector(step, 0, false)) - 1) < 1e-3f) return;
+  m_warnings.add(
+      step.at, "the axis of <rotate> isn't of unit length, which stretches as well, as it does in Mitsuba 3",
+      Effect::same);
+}
+
+bool XmlParser::parseSpectrumObject(const Place& place, const pugi::xml_node& node, const XmlElement& e,
+                                    Properties& owner) {
+  if ((e.tag != "spectrum" && e.tag != "texture") || !e.has("type")) return false;
+  const bool isColor = isSpectrumType(lowerCase(e.require("type"))) && (e.tag == "spectrum" || !e.has("id"));
+  if (e.tag == "texture" && !isColor) return false;
+  e.allow({"name", "type", "id"});
+  const std::shared_ptr<Properties> object = parseObject(place, node, e);
+  if (isColor)
+    addParameter(owner, e, spectrumObject(*object, useOf(place.emitter, e)));
+  else
+    addObject(owner, e, object, "texture");
+  return true;
+}
+
 PropertyValue XmlParser::parseSpectrumValue(const Place& place, const XmlElement& e) {
-  const std::string name = snakeCase(e.require("name"));
-  const bool index = name == "eta" || name == "k" || name == "int_ior" || name == "ext_ior";
-  const SpectrumUse use = place.emitter ? SpectrumUse::emission
-                          : index       ? SpectrumUse::index
-                                        : SpectrumUse::reflectance;
+  const SpectrumUse use = useOf(place.emitter, e);
   if (e.has("filename"))
-    return spectrumToRgb(readSpectrumFile(findFile(place, e.require("filename"), e.at), e.at), use);
+    return spectrumToRgb(readSpectrumFile(findInput(e.require("filename"), e.at), e.at), use);
   const std::string& text = e.require("value");
   if (text.find(':') != std::string::npos) return spectrumToRgb(parseSpectrum(text, e.at), use);
   const std::vector<double> v = parseNumbers(text, "'" + e.require("name") + "'", e.at);
@@ -129,38 +149,6 @@ PropertyValue XmlParser::parseSpectrumValue(const Place& place, const XmlElement
   // too.
   if (place.emitter) return Rgb(spectrumToRgb({{360, 1}, {830, 1}}, use) * float(v[0]));
   return v[0];
-}
-
-PropertyValue XmlParser::parseSpectrumObject(const Place& place, const Properties& node) {
-  const SpectrumUse use = place.emitter ? SpectrumUse::emission : SpectrumUse::reflectance;
-  // What the colour is used for says what it may be.
-  const NumberRange& any = kAnyNumber;
-  const float scale = node.number("scale", any, 1.0f);
-  if (node.type == "uniform") return double(node.number("value", any, 1.0f)) * scale;
-  if (node.type == "d65") return Rgb(node.color("color", any, node.color("value", any, Rgb(1.0f))) * scale);
-  if (node.type == "srgb") return Rgb(node.color("color", any) * scale);
-  if (node.type == "blackbody") return Rgb(blackbodyToRgb(node.number("temperature", kTemperatures)) * scale);
-  if (node.type != "regular" && node.type != "irregular")
-    throw SceneError(node.location, "found the spectrum '" + node.type +
-                                        "', expected uniform, d65, srgb, blackbody, regular or irregular");
-  const std::vector<double> values = parseNumbers(node.string("values"), "'values'", node.location);
-  std::vector<double> wavelengths;
-  if (node.type == "irregular") {
-    wavelengths = parseNumbers(node.string("wavelengths"), "'wavelengths'", node.location);
-  } else {
-    constexpr NumberRange nanometres{0, 1e6, false};
-    const double low = node.number("wavelength_min", nanometres),
-                 high = node.number("wavelength_max", nanometres);
-    for (size_t i = 0; i < values.size(); ++i)
-      wavelengths.push_back(low + (high - low) * double(i) / std::max<double>(1, double(values.size()) - 1));
-  }
-  if (wavelengths.size() != values.size())
-    throw SceneError(node.location, "found " + std::to_string(wavelengths.size()) + " wavelengths and " +
-                                        std::to_string(values.size()) + " values, expected as many of each");
-  std::vector<SpectrumSample> samples;
-  for (size_t i = 0; i < values.size(); ++i) samples.push_back({wavelengths[i], values[i] * scale});
-  checkSpectrum(samples, node.location);
-  return spectrumToRgb(samples, use);
 }
 
 }  // namespace odis::render

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "render/xml/find_file.h"
 #include "render/xml/names.h"
 
 namespace odis::render {
@@ -47,7 +48,8 @@ XmlElement XmlParser::element(const Place& place, const pugi::xml_node& node) {
     } catch (const SceneError& error) {
       // Published scenes leave the integrator to whoever renders them.
       if (e.tag != "integrator" || std::string(attribute.name()) != "type") throw;
-      m_warnings.add({}, std::string(error.what()) + "; the integrator of this program is used");
+      m_warnings.add({}, std::string(error.what()) + "; the integrator of this program is used",
+                     Effect::same);
     }
     if (!e.attributes.emplace(attribute.name(), std::move(value)).second)
       throw SceneError(e.at, "<" + e.tag + "> has the attribute '" + attribute.name() + "' twice");
@@ -71,6 +73,7 @@ ParsedScene XmlParser::parse(const XmlFile& file) {
     const std::string& version = e.require("version");
     if (version.empty() || version.find_first_not_of("0123456789.") != std::string::npos)
       throw SceneError(e.at, "found the version '" + version + "', expected numbers such as 3.0.0");
+    m_before2 = version.rfind("0.", 0) == 0;
   }
   const auto root = std::make_shared<Properties>();
   root->tag = "scene";
@@ -93,11 +96,10 @@ void XmlParser::parseNode(const Place& place, const pugi::xml_node& node, Proper
     throw SceneError(place.file.locate(node),
                      "elements are nested more than " + std::to_string(kMaxDepth) + " deep");
   const XmlElement e = element(place, node);
+  if (parseSpectrumObject(place, node, e, owner)) return;
   if (isObjectTag(e.tag)) {
     e.allow({"type", "id", "name", "version"});
-    const auto object = parseObject(place, node, e);
-    owner.children.push_back({e.has("name") ? snakeCase(e.require("name")) : "", object});
-    if (!object->id.empty()) m_references.define(object->id, object);
+    addObject(owner, e, parseObject(place, node, e), e.tag);
     return;
   }
   if (e.tag == "scene")
@@ -125,14 +127,11 @@ void XmlParser::parseStructure(const Place& place, const XmlElement& e, Properti
     m_references.alias(e.require("id"), e.require("as"), e.at);
   } else if (e.tag == "path") {
     e.allow({"value"});
-    namespace fs = std::filesystem;
-    const fs::path folder = fs::path(place.file.path()).parent_path() / e.require("value");
-    std::error_code error;
-    if (!fs::is_directory(folder, error))
-      throw SceneError(e.at, "found the path '" + e.require("value") + "', expected a folder that exists");
+    // Of an included file it may be beside the scene that includes it, too.
+    std::string folder = findFile(e.require("value"), m_folders, e.at, Wanted::folder);
     if (m_folders.size() >= kMaxFolders)
       throw SceneError(e.at, "found more than " + std::to_string(kMaxFolders) + " paths");
-    m_folders.push_back(folder.string());
+    m_folders.push_back(std::move(folder));
   } else if (e.tag == "include") {
     parseInclude(place, e, owner);
   }
@@ -140,7 +139,7 @@ void XmlParser::parseStructure(const Place& place, const XmlElement& e, Properti
 
 void XmlParser::parseInclude(const Place& place, const XmlElement& e, Properties& owner) {
   e.allow({"filename"});
-  const std::string path = findFile(place, e.require("filename"), e.at);
+  const std::string path = findInput(e.require("filename"), e.at);
   std::error_code ignored;
   const std::string canonical = std::filesystem::weakly_canonical(path, ignored).string();
   if (std::find(m_openFiles.begin(), m_openFiles.end(), canonical) != m_openFiles.end())
@@ -175,8 +174,16 @@ std::shared_ptr<Properties> XmlParser::parseObject(const Place& place, const pug
   object->type = lowerCase(e.require("type"));
   if (e.has("id")) object->id = e.require("id");
   object->location = e.at;
+  object->before2 = m_before2;
   parseChildren({place.file, place.depth + 1, place.emitter || e.tag == "emitter"}, node, *object);
   return object;
+}
+
+void XmlParser::addObject(Properties& owner, const XmlElement& e, const std::shared_ptr<Properties>& object,
+                          const std::string& tag) {
+  object->tag = tag;
+  owner.children.push_back({e.has("name") ? snakeCase(e.require("name")) : "", object});
+  if (!object->id.empty()) m_references.define(object->id, object);
 }
 
 void XmlParser::addParameter(Properties& owner, const XmlElement& e, PropertyValue value) {
@@ -188,17 +195,9 @@ void XmlParser::addParameter(Properties& owner, const XmlElement& e, PropertyVal
                                entry->second.location.text() + ")");
 }
 
-std::string XmlParser::findFile(const Place& place, const std::string& name, const SourceLocation& at) {
-  namespace fs = std::filesystem;
-  std::vector<fs::path> folders = {fs::path(place.file.path()).parent_path()};
-  folders.insert(folders.end(), m_folders.begin(), m_folders.end());
-  for (const fs::path& folder : folders) {
-    std::error_code error;
-    if (name.empty() || !fs::exists(fs::symlink_status(folder / name, error))) continue;
-    m_files.push_back((folder / name).string());
-    return m_files.back();
-  }
-  throw SceneError(at, "there is no file '" + name + "', expected one relative to the folder of this file");
+std::string XmlParser::findInput(const std::string& name, const SourceLocation& at) {
+  m_files.push_back(findFile(name, m_folders, at));
+  return m_files.back();
 }
 
 ParsedScene parseScene(const std::string& path, const std::map<std::string, std::string>& defines,

@@ -44,12 +44,19 @@ class XmlParser {
                         Properties& owner);
   bool parseValue(const Place& place, const pugi::xml_node& node, const XmlElement& e, Properties& owner);
   PropertyValue parseSpectrumValue(const Place& place, const XmlElement& e);
-  // A <spectrum type="..."> of Mitsuba 3, as a colour.
-  PropertyValue parseSpectrumObject(const Place& place, const Properties& node);
+  // Whether it is a <spectrum type="..."> of Mitsuba 3, where textures may stand as well, or a <texture> that
+  // names one; a colour is then added as a parameter, a texture as a child.
+  bool parseSpectrumObject(const Place& place, const pugi::xml_node& node, const XmlElement& e,
+                           Properties& owner);
   Matrix4 parseTransformSteps(const Place& place, const pugi::xml_node& node);
+  void noteStretchingAxis(const XmlElement& step);
+  void addObject(Properties& owner, const XmlElement& e, const std::shared_ptr<Properties>& object,
+                 const std::string& tag);
   void addParameter(Properties& owner, const XmlElement& e, PropertyValue value);
-  std::string findFile(const Place& place, const std::string& name, const SourceLocation& at);
+  // A file that the scene names.
+  std::string findInput(const std::string& name, const SourceLocation& at);
 
+  bool m_before2 = false;  // what the scene's version says
   Variables m_variables;
   Warnings& m_warnings;
   XmlReferences m_references;

@@ -177,10 +177,14 @@ std::vector<std::pair<std::string, SourceLocation>> Properties::unqueried() cons
 }
 
 void warnOfMisspelt(const Properties& node, Warnings& warnings) {
-  for (const auto& [name, location] : node.unqueried())
-    if (const std::string meant = node.suggestionFor(name); !meant.empty())
-      warnings.add(location, "unknown parameter '" + name + "' of the " + node.tag + " '" + node.type +
-                                 "' is ignored" + meant);
+  for (const auto& [name, location] : node.unqueried()) {
+    const std::string what = "'" + name + "' of the " + node.tag + " '" + node.type + "'";
+    const std::string meant = node.suggestionFor(name);
+    if (meant.empty())
+      warnings.add(location, what + " has no effect", Effect::none);
+    else
+      warnings.add(location, "unknown parameter " + what + " is ignored" + meant);
+  }
 }
 
 }  // namespace odis::render

@@ -47,6 +47,7 @@ class Properties {
   std::string type;  // plugin name, lower case: "roughconductor"
   std::string id;    // "" if none
   SourceLocation location;
+  bool before2 = false;  // whether the scene says that it is one of Mitsuba 0.5 or 0.6
   std::map<std::string, Parameter> parameters;
   std::vector<Child> children;
 
@@ -89,8 +90,8 @@ class Properties {
   mutable std::map<std::string, Declaration> m_declarations;
 };
 
-// Warns of parameters that nobody asked for and that resemble one that somebody did: for elements of which
-// only a part is read.
+// For elements of which only a part is read, as the picture depends on no more: warns of parameters that
+// nobody asked for if they resemble one that somebody did; the others change nothing.
 void warnOfMisspelt(const Properties& node, Warnings& warnings);
 
 }  // namespace odis::render

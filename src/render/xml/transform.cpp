@@ -22,13 +22,13 @@ Matrix parseMatrix(const XmlElement& element) {
   return result;
 }
 
-Matrix parseRotation(const XmlElement& element) {
+Matrix parseRotation(const XmlElement& element, RotationAxis length) {
   element.allow({"x", "y", "z", "value", "angle"});
   const double angle = parseNumber(element.require("angle"), "the angle", element.at) * M_PI / 180;
   Vector axis(parseVector(element, 0, false));
   if (axis.length() == 0)
     throw SceneError(element.at, "found the rotation axis 0 0 0, expected an axis with a length");
-  axis.normalize();
+  if (length == RotationAxis::normalized) axis.normalize();
   // Rodrigues' formula, transposed for row vectors.
   const double s = std::sin(angle), c = std::cos(angle);
   Matrix result;
@@ -70,10 +70,10 @@ Matrix parseLookAt(const XmlElement& element) {
   return result;
 }
 
-Matrix parseStep(const XmlElement& element) {
+Matrix parseStep(const XmlElement& element, RotationAxis axis) {
   const std::string tag = lowerCase(element.tag);
   if (tag == "matrix") return parseMatrix(element);
-  if (tag == "rotate") return parseRotation(element);
+  if (tag == "rotate") return parseRotation(element, axis);
   if (tag == "lookat") return parseLookAt(element);
   Matrix result;
   if (tag == "translate") {
@@ -92,9 +92,9 @@ Matrix parseStep(const XmlElement& element) {
 
 }  // namespace
 
-Matrix4 parseTransform(const std::vector<XmlElement>& steps) {
+Matrix4 parseTransform(const std::vector<XmlElement>& steps, RotationAxis axis) {
   Matrix product;
-  for (const XmlElement& step : steps) product = product * parseStep(step);
+  for (const XmlElement& step : steps) product = product * parseStep(step, axis);
   return Matrix4(product);
 }
 
