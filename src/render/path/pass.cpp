@@ -57,8 +57,9 @@ void collect(const Pass& pass, std::span<const Path> paths, TileResult& result) 
 
 // The rest of a camera's ray behind the lights that it meets first, one after another.
 Ray beyondEmitters(const Scene& scene, Ray ray) {
+  constexpr int kMostLights = 1000;  // so that no scene of coinciding ones takes for ever
   SurfacePoint at;
-  while (scene.intersect(ray, at) && at.shape->emitter()) {
+  for (int i = 0; i < kMostLights && scene.intersect(ray, at) && at.shape->emitter(); ++i) {
     const Ray rest = Scene::spawn(at, ray.direction);
     ray = {rest.origin, ray.direction, ray.tMax - dot(rest.origin - ray.origin, ray.direction)};
   }

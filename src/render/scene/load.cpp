@@ -70,7 +70,8 @@ std::unique_ptr<Scene> Scene::load(const std::string& path, const LoadOptions& o
   auto scene = std::make_unique<Scene>();
   ShapeLoader shapes(*scene, builder);
 
-  auto [integrator, sensor] = loadObjects(root, *scene, shapes, builder);
+  const Singles singles = loadObjects(root, *scene, shapes, builder);
+  const Properties* sensor = singles.sensor;
   scene->finish();
 
   const ShapeLoader::Meter meter = sensor ? ShapeLoader::Meter() : shapes.meter();
@@ -82,7 +83,7 @@ std::unique_ptr<Scene> Scene::load(const std::string& path, const LoadOptions& o
   };
   const FilmSettings film = loadFilm(part("film"), options, warnings);
   scene->setFilm(film);
-  scene->setIntegrator(loadIntegrator(integrator, part("sampler"), warnings));
+  scene->setIntegrator(loadIntegrator(singles.integrator, part("sampler"), warnings));
   const Vec2i resolution(film.width, film.height);
   if (sensor) {
     scene->setSensor(meter.shape ? makeMeter(*sensor, resolution, meter.shape)
