@@ -75,7 +75,11 @@ TEST_P(Models, WeightIsValueOverDensity) {
       EXPECT_LE(v.guidablePdf, v.pdf * (1 + 1e-5f));
       for (int c = 0; c < 3; ++c)
         EXPECT_NEAR(s.weight[c] * s.pdf, v.value[c], tolerance * v.value[c] + 1e-6f);
-      EXPECT_EQ(s.wi.z * wo.z < 0, s.eta != 1 && bsdf().traits().transmissive) << "eta = " << s.eta;
+      // What is thin has the same medium on both sides.
+      if (has("thin"))
+        EXPECT_EQ(s.eta, 1);
+      else
+        EXPECT_EQ(s.wi.z * wo.z < 0, s.eta != 1 && bsdf().traits().transmissive) << "eta = " << s.eta;
     }
 }
 
@@ -144,6 +148,8 @@ TEST_P(Models, IsReciprocal) {
     Vec3 wo = squareToSphere(uniform.next2()), wi = squareToSphere(uniform.next2());
     if (!glass) wo.z = std::abs(wo.z), wi.z = std::abs(wi.z);
     if (std::abs(wo.z) < 0.05f || std::abs(wi.z) < 0.05f) continue;
+    // Mitsuba leaves out some transmission through thin facets, by a rule that is not symmetric.
+    if (GetParam() == "principledthin_glass" && wo.z * wi.z < 0) continue;
     const Rgb a = bsdf().evaluate(m_at, wo, wi).value / std::abs(wi.z);
     const Rgb b = bsdf().evaluate(m_at, wi, wo).value / std::abs(wo.z);
     const float indexO = wo.z > 0 ? 1 : eta2, indexI = wi.z > 0 ? 1 : eta2;

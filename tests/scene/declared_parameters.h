@@ -46,8 +46,8 @@ inline std::vector<ElementType> allElementTypes() {
   all.push_back({"integrator", "path"});
   const std::string bsdf = "<bsdf type='diffuse'/>", texture = "<texture type='checkerboard'/>";
   const std::map<std::string, std::string> children = {
-      {"blendbsdf", bsdf + bsdf},    {"bumpmap", texture + bsdf}, {"mask", bsdf},
-      {"normalmap", texture + bsdf}, {"scale", texture},          {"twosided", bsdf}};
+      {"blendbsdf", bsdf + bsdf}, {"bumpmap", texture + bsdf},   {"coating", bsdf},  {"mask", bsdf},
+      {"roughcoating", bsdf},     {"normalmap", texture + bsdf}, {"scale", texture}, {"twosided", bsdf}};
   for (ElementType& element : all) {
     if (const auto found = children.find(element.type); found != children.end())
       element.children = found->second;

@@ -9,6 +9,8 @@ namespace {
 constexpr std::pair<const char*, BsdfFactory> kFactories[] = {
     {"blendbsdf", makeBlend},
     {"bumpmap", makeBumpMap},
+    {"circular", makeCircularPolarizer},
+    {"coating", makeCoating},
     {"conductor", makeConductor},
     {"dielectric", makeDielectric},
     {"diffuse", makeDiffuse},
@@ -17,13 +19,19 @@ constexpr std::pair<const char*, BsdfFactory> kFactories[] = {
     {"null", makeNull},
     {"phong", makePhong},
     {"plastic", makePlastic},
+    {"polarizer", makePolarizer},
+    {"pplastic", makePolarizedPlastic},
     {"principled", makePrincipled},
+    {"principledthin", makePrincipledThin},
+    {"retarder", makeRetarder},
+    {"roughcoating", makeRoughCoating},
     {"roughconductor", makeRoughConductor},
     {"roughdielectric", makeRoughDielectric},
     {"roughdiffuse", makeRoughDiffuse},
     {"roughplastic", makeRoughPlastic},
     {"thindielectric", makeThinDielectric},
     {"twosided", makeTwoSided},
+    {"ward", makeWard},
 };
 
 }  // namespace
