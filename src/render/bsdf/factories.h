@@ -13,6 +13,7 @@ BsdfPtr makeConductor(const Properties& properties, Builder& builder);
 BsdfPtr makeDielectric(const Properties& properties, Builder& builder);
 BsdfPtr makeDiffuse(const Properties& properties, Builder& builder);
 BsdfPtr makeMask(const Properties& properties, Builder& builder);
+BsdfPtr makeMeasuredPolarized(const Properties& properties, Builder& builder);
 BsdfPtr makeNormalMap(const Properties& properties, Builder& builder);
 BsdfPtr makeNull(const Properties& properties, Builder& builder);
 BsdfPtr makePhong(const Properties& properties, Builder& builder);

@@ -15,6 +15,7 @@ constexpr std::pair<const char*, BsdfFactory> kFactories[] = {
     {"dielectric", makeDielectric},
     {"diffuse", makeDiffuse},
     {"mask", makeMask},
+    {"measured_polarized", makeMeasuredPolarized},
     {"normalmap", makeNormalMap},
     {"null", makeNull},
     {"phong", makePhong},
