@@ -12,6 +12,7 @@ BsdfPtr makeCoating(const Properties& properties, Builder& builder);
 BsdfPtr makeConductor(const Properties& properties, Builder& builder);
 BsdfPtr makeDielectric(const Properties& properties, Builder& builder);
 BsdfPtr makeDiffuse(const Properties& properties, Builder& builder);
+BsdfPtr makeHair(const Properties& properties, Builder& builder);
 BsdfPtr makeMask(const Properties& properties, Builder& builder);
 BsdfPtr makeMeasuredPolarized(const Properties& properties, Builder& builder);
 BsdfPtr makeNormalMap(const Properties& properties, Builder& builder);

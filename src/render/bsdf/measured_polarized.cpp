@@ -1,13 +1,14 @@
-// measured_polarized: an isotropic measured surface, one-sided, of which the file says how it polarises light.
-// Light is not polarised here: what is left is that of Mitsuba's unpolarised variants.
+// measured_polarized: an isotropic measured surface, one-sided, of which the file says how it polarises
+// light. Light is not polarised here: what is left is that of Mitsuba's unpolarised variants.
 //
 //   filename       string, of the measurements (".pbsdf")
 //   wavelength     number, nanometres: the one that is drawn, in grey; required, as without it Mitsuba's
 //                  variants without spectra refuse the model
 //   alpha_sample   0 to 1, roughness of the GGX distribution that directions are sampled from; 0.1
 //
-// Baek et al. 2020, "Image-Based Acquisition and Modeling of Polarimetric Reflectance". The file holds Mueller
-// matrices M over the angles of Rusinkiewicz (1998) and five wavelengths: of each the first element counts.
+// Baek et al. 2020, "Image-Based Acquisition and Modeling of Polarimetric Reflectance". The file holds
+// Mueller matrices M over the angles of Rusinkiewicz (1998) and some wavelengths: of each the first element
+// counts.
 #include <fmt/format.h>
 
 #include "render/bsdf/factories.h"

@@ -14,6 +14,7 @@ constexpr std::pair<const char*, BsdfFactory> kFactories[] = {
     {"conductor", makeConductor},
     {"dielectric", makeDielectric},
     {"diffuse", makeDiffuse},
+    {"hair", makeHair},
     {"mask", makeMask},
     {"measured_polarized", makeMeasuredPolarized},
     {"normalmap", makeNormalMap},

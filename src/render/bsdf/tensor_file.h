@@ -1,9 +1,9 @@
 // Mitsuba's tensor files (".bsdf", ".pbsdf"): named arrays of numbers.
 //
 // The file: the 12 bytes "tensor_file" and a zero, the version (uint8 major 1, minor 0), the number of fields
-// (uint32); of each field its name (uint16 length, bytes), its number of dimensions (uint16), its type (uint8),
-// where its values begin (uint64, bytes from the start of the file) and its shape (uint64 each). Values are
-// stored row by row, the last dimension fastest. All is little-endian.
+// (uint32); of each field its name (uint16 length, bytes), its number of dimensions (uint16), its type
+// (uint8), where its values begin (uint64, bytes from the start of the file) and its shape (uint64 each).
+// Values are stored row by row, the last dimension fastest. All is little-endian.
 #pragma once
 
 #include <cstdint>

@@ -10,9 +10,11 @@ namespace {
 
 using ShapeFactory = ShapePtr (*)(const Properties&, Builder&);
 constexpr std::pair<const char*, ShapeFactory> kFactories[] = {
+    {"bsplinecurve", makeBsplineCurve},
     {"cube", makeCube},
     {"cylinder", makeCylinder},
     {"disk", makeDisk},
+    {"linearcurve", makeLinearCurve},
     {"obj", makeObj},
     {"ply", makePly},
     {"rectangle", makeRectangle},
