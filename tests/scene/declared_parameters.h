@@ -51,8 +51,8 @@ inline std::vector<ElementType> allElementTypes() {
   for (ElementType& element : all) {
     if (const auto found = children.find(element.type); found != children.end())
       element.children = found->second;
-    for (const char* file : {"bitmap", "bsplinecurve", "envmap", "linearcurve", "measured_polarized", "obj",
-                             "ply", "serialized"})
+    for (const char* file : {"bitmap", "bsplinecurve", "envmap", "linearcurve", "measured",
+                             "measured_polarized", "obj", "ply", "sdfgrid", "serialized"})
       if (element.type == file)
         element.parameters["filename"] = std::string("<string name='filename' value='file.") + file + "'/>";
   }
@@ -86,6 +86,10 @@ class ElementMaker {
     m_folder.write("file.bsplinecurve", "0 0 0 0.1\n1 0 0 0.1\n1 1 0 0.1\n1 1 1 0.1\n");
     std::ifstream measurements(ODIS_SOURCE "/fuzz/corpus/tensor/grey.pbsdf", std::ios::binary);
     m_folder.write("file.measured_polarized", {std::istreambuf_iterator<char>(measurements), {}});
+    std::ifstream cloth(ODIS_SOURCE "/tests/bsdf/data/cloth.bsdf", std::ios::binary);
+    m_folder.write("file.measured", {std::istreambuf_iterator<char>(cloth), {}});
+    std::ifstream volume(ODIS_SOURCE "/fuzz/corpus/volume/plane.vol", std::ios::binary);
+    m_folder.write("file.sdfgrid", {std::istreambuf_iterator<char>(volume), {}});
     m_folder.write("file.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
     m_folder.write(
         "file.ply",

@@ -14,6 +14,7 @@ ShapePtr makeLinearCurve(const Properties& node, Builder& builder);
 ShapePtr makeObj(const Properties& node, Builder& builder);
 ShapePtr makePly(const Properties& node, Builder& builder);
 ShapePtr makeRectangle(const Properties& node, Builder& builder);
+ShapePtr makeSdfGrid(const Properties& node, Builder& builder);
 ShapePtr makeSerialized(const Properties& node, Builder& builder);
 ShapePtr makeSphere(const Properties& node, Builder& builder);
 

@@ -18,6 +18,7 @@ constexpr std::pair<const char*, ShapeFactory> kFactories[] = {
     {"obj", makeObj},
     {"ply", makePly},
     {"rectangle", makeRectangle},
+    {"sdfgrid", makeSdfGrid},
     {"serialized", makeSerialized},
     {"sphere", makeSphere},
 };
