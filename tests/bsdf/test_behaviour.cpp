@@ -143,6 +143,24 @@ TEST(Coating, AbsorbsAlongThePath) {
              1e-4f);
 }
 
+TEST(Coating, ARoughOneTendsToTheSmoothOne) {
+  json layer = {{"type", "coating"}, {"sigma_a", {0.1, 0.3, 0}}, {"nested", {{"type", "diffuse"}}}};
+  const BsdfPtr smooth = makeModel(layer);
+  layer["type"] = "roughcoating";
+  layer["alpha"] = 1e-3;
+  const BsdfPtr rough = makeModel(layer);
+  for (const float cosine : {0.9f, 0.5f, 0.2f}) {
+    const Vec3 wo = direction(cosine, 1), wi = direction(0.6f, 2);
+    expectNear(rough->evaluate(flatPoint(), wo, wi).value, smooth->evaluate(flatPoint(), wo, wi).value,
+               0.01f);
+    // The reflection of the interface is all around the mirrored direction.
+    const BsdfSample a = rough->sample(flatPoint(), wo, 0, {0.5f, 0.5f}),
+                     b = smooth->sample(flatPoint(), wo, 0, {0.5f, 0.5f});
+    EXPECT_EQ(a.lobe, Lobe::nearDelta);
+    EXPECT_LT(length(a.wi - b.wi), 0.01f);
+  }
+}
+
 TEST(Ward, HasTheFormulasOfThePapers) {
   const Vec3 wo = direction(0.8f, 1), wi = direction(0.6f, 3.8f), h = wo + wi;  // not normalized
   const float alphaU = 0.3f, alphaV = 0.5f;

@@ -135,6 +135,7 @@ TEST_P(Models, GuidableProbabilityIsTheShareOfSmoothDraws) {
 
 TEST_P(Models, IsReciprocal) {
   if (has("normalmap")) GTEST_SKIP() << "perturbed frames are not reciprocal";
+  if (has("measured_cloth") || has("measured_velvet")) GTEST_SKIP() << "measurements may be anything";
   if (has("hair")) GTEST_SKIP() << "the tilt of scales is not reciprocal";
   // Light on the back of an opaque surface meets another BSDF.
   if (GetParam() == "twosided_two") GTEST_SKIP() << "two BSDFs";

@@ -14,6 +14,7 @@ BsdfPtr makeDielectric(const Properties& properties, Builder& builder);
 BsdfPtr makeDiffuse(const Properties& properties, Builder& builder);
 BsdfPtr makeHair(const Properties& properties, Builder& builder);
 BsdfPtr makeMask(const Properties& properties, Builder& builder);
+BsdfPtr makeMeasured(const Properties& properties, Builder& builder);
 BsdfPtr makeMeasuredPolarized(const Properties& properties, Builder& builder);
 BsdfPtr makeNormalMap(const Properties& properties, Builder& builder);
 BsdfPtr makeNull(const Properties& properties, Builder& builder);

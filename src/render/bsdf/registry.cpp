@@ -16,6 +16,7 @@ constexpr std::pair<const char*, BsdfFactory> kFactories[] = {
     {"diffuse", makeDiffuse},
     {"hair", makeHair},
     {"mask", makeMask},
+    {"measured", makeMeasured},
     {"measured_polarized", makeMeasuredPolarized},
     {"normalmap", makeNormalMap},
     {"null", makeNull},
