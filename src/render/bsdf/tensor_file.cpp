@@ -74,7 +74,7 @@ void TensorFile::refuse(const std::string& name, const std::string& found,
 
 std::string TensorFile::shapeText(const std::string& name) const {
   const std::vector<uint64_t>& sizes = shape(name);
-  return sizes.empty() ? "a single value" : fmt::format("{}", fmt::join(sizes, " x "));
+  return sizes.empty() ? "1" : fmt::format("{}", fmt::join(sizes, " x "));
 }
 
 const char* TensorFile::values(const std::string& name, Type type, uint64_t& count) const {
@@ -85,12 +85,13 @@ const char* TensorFile::values(const std::string& name, Type type, uint64_t& cou
   const std::string_view all = m_bytes.view();
   const uint64_t room = f.offset < all.size() ? (all.size() - f.offset) / sizeOf(type) : 0;
   count = 1;
+  bool fits = room > 0;  // a field without dimensions is a single value
   for (const uint64_t size : f.shape) {
     // A product that would not fit in the file does not overflow either.
-    if (size > 0 && count > room / size)
-      refuse(name, shapeText(name) + " values", fmt::format("no more than the {} in the file", room));
-    count *= size;
+    fits = fits && (size == 0 || count <= room / size);
+    if (fits) count *= size;
   }
+  if (!fits) refuse(name, shapeText(name) + " values", fmt::format("no more than the {} in the file", room));
   if (count == 0) refuse(name, "no values", "at least one");
   return all.data() + f.offset;
 }
