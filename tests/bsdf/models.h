@@ -37,7 +37,7 @@ inline std::shared_ptr<Properties> propertiesOf(const nlohmann::json& json, cons
 inline BsdfPtr makeModel(const nlohmann::json& json, Warnings& warnings) {
   // Children live as long as the builder, which remembers them by address.
   const auto properties = propertiesOf(json);
-  Builder builder(warnings);
+  Builder builder(warnings, {ODIS_TEST_DATA});
   const BsdfFactory factory = findBsdfFactory(properties->type);
   if (!factory) throw std::runtime_error("no factory for " + properties->type);
   return factory(*properties, builder);

@@ -75,7 +75,11 @@ TEST_P(Models, WeightIsValueOverDensity) {
       EXPECT_LE(v.guidablePdf, v.pdf * (1 + 1e-5f));
       for (int c = 0; c < 3; ++c)
         EXPECT_NEAR(s.weight[c] * s.pdf, v.value[c], tolerance * v.value[c] + 1e-6f);
-      EXPECT_EQ(s.wi.z * wo.z < 0, s.eta != 1 && bsdf().traits().transmissive) << "eta = " << s.eta;
+      // What is thin, or crossed as a whole, has the same medium on both sides.
+      if (has("thin") || has("hair"))
+        EXPECT_EQ(s.eta, 1);
+      else
+        EXPECT_EQ(s.wi.z * wo.z < 0, s.eta != 1 && bsdf().traits().transmissive) << "eta = " << s.eta;
     }
 }
 
@@ -131,6 +135,8 @@ TEST_P(Models, GuidableProbabilityIsTheShareOfSmoothDraws) {
 
 TEST_P(Models, IsReciprocal) {
   if (has("normalmap")) GTEST_SKIP() << "perturbed frames are not reciprocal";
+  if (has("measured_cloth") || has("measured_velvet")) GTEST_SKIP() << "measurements may be anything";
+  if (has("hair")) GTEST_SKIP() << "the tilt of scales is not reciprocal";
   // Light on the back of an opaque surface meets another BSDF.
   if (GetParam() == "twosided_two") GTEST_SKIP() << "two BSDFs";
   Uniform uniform(17);
@@ -144,6 +150,8 @@ TEST_P(Models, IsReciprocal) {
     Vec3 wo = squareToSphere(uniform.next2()), wi = squareToSphere(uniform.next2());
     if (!glass) wo.z = std::abs(wo.z), wi.z = std::abs(wi.z);
     if (std::abs(wo.z) < 0.05f || std::abs(wi.z) < 0.05f) continue;
+    // Mitsuba leaves out some transmission through thin facets, by a rule that is not symmetric.
+    if (GetParam() == "principledthin_glass" && wo.z * wi.z < 0) continue;
     const Rgb a = bsdf().evaluate(m_at, wo, wi).value / std::abs(wi.z);
     const Rgb b = bsdf().evaluate(m_at, wi, wo).value / std::abs(wo.z);
     const float indexO = wo.z > 0 ? 1 : eta2, indexI = wi.z > 0 ? 1 : eta2;

@@ -46,12 +46,13 @@ inline std::vector<ElementType> allElementTypes() {
   all.push_back({"integrator", "path"});
   const std::string bsdf = "<bsdf type='diffuse'/>", texture = "<texture type='checkerboard'/>";
   const std::map<std::string, std::string> children = {
-      {"blendbsdf", bsdf + bsdf},    {"bumpmap", texture + bsdf}, {"mask", bsdf},
-      {"normalmap", texture + bsdf}, {"scale", texture},          {"twosided", bsdf}};
+      {"blendbsdf", bsdf + bsdf}, {"bumpmap", texture + bsdf},   {"coating", bsdf},  {"mask", bsdf},
+      {"roughcoating", bsdf},     {"normalmap", texture + bsdf}, {"scale", texture}, {"twosided", bsdf}};
   for (ElementType& element : all) {
     if (const auto found = children.find(element.type); found != children.end())
       element.children = found->second;
-    for (const char* file : {"bitmap", "envmap", "obj", "ply", "serialized"})
+    for (const char* file : {"bitmap", "bsplinecurve", "envmap", "linearcurve", "measured",
+                             "measured_polarized", "obj", "ply", "sdfgrid", "serialized"})
       if (element.type == file)
         element.parameters["filename"] = std::string("<string name='filename' value='file.") + file + "'/>";
   }
@@ -59,6 +60,7 @@ inline std::vector<ElementType> allElementTypes() {
     return *std::find_if(all.begin(), all.end(), [&](const ElementType& e) { return e.type == type; });
   };
   find("mesh_attribute").parameters["name"] = "<string name='name' value='vertex_color'/>";
+  find("measured_polarized").parameters["wavelength"] = "<float name='wavelength' value='560'/>";
   find("blendbsdf").parameters["weight"] = "<float name='weight' value='0.5'/>";
   // The default would be a table that takes a while.
   for (const char* type : {"sky", "sunsky"})
@@ -81,6 +83,14 @@ class ElementMaker {
   ElementMaker() {
     const std::string png = render::encodePng(1, 1, 3, std::array<uint8_t, 3>{1, 2, 3}.data());
     for (const char* image : {"file.bitmap", "file.envmap"}) m_folder.write(image, png);
+    m_folder.write("file.linearcurve", "0 0 0 0.1\n1 0 0 0.1\n");
+    m_folder.write("file.bsplinecurve", "0 0 0 0.1\n1 0 0 0.1\n1 1 0 0.1\n1 1 1 0.1\n");
+    std::ifstream measurements(ODIS_SOURCE "/fuzz/corpus/tensor/grey.pbsdf", std::ios::binary);
+    m_folder.write("file.measured_polarized", {std::istreambuf_iterator<char>(measurements), {}});
+    std::ifstream cloth(ODIS_SOURCE "/tests/bsdf/data/cloth.bsdf", std::ios::binary);
+    m_folder.write("file.measured", {std::istreambuf_iterator<char>(cloth), {}});
+    std::ifstream volume(ODIS_SOURCE "/fuzz/corpus/volume/plane.vol", std::ios::binary);
+    m_folder.write("file.sdfgrid", {std::istreambuf_iterator<char>(volume), {}});
     m_folder.write("file.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
     m_folder.write(
         "file.ply",

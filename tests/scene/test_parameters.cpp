@@ -1,5 +1,5 @@
 // All parameters of all elements: what is out of the declared range or of another kind is refused where it
-// stands, what is at an end of the range is taken, and docs/scene-parameters.md lists them all.
+// stands, what is at an end of the range is taken, and docs/scene-parameters*.md list them all.
 #include <cmath>
 #include <set>
 #include <sstream>
@@ -166,10 +166,9 @@ Rows rowsOfProgram() {
   return rows;
 }
 
-Rows rowsOfManual() {
-  Rows rows;
+void addRowsOfPage(const char* page, Rows& rows) {
   std::string heading;
-  std::ifstream stream(ODIS_SOURCE "/docs/scene-parameters.md");
+  std::ifstream stream(page);
   for (std::string line; std::getline(stream, line);) {
     if (begins(line, "## ")) heading = line.substr(3);
     const std::vector<std::string> cells =
@@ -180,6 +179,12 @@ Rows rowsOfManual() {
       rows.insert({heading, cells[0].substr(1, cells[0].size() - 2), cells[1],
                    type.substr(type.find_first_not_of(' '))});
   }
+}
+
+Rows rowsOfManual() {
+  Rows rows;
+  addRowsOfPage(ODIS_SOURCE "/docs/scene-parameters.md", rows);
+  addRowsOfPage(ODIS_SOURCE "/docs/scene-parameters-bsdfs.md", rows);
   return rows;
 }
 

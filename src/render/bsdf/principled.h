@@ -44,9 +44,11 @@ struct PrincipledPoint {
 
   BsdfSample sample(const Vec3& wo, float uLobe, const Vec2& u) const;
   BsdfValue evaluate(const Vec3& wo, const Vec3& wi) const;
-
- private:
+  // The interface's reflectance: true Fresnel for the dielectric part, Schlick's for the metallic and the
+  // tinted one.
   Rgb fresnel(float cosTheta, float dielectric, bool front) const;
+  // Diffuse reflection with retro-reflection, its flattened variant (after Hanrahan and Krueger), and sheen;
+  // the cosine is included. `cosD` is that of the half angle between wo and wi.
   Rgb diffuse(const Vec3& wo, const Vec3& wi, float cosD) const;
 };
 

@@ -131,8 +131,6 @@ BsdfValue PrincipledPoint::evaluate(const Vec3& wo, const Vec3& wi) const {
   return std::isfinite(result.pdf) && isFinite(result.value) ? result : BsdfValue{};
 }
 
-// The interface's reflectance: true Fresnel for the dielectric part, Schlick's for the metallic and the
-// tinted one.
 Rgb PrincipledPoint::fresnel(float cosTheta, float dielectric, bool front) const {
   if (!front) return Rgb(transparent() * dielectric);
   Rgb result((1 - metallic) * (1 - specularTint) * dielectric);
@@ -144,8 +142,6 @@ Rgb PrincipledPoint::fresnel(float cosTheta, float dielectric, bool front) const
   return result;
 }
 
-// Diffuse reflection with retro-reflection, its flattened variant (after Hanrahan and Krueger), and sheen;
-// the cosine is included. `cosD` is that of the half angle between wo and wi.
 Rgb PrincipledPoint::diffuse(const Vec3& wo, const Vec3& wi, float cosD) const {
   const float fI = schlickWeight(wi.z), fO = schlickWeight(wo.z);
   const float retro = 2 * roughness * sqr(cosD);

@@ -92,6 +92,8 @@ void ShapeLoader::setEmitter(Shape& shape, const Properties& node, bool grouped)
                                       ", it is left out");
   } else if (grouped) {
     m_builder.warn(node.location, "emitters can't be instanced, this one is left out");
+  } else if (!shape.canEmit()) {
+    m_builder.warn(node.location, "a shape of this type can't emit, its emitter is left out");
   } else if (shape.emitter()) {
     m_builder.warn(node.location, "a shape has one emitter only, this second one is ignored");
   } else {

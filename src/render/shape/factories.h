@@ -6,12 +6,15 @@
 
 namespace odis::render {
 
+ShapePtr makeBsplineCurve(const Properties& node, Builder& builder);
 ShapePtr makeCube(const Properties& node, Builder& builder);
 ShapePtr makeCylinder(const Properties& node, Builder& builder);
 ShapePtr makeDisk(const Properties& node, Builder& builder);
+ShapePtr makeLinearCurve(const Properties& node, Builder& builder);
 ShapePtr makeObj(const Properties& node, Builder& builder);
 ShapePtr makePly(const Properties& node, Builder& builder);
 ShapePtr makeRectangle(const Properties& node, Builder& builder);
+ShapePtr makeSdfGrid(const Properties& node, Builder& builder);
 ShapePtr makeSerialized(const Properties& node, Builder& builder);
 ShapePtr makeSphere(const Properties& node, Builder& builder);
 

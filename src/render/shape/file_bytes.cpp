@@ -11,7 +11,7 @@ FileBytes::FileBytes(const std::string& path, const SourceLocation& at) {
     m_bytes.reset(new char[m_size]);  // not make_unique, which would clear what is about to be overwritten
     file.read(m_bytes.get(), m_size);
   } catch (const ReadError& error) {
-    throw SceneError(at, "cannot read the mesh \"" + path + "\": " + error.what());
+    throw SceneError(at, "cannot read \"" + path + "\": " + error.what());
   }
 }
 

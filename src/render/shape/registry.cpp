@@ -10,12 +10,15 @@ namespace {
 
 using ShapeFactory = ShapePtr (*)(const Properties&, Builder&);
 constexpr std::pair<const char*, ShapeFactory> kFactories[] = {
+    {"bsplinecurve", makeBsplineCurve},
     {"cube", makeCube},
     {"cylinder", makeCylinder},
     {"disk", makeDisk},
+    {"linearcurve", makeLinearCurve},
     {"obj", makeObj},
     {"ply", makePly},
     {"rectangle", makeRectangle},
+    {"sdfgrid", makeSdfGrid},
     {"serialized", makeSerialized},
     {"sphere", makeSphere},
 };

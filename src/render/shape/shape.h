@@ -86,6 +86,8 @@ class Shape {
 
   const Bsdf& bsdf() const { return *m_bsdf; }
   const SurfaceEmitter* emitter() const { return m_emitter.get(); }
+  // Whether an area light may lie on it.
+  virtual bool canEmit() const { return true; }
   // Whether surface points need dpdu, dpdv and a shading frame along them.
   bool tangents() const { return !m_bsdf || m_bsdf->traits().tangents; }
   SurfaceEmitter* emitter() { return m_emitter.get(); }

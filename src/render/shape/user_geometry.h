@@ -40,10 +40,28 @@ inline PreciseRay preciseRay(RTCRayN* rays, unsigned n, unsigned i) {
           RTCRayN_tfar(rays, n, i)};
 }
 
+// Shapes of one primitive need not be told which.
+template <class Analytic>
+Imath::Box3d boundsOf(const void* shape, unsigned primitive) {
+  const auto& analytic = *static_cast<const Analytic*>(shape);
+  if constexpr (requires { analytic.bounds(primitive); })
+    return analytic.bounds(primitive);
+  else
+    return analytic.bounds();
+}
+template <class Analytic>
+bool hit(const void* shape, unsigned primitive, const PreciseRay& ray, double& t) {
+  const auto& analytic = *static_cast<const Analytic*>(shape);
+  if constexpr (requires { analytic.hit(primitive, ray, t); })
+    return analytic.hit(primitive, ray, t);
+  else
+    return analytic.hit(ray, t);
+}
+
 template <class Analytic>
 void boundsCallback(const RTCBoundsFunctionArguments* arguments) {
   // Rounded outwards, as the box is known in double precision.
-  const Imath::Box3d box = static_cast<const Analytic*>(arguments->geometryUserPtr)->bounds();
+  const Imath::Box3d box = boundsOf<Analytic>(arguments->geometryUserPtr, arguments->primID);
   const Vec3 lower = roundedDown(box.min), upper = roundedUp(box.max);
   RTCBounds& bounds = *arguments->bounds_o;
   bounds.lower_x = lower.x;
@@ -62,7 +80,7 @@ void intersectCallback(const RTCIntersectFunctionNArguments* arguments) {
   for (unsigned i = 0; i < n; ++i) {
     double t;
     if (!arguments->valid[i] ||
-        !static_cast<const Analytic*>(arguments->geometryUserPtr)->hit(preciseRay(rays, n, i), t))
+        !hit<Analytic>(arguments->geometryUserPtr, arguments->primID, preciseRay(rays, n, i), t))
       continue;
     RTCRayN_tfar(rays, n, i) = float(t);
     RTCHitN_u(hits, n, i) = RTCHitN_v(hits, n, i) = 0;
@@ -79,7 +97,7 @@ void occludedCallback(const RTCOccludedFunctionNArguments* arguments) {
   for (unsigned i = 0; i < n; ++i) {
     double t;
     if (arguments->valid[i] &&
-        static_cast<const Analytic*>(arguments->geometryUserPtr)->hit(preciseRay(arguments->ray, n, i), t))
+        hit<Analytic>(arguments->geometryUserPtr, arguments->primID, preciseRay(arguments->ray, n, i), t))
       RTCRayN_tfar(arguments->ray, n, i) = -std::numeric_limits<float>::infinity();
   }
 }
@@ -87,11 +105,11 @@ void occludedCallback(const RTCOccludedFunctionNArguments* arguments) {
 }  // namespace detail
 
 // `Analytic` has `Imath::Box3d bounds() const` and `bool hit(const PreciseRay&, double& t) const`, the
-// nearest hit.
+// nearest hit; both with the number of the primitive as the first argument if there are several.
 template <class Analytic>
-RTCGeometry makeUserGeometry(RTCDevice device, const Analytic& shape) {
+RTCGeometry makeUserGeometry(RTCDevice device, const Analytic& shape, unsigned primitives = 1) {
   RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_USER);
-  rtcSetGeometryUserPrimitiveCount(geometry, 1);
+  rtcSetGeometryUserPrimitiveCount(geometry, primitives);
   rtcSetGeometryUserData(geometry, const_cast<Analytic*>(&shape));
   rtcSetGeometryBoundsFunction(
       geometry, [](const RTCBoundsFunctionArguments* a) { detail::boundsCallback<Analytic>(a); }, nullptr);

@@ -39,6 +39,7 @@ count = int(sys.argv[1]) if len(sys.argv) > 1 else 6
 print("# Mitsuba", mi.__version__, "scalar_rgb; written by golden.py")
 with open(os.path.join(os.path.dirname(os.path.abspath(__file__)), "models.json")) as file:
     models = json.load(file)
+mi.file_resolver().append(os.path.dirname(os.path.abspath(__file__)))
 for name, node in models.items():
     try:
         bsdf = mi.load_dict(dictionary(node))

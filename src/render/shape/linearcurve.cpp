@@ -1,0 +1,19 @@
+// linearcurve: tubes along straight lines from one control point to the next, with spherical joints.
+//
+//   filename   string      of the control points: a text of a line x, y, z, radius each; blank lines part
+//                          curves, which have at least two
+//   to_world   transform   of the control points; radii stay as they are
+//
+// u runs about the curve, v along all pieces of the file (0 to 1). Curves don't emit.
+#include "render/shape/curves.h"
+#include "render/shape/factories.h"
+
+namespace odis::render {
+
+ShapePtr makeLinearCurve(const Properties& node, Builder& builder) {
+  const SourceLocation& location = node.placeOf("filename");
+  const std::string path = builder.resolvePath(node.string("filename"), location);
+  return std::make_shared<Curves>(readCurves(path, location, readToWorld(node), 2), CurveBasis::linear);
+}
+
+}  // namespace odis::render
