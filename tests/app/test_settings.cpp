@@ -39,11 +39,11 @@ TEST(Settings, LaterOnesWin) {
 
 TEST(Settings, ReachTheOptions) {
   RenderOptions o;
-  applySettings(o,
-                {"samples=even", "guide=oracle", "oracle-spp=8", "lights=formula", "roulette=throughput",
-                 "ended-paths=nothing", "shadow-rays=all", "pilot-spp=0.25", "refine=0", "pilot-weight=0.5",
-                 "bsdf-fraction=0.3", "prior-samples=1:2:3.5:0", "map-floor=0.1", "ppg-threshold=500",
-                 "ppg-flux=0.5", "ppg-directional=nearest", "ppg-combine=last", "restir-neighbours=7"});
+  applySettings(o, {"samples=even", "guide=oracle", "oracle-spp=8", "lights=formula", "roulette=throughput",
+                    "ended-paths=nothing", "shadow-rays=all", "pilot-spp=0.25", "refine=0",
+                    "pilot-weight=0.5", "guided-cost=1.5", "bsdf-fraction=0.3", "prior-samples=1:2:3.5:0",
+                    "map-floor=0.1", "ppg-threshold=500", "ppg-flux=0.5", "ppg-directional=nearest",
+                    "ppg-combine=last", "restir-neighbours=7"});
   EXPECT_EQ(o.samples, odis::render::SampleSpread::even);
   EXPECT_EQ(o.guide, odis::render::GuideKind::oracle);
   EXPECT_EQ(o.oracleSpp, 8);
@@ -54,6 +54,7 @@ TEST(Settings, ReachTheOptions) {
   EXPECT_EQ(o.pilotSpp, 0.25);
   EXPECT_EQ(o.refineSpp, 0);
   EXPECT_EQ(o.pilotWeight, 0.5);
+  EXPECT_EQ(o.guidedCost, 1.5f);
   EXPECT_EQ(o.guideOptions.fixedBsdfFraction, 0.3f);
   const float expected[] = {1, 2, 3.5f, 0};
   EXPECT_TRUE(std::equal(expected, expected + 4, o.guideOptions.priorSamples));

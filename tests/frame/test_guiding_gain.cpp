@@ -10,8 +10,8 @@ namespace {
 
 constexpr uint32_t kWidth = 96;
 
-// An image whose pixels have the value 1 + x / 32, and one sample each, whose variance is `variance` times the
-// value squared; exponentially distributed noise has heavy tails. Each costs `rays`.
+// An image whose pixels have the value 1 + x / 32, and one sample each, whose variance is `variance` times
+// the value squared; exponentially distributed noise has heavy tails. Each costs `rays`.
 std::vector<PixelSums> noisyImage(double variance, uint32_t rays, uint32_t seed) {
   std::mt19937 engine(seed);
   std::exponential_distribution<double> noise(1);

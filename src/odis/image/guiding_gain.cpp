@@ -31,7 +31,8 @@ struct GuidedImage {
   uint32_t width, height;
 
   // Sums over the samples of a rectangle without those of one pixel of it.
-  std::pair<Color, uint64_t> around(uint32_t x0, uint32_t y0, uint32_t x1, uint32_t y1, size_t without) const {
+  std::pair<Color, uint64_t> around(uint32_t x0, uint32_t y0, uint32_t x1, uint32_t y1,
+                                    size_t without) const {
     Color sum{};
     uint64_t count = 0;
     for (uint32_t y = y0; y < std::min(y1, height); ++y)
@@ -83,7 +84,8 @@ std::optional<double> guidedOverUnguided(ArrayView<const PixelSums> unguided,
       if (unguided[i].count == 0 || guided[i].count == 0) continue;
       auto [near, nearCount] = samples.around(x - std::min(x, 1u), y - std::min(y, 1u), x + 2, y + 2, i);
       const uint32_t blockX = x / kPixelBlock * kPixelBlock, blockY = y / kPixelBlock * kPixelBlock;
-      const auto [block, blockCount] = samples.around(blockX, blockY, blockX + kPixelBlock, blockY + kPixelBlock, i);
+      const auto [block, blockCount] =
+          samples.around(blockX, blockY, blockX + kPixelBlock, blockY + kPixelBlock, i);
       if (nearCount == 0 || blockCount == 0) continue;
       for (double& channel : near) channel /= double(nearCount);
       const double value = std::max(grayOf(block) / double(blockCount), 0.0) + least;

@@ -69,8 +69,7 @@ class TileCollector {
   void forEach(bool byThreads, size_t count, const Body& body) const;
   template <class IdentityAt>
   std::vector<uint32_t> tilesOf(bool byThreads, size_t count, const IdentityAt& identityAt) const;
-  std::vector<PathVertex> inOrder(const VertexSource& vertices, const TileOrder& byTile,
-                                  uint32_t tile) const;
+  std::vector<PathVertex> inOrder(const VertexSource& vertices, const TileOrder& byTile, uint32_t tile) const;
   void requireOpen(uint32_t tile) const;
   void addTiles(ArrayView<const FrameSample> samples, const VertexSource& vertices);
   void addToTile(uint32_t tile, ArrayView<const FrameSample> samples, TileVertices vertices);
