@@ -150,14 +150,14 @@ typedef struct OdisFrameOptions {
   // samples per pixel.
   bool adaptive ODIS_DEFAULT(true);
   bool keepPilotVertices ODIS_DEFAULT(false);  // whether the pilot's vertices stay after the guide is built
-  const OdisGuideOptions* guide ODIS_DEFAULT(NULL);  // NULL: the defaults; copied
-  // The builder to learn into, with its own options (`guide` must be NULL), which may know of earlier frames;
-  // nobody else uses it until the frame has ended. NULL: one of the frame's own.
-  OdisGuideBuilder builder ODIS_DEFAULT(NULL);
   // >= 0. Time of a ray of a guided path, relative to one of an unguided path. Where the first guided samples
   // show that guiding does not pay, the others are not guided: their passes have a guide without cells. 0:
   // guides in any case.
   float guidedCost ODIS_DEFAULT(1.15f);
+  const OdisGuideOptions* guide ODIS_DEFAULT(NULL);  // NULL: the defaults; copied
+  // The builder to learn into, with its own options (`guide` must be NULL), which may know of earlier frames;
+  // nobody else uses it until the frame has ended. NULL: one of the frame's own.
+  OdisGuideBuilder builder ODIS_DEFAULT(NULL);
 } OdisFrameOptions;
 
 // ---- what a frame asks for and gets ----

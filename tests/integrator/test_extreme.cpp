@@ -67,8 +67,12 @@ std::string scaledRoom(double scale) {
     return "<shape type=\"rectangle\"><transform name=\"to_world\">" + transform + s + "</transform>" +
            kGrey + "</shape>";
   };
-  return test::sensor("origin=\"0,0," + text(3.4 * scale) + "\" target=\"0,0,0\" up=\"0,1,0\"", 38, 12, 12) +
-         wall("<rotate x=\"1\" angle=\"-90\"/><translate y=\"-1\"/>") +
+  std::string camera =
+      test::sensor("origin=\"0,0," + text(3.4 * scale) + "\" target=\"0,0,0\" up=\"0,1,0\"", 38, 12, 12);
+  camera.insert(camera.find("<transform"), "<float name=\"near_clip\" value=\"" + text(0.01 * scale) +
+                                               "\"/><float name=\"far_clip\" value=\"" + text(100 * scale) +
+                                               "\"/>");
+  return camera + wall("<rotate x=\"1\" angle=\"-90\"/><translate y=\"-1\"/>") +
          wall("<rotate x=\"1\" angle=\"90\"/><translate y=\"1\"/>") + wall("<translate z=\"-1\"/>") +
          wall("<rotate y=\"1\" angle=\"90\"/><translate x=\"-1\"/>") +
          wall("<rotate y=\"1\" angle=\"-90\"/><translate x=\"1\"/>") +

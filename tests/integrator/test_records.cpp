@@ -172,7 +172,8 @@ TEST(Samples, OfThePilotDependOnTheImage) {
   };
   EXPECT_EQ(pilotSamples(40, 4), 1);
   EXPECT_EQ(pilotSamples(450, 4), 0.25);
-  EXPECT_EQ(pilotSamples(450, 8), 1);
+  EXPECT_EQ(pilotSamples(450, 31), 0.25);
+  EXPECT_EQ(pilotSamples(450, 32), 1);
 }
 
 TEST(Variance, EstimatesTheSpreadOverSeeds) {
