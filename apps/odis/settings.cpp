@@ -109,7 +109,7 @@ std::vector<Setting> settingsOfPilotAndCells() {
                   [](Options& o, int v) { o.refineSpp = v; }),
       number<double>("pilot-weight", 0, 1e6, "0.6", "Weight of a pilot sample; a guided one's is 1.",
                      [](Options& o, double v) { o.pilotWeight = v; }),
-      number<float>("guided-cost", 0, 1e6, "1.15",
+      number<float>("guided-cost", 0, 1e6, "1",
                     "Time of a guided ray over another's; guiding that does not pay ends. 0: never.",
                     [](Options& o, float v) { o.guidedCost = v; }),
       number<float>("bsdf-fraction", 0, 1, "0",

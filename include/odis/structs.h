@@ -153,7 +153,7 @@ typedef struct OdisFrameOptions {
   // >= 0. Time of a ray of a guided path, relative to one of an unguided path. Where the first guided samples
   // show that guiding does not pay, the others are not guided: their passes have a guide without cells. 0:
   // guides in any case.
-  float guidedCost ODIS_DEFAULT(1.15f);
+  float guidedCost ODIS_DEFAULT(1);
   const OdisGuideOptions* guide ODIS_DEFAULT(NULL);  // NULL: the defaults; copied
   // The builder to learn into, with its own options (`guide` must be NULL), which may know of earlier frames;
   // nobody else uses it until the frame has ended. NULL: one of the frame's own.

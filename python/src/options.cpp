@@ -65,7 +65,7 @@ oracle_samples: int (0): further samples per pixel that the guide is made from i
 guided: bool (True); False: plain path tracing, without a pilot
 adaptive: bool (True): whether pixels whose first samples differ more get more samples; from 4 samples per
     pixel on
-guided_cost: float >= 0 (1.15): what a ray of a guided path takes, relative to one of an unguided path; where
+guided_cost: float >= 0 (1): what a ray of a guided path takes, relative to one of an unguided path; where
     the first guided samples show that guiding does not pay, the others are not guided. 0: guides in any case
 guide: GuideOptions
 

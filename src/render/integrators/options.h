@@ -60,7 +60,7 @@ struct RenderOptions {
   double pilotSpp = 0;
   int oracleSpp = 64;  // samples per pixel that the oracle's maps are made from
   GuideOptions guideOptions;
-  float guidedCost = 1.15f;  // of a guided ray relative to an unguided one; 0: guides whether it pays or not
+  float guidedCost = 1;      // of a guided ray relative to an unguided one; 0: guides whether it pays or not
   double pilotWeight = 0.6;  // of a pilot sample relative to a guided one
   bool records = false;      // keep the pilot's vertices in the result, for those who want to learn from them
   bool guideFeatures = false;  // with `features`, also what the guide decided
