@@ -204,7 +204,6 @@ def half_floats(numbers):
         return numbers.astype(np.float16)
 
 
-
 def halves(table, row, length, active):
     """A row of a table of half floats with so many columns, as floats."""
     return [mi.Float(x) for x in dr.gather(mi.ArrayXf16, table, row, active, shape=(length, -1))]

@@ -59,8 +59,7 @@ struct CoatingBase {
 
   // Probability of sampling the interface where it lets `transmittance` of the light pass.
   float specularProbability(float transmittance) const {
-    const float s = (1 - transmittance) * specularWeight, n = transmittance * (1 - specularWeight);
-    return s + n > 0 ? s / (s + n) : 0.5f;
+    return reflectionProbability(transmittance, specularWeight);
   }
 
   BsdfFeatures features(const SurfacePoint& at, const Vec3& wo, float transmittance, float alpha) const {
@@ -68,7 +67,7 @@ struct CoatingBase {
     const Vec3 o = inside(wo);
     if (o.z == 0) return {clampUnit(top), alpha};
     const BsdfFeatures under = nested->features(at, o);
-    // Of what is scattered in all directions, much is reflected back inside; of what is mirrored, little.
+    // The interface reflects back much of what a diffuse BSDF scatters, little of what a mirror does.
     const float diffuse = std::clamp(1 - fresnelDiffuseReflectance(1 / eta), 0.0f, 1.0f);
     const float leaving = lerp(under.roughness, transmittance, diffuse);
     const Rgb base = under.albedo * absorption(at, o, o) * (transmittance * leaving);

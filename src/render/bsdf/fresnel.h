@@ -81,4 +81,11 @@ inline Vec3 refract(const Vec3& w, const Vec3& m, const DielectricFresnel& f) {
   return m * (dot(w, m) * f.etaOut + f.cosTheta) - w * f.etaOut;
 }
 
+// Probability of sampling the reflection of an interface that lets `transmittance` of the light pass, where
+// `weight` is the share of the interface's reflectance in that of itself and what lies below.
+inline float reflectionProbability(float transmittance, float weight) {
+  const float reflected = (1 - transmittance) * weight, passed = transmittance * (1 - weight);
+  return reflected + passed > 0 ? reflected / (reflected + passed) : 0.5f;
+}
+
 }  // namespace odis::render

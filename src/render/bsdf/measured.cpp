@@ -42,7 +42,7 @@ class Measured final : public Bsdf {
  public:
   explicit Measured(Measurements data) : m_data(std::move(data)) {
     m_traits.tangents = !m_data.isotropic;
-    // That of a GGX distribution that falls to a quarter at the same angle.
+    // The roughness is that of the GGX distribution which falls to a quarter at the same angle.
     const auto d = [&](float u) {
       return interpolate(m_data.normals.data(), m_data.normalsSize[0], m_data.normalsSize[1], {u, 0.5f});
     };

@@ -64,6 +64,17 @@ RoughnessParameters readRoughness(const Properties& properties, Builder& builder
   return result;
 }
 
+RoughnessParameters readConstantRoughness(const Properties& properties, Builder& builder) {
+  RoughnessParameters result = readRoughness(properties, builder);
+  if (result.alphaU.mean() != result.alphaV.mean())
+    throw SceneError(properties.location,
+                     "found different \"alpha_u\" and \"alpha_v\", but " + properties.type + " is isotropic");
+  if (!result.alphaU.isConstant())
+    builder.warn(properties.location,
+                 "the roughness of " + properties.type + " cannot vary; the texture's average is used");
+  return result;
+}
+
 float readRelativeIor(const Properties& properties, const std::string& interior,
                       const std::string& exterior) {
   return readIor(properties, "int_ior", interior) / readIor(properties, "ext_ior", exterior);

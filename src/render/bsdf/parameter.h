@@ -107,6 +107,9 @@ struct RoughnessParameters {
   }
 };
 RoughnessParameters readRoughness(const Properties& properties, Builder& builder);
+// The same for a BSDF whose transmittance is tabulated for one roughness, alphaU.mean(). Throws SceneError
+// for an anisotropic one, and warns of a texture.
+RoughnessParameters readConstantRoughness(const Properties& properties, Builder& builder);
 
 // A finished sample from the value and density of the direction; a failed one if there is no density.
 inline BsdfSample finishSample(const Vec3& wi, const BsdfValue& value, Lobe lobe, float eta = 1) {

@@ -1,6 +1,7 @@
 // What smooth and rough plastic share: a diffuse base under a dielectric coat.
 #pragma once
 
+#include "render/bsdf/fresnel.h"
 #include "render/bsdf/parameter.h"
 
 namespace odis::render {
@@ -27,8 +28,7 @@ struct PlasticBase {
 
   // Probability of sampling the coat where it transmits `transmittance` of the light.
   float specularProbability(float transmittance) const {
-    const float s = (1 - transmittance) * specularWeight, d = transmittance * (1 - specularWeight);
-    return s + d > 0 ? s / (s + d) : 0.5f;
+    return reflectionProbability(transmittance, specularWeight);
   }
 
   BsdfFeatures features(const SurfacePoint& at, float transmittance, float alpha) const {

@@ -83,15 +83,8 @@ BsdfPtr makeRoughCoating(const Properties& properties, Builder& builder) {
   if (base.eta == 1)
     throw SceneError(properties.location,
                      "\"int_ior\" and \"ext_ior\" of roughcoating are equal, expected two media");
-  // The transmittance is tabulated for one roughness, so it cannot vary over the surface.
-  const RoughnessParameters roughness = readRoughness(properties, builder);
+  const RoughnessParameters roughness = readConstantRoughness(properties, builder);
   const float alpha = roughness.alphaU.mean();
-  if (alpha != roughness.alphaV.mean())
-    throw SceneError(properties.location,
-                     "found different \"alpha_u\" and \"alpha_v\", but roughcoating is isotropic");
-  if (!roughness.alphaU.isConstant())
-    builder.warn(properties.location,
-                 "the roughness of roughcoating cannot vary; the texture's average is used");
   const RoughTransmittance transmittance(roughness.type, alpha, base.eta);
   return std::make_shared<RoughCoating>(
       std::move(base), Microfacet(roughness.type, alpha, alpha, roughness.sampleVisible), transmittance);

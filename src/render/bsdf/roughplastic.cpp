@@ -79,15 +79,8 @@ BsdfPtr makeRoughPlastic(const Properties& properties, Builder& builder) {
   base.specular = readReflectance(properties, builder, "specular_reflectance", 1);
   base.nonlinear = properties.boolean("nonlinear", false);
 
-  // The transmittance is tabulated for one roughness, so it cannot vary over the surface.
-  const RoughnessParameters roughness = readRoughness(properties, builder);
+  const RoughnessParameters roughness = readConstantRoughness(properties, builder);
   const float alpha = roughness.alphaU.mean();
-  if (alpha != roughness.alphaV.mean())
-    throw SceneError(properties.location,
-                     "found different \"alpha_u\" and \"alpha_v\", but roughplastic is isotropic");
-  if (!roughness.alphaU.isConstant())
-    builder.warn(properties.location,
-                 "the roughness of roughplastic cannot vary; the texture's average is used");
   return std::make_shared<RoughPlastic>(std::move(base),
                                         Microfacet(roughness.type, alpha, alpha, roughness.sampleVisible),
                                         RoughTransmittance(roughness.type, alpha, base.eta));

@@ -28,7 +28,7 @@ class ShapeLoader {
   using Group = std::shared_ptr<const std::vector<ShapePtr>>;
 
   ShapePtr make(const Properties& node, bool grouped);
-  // Of textures in a BSDF or emitter that look for attributes that the shape hasn't.
+  // Warns of textures, in a BSDF or an emitter, that name an attribute which the shape does not have.
   void warnOfMissingAttributes(const Shape& shape, const Properties& node);
   void setEmitter(Shape& shape, const Properties& node, bool grouped);
   Group group(const Properties& node);

@@ -109,7 +109,7 @@ SurfacePoint Curves::surfacePoint(const Ray& ray, const RawHit& hit) const {
   const double pieces = double(m_pieces.size());
   at.uv = {float(turns), float((hit.primitive + double(hit.u)) / pieces)};
   at.dpdu = Vec3(along.cross(outward) * (2 * M_PI));
-  // As if the frame did not turn about the axis from here on.
+  // The derivative leaves out that the frame turns about the axis along the curve.
   const Vec3d radial = outward.length() > 0 ? outward.normalized() : frame.radial;
   const double stretch = squared > 0 ? 1 - outward.dot(axis.dd) / squared : 1;
   at.dpdv = Vec3((axis.d * stretch + radial * axis.dRadius) * pieces);

@@ -35,7 +35,7 @@ class Curves final : public Shape {
 
   RTCGeometryTy* makeGeometry(RTCDeviceTy* device) const override;
   SurfacePoint surfacePoint(const Ray& ray, const RawHit& hit) const override;
-  // Of straight tubes between the ends of the pieces.
+  // Approximated by straight tubes between the ends of the pieces.
   float area() const override { return m_area; }
   // Curves can't be sampled, and so don't emit.
   bool canEmit() const override { return false; }
