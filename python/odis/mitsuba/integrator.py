@@ -252,7 +252,8 @@ def make_integrator():
             width, height = film.crop_size()
             self.frame = frame = odis.Frame(odis.FrameOptions(
                 width, height, samples_per_pixel=spp, seed=seed, guided_cost=GUIDED_COST,
-                guide=odis.GuideOptions(light_groups=self.known.lights.groups)))
+                guide=odis.GuideOptions(light_groups=self.known.lights.groups,
+                                        light_parts=self.known.lights.parts)))
             has_alpha = mi.has_flag(film.flags(), mi.FilmFlags.Alpha)
             valid = np.zeros(width * height) if has_alpha else None  # samples of each pixel
             progress, traced, self.rays = self.progress or default_progress(), 0, 0

@@ -9,14 +9,17 @@ import numpy as np
 import odis
 
 from .arrays import array_of
+from .environment import REGIONS, make_environment
 
 MOST_GROUPS = 32
 
 
 @dataclass
 class LightTable:
-    """Emitters in the order of their groups. 20 bytes each."""
+    """Emitters in the order of their groups, 20 bytes each. Each region of the environment has a place of its own; they
+    come first."""
 
+    environment: object  # Environment or None
     emitters: object  # EmitterPtr, by place
     group: object  # UInt32, by place: of the emitter
     probabilities: object  # Float, by place: with which Mitsuba chooses it
@@ -61,8 +64,62 @@ class LightTable:
         share = of_group * self._share_of_group(group, plain, learned)
         return dr.select(learned, dr.fma(fraction, share - plain, plain), plain)
 
-    def place_of(self, emitter, active):
-        return dr.gather(mi.UInt32, self.place, dr.reinterpret_array(mi.UInt32, emitter), active)
+    @property
+    def regions(self):
+        """The number of places that are regions of the environment."""
+        return self.environment.regions if self.environment is not None else 0
+
+    @property
+    def parts(self):
+        """Which groups are parts of one light, as odis.GuideOptions has it."""
+        return [(0, REGIONS)] if self.regions and self.groups else []
+
+    def sample(self, tables, cell, fraction, si, u, v, active):
+        """Chooses a light and samples a direction toward it, for next-event estimation at an interaction.
+
+        u: uniform in [0, 1); v: Point2f. Returns the place; with which probability it is chosen; the DirectionSample3f,
+        whose pdf has the choice in it; and the radiance from there over this pdf, if nothing hides it.
+        """
+        place, choice = self.choose(tables, cell, fraction, u, active)
+        toward, light = dr.zeros(mi.DirectionSample3f), mi.Spectrum(0)
+        of_emitter = active & (place >= self.regions)
+        if self.count > self.regions:
+            emitter = dr.gather(mi.EmitterPtr, self.emitters, place, of_emitter)
+            toward, light = emitter.sample_direction(si, v, of_emitter)
+            toward.pdf *= choice
+            light /= choice
+        if self.environment is not None:
+            far = active & (place < self.regions)
+            direction = self.environment.sample(place, v, far)
+            pdf = self.environment_pdf(tables, cell, fraction, direction, far)
+            radiance = self.environment.radiance(si, direction, far)
+            toward.d, toward.pdf = dr.select(far, direction, toward.d), dr.select(far, pdf, toward.pdf)
+            toward.p = dr.select(far, self.environment.place_beyond(si.p, direction), toward.p)
+            toward.delta &= ~far
+            light = dr.select(far, dr.select(pdf > 0, radiance / pdf, 0), light)
+        return place, choice, toward, light
+
+    def pdf(self, tables, cell, fraction, reference, met, active):
+        """The density with which `sample` gives the direction in which light was met: a DirectionSample3f."""
+        pdf, of_emitter = mi.Float(0), mi.Bool(active)
+        if self.environment is not None:
+            far = active & met.emitter.is_environment()
+            of_emitter &= ~far
+            pdf = self.environment_pdf(tables, cell, fraction, met.d, far)
+        if self.count > self.regions:
+            place = dr.gather(mi.UInt32, self.place, dr.reinterpret_array(mi.UInt32, met.emitter), of_emitter)
+            pdf = dr.select(of_emitter, met.emitter.pdf_direction(reference, met, of_emitter)
+                            * self.probability(tables, cell, fraction, place, of_emitter), pdf)
+        return pdf
+
+    def environment_pdf(self, tables, cell, fraction, direction, active):
+        region, density = self.environment.region_and_density(direction, active)
+        pdf = density * self.probability(tables, cell, fraction, region, active)
+        if self.environment.sun is not None:
+            in_sun = active & self.environment.sun.contains(direction)
+            pdf += dr.select(in_sun, self.environment.sun.density * self.probability(
+                tables, cell, fraction, mi.UInt32(REGIONS), in_sun), 0)
+        return pdf
 
     def group_of(self, place, probability, active):
         """The group of a place that was chosen with this probability, and the probability of the group."""
@@ -103,26 +160,31 @@ def center_of(emitter):
     return center if np.isfinite(center).all() else np.zeros(3)
 
 
-def make_groups(emitters, numbers):
-    """Numbers of emitters, in groups of neighbours: each infinite one by itself as long as these are few."""
+def make_groups(emitters, numbers, most):
+    """Numbers of emitters, in at most so many groups of neighbours: each infinite one by itself if these are few."""
     infinite = [i for i in numbers if mi.has_flag(emitters[i].flags(), mi.EmitterFlags.Infinite)]
     finite = np.array([i for i in numbers if i not in infinite], int)
-    groups = [[i] for i in infinite[:8]] + ([infinite[8:]] if infinite[8:] else [])
+    groups = [[i] for i in infinite[:7]] + ([infinite[7:]] if infinite[7:] else [])
     if finite.size:
         centers = np.array([center_of(emitters[i]) for i in finite])
-        groups += [list(finite[members]) for members in split_groups(centers, MOST_GROUPS - len(groups))]
+        groups += [list(finite[members]) for members in split_groups(centers, most - len(groups))]
     return groups
 
 
 def make_light_table(scene):
     """The emitters of a scene, in groups of neighbours. Without emitters it has a null one, which gives no light."""
-    emitters = scene.emitters()
+    emitters, environment = scene.emitters(), make_environment(scene)
     weights = np.array([float(np.asarray(e.sampling_weight()).ravel()[0]) for e in emitters] or [0.0])
-    groups = make_groups(emitters, np.flatnonzero(weights > 0)) or [[0]]
-    # Emitters that are never chosen come last, as if they were of the first group, outside its range.
+    regions = environment.probabilities if environment is not None else []
+    # Places, as numbers of emitters: regions of the environment first, then the other emitters.
+    far = [i for i, emitter in enumerate(emitters) if regions and emitter.is_environment()]
+    groups = [far for _ in regions] + make_groups(
+        emitters, [i for i in np.flatnonzero(weights > 0) if i not in far], MOST_GROUPS - len(regions)) or [[0]]
     order = [i for members in groups for i in members]
+    # Emitters that are never chosen come last, as if they were of the first group, outside its range.
     order += [i for i in range(len(weights)) if i not in order]
-    weights = weights[order] / max(weights.sum(), 1e-30)
+    probabilities = weights[order] / max(weights.sum(), 1e-30)
+    probabilities[:len(regions)] *= regions
     numbers = np.array(dr.reinterpret_array(mi.UInt32, scene.emitters_dr()))[order] if emitters else np.zeros(1, int)
     place = np.zeros(int(numbers.max()) + 1, np.uint32)
     place[numbers] = np.arange(len(numbers))
@@ -130,10 +192,10 @@ def make_light_table(scene):
     whole = lambda values: array_of(mi.UInt32, np.asarray(values, np.uint32))
     real = lambda values: array_of(mi.Float, np.asarray(values, np.float32))
     table = LightTable(
-        emitters=dr.reinterpret_array(mi.EmitterPtr, mi.UInt32(numbers)),
+        environment=environment, emitters=dr.reinterpret_array(mi.EmitterPtr, mi.UInt32(numbers)),
         group=whole(np.repeat(np.arange(len(groups)), np.diff(begin)).tolist() + [0] * (len(order) - begin[-1])),
-        probabilities=real(weights), cdf=real(np.concatenate([[0], np.cumsum(weights)])), group_begin=whole(begin),
-        place=whole(place),
+        probabilities=real(probabilities), cdf=real(np.concatenate([[0], np.cumsum(probabilities)])),
+        group_begin=whole(begin), place=whole(place),
         count=len(order), groups=len(groups) if len(groups) > 1 else 0)
     dr.make_opaque(table)
     return table

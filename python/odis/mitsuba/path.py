@@ -156,8 +156,7 @@ def trace(scene, camera, settings, known, tables, recorder, samples):
             lit &= depth > 0
         emitted = met.emitter.eval(si, lit)
         weighed = lit & ~previous_delta
-        light_pdf = dr.select(weighed, met.emitter.pdf_direction(previous, met, weighed), 0) * lights.probability(
-            tables, previous_cell, previous_fraction, lights.place_of(met.emitter, weighed), weighed)
+        light_pdf = lights.pdf(tables, previous_cell, previous_fraction, previous, met, weighed)
         mis = dr.select(weighed, power_heuristic(previous_pdf, light_pdf), 1)
         radiance += dr.select(lit, throughput * emitted * mis, 0)
         if dr.hint(recorder is not None, mode="scalar"):
@@ -195,13 +194,10 @@ def trace(scene, camera, settings, known, tables, recorder, samples):
 
         # Next-event estimation: what a light would add if nothing hid it.
         scattering = active & ((flags & SMOOTH) != 0)
-        place, choice = lights.choose(tables, cell, learned_lights, rng.next(), scattering)
-        u_light = rng.next_2d()
-        emitter = dr.gather(mi.EmitterPtr, lights.emitters, place, scattering)
-        toward, light = emitter.sample_direction(si, u_light, scattering)
+        place, choice, toward, light = lights.sample(
+            tables, cell, learned_lights, si, rng.next(), rng.next_2d(), scattering)
         lightable = scattering & (toward.pdf > 0) & (choice > 0)
-        light /= choice
-        toward_pdf = toward.pdf * choice
+        toward_pdf = mi.Float(toward.pdf)
         u_lobe, u, v = rng.next(), rng.next(), rng.next()
         toward_wo = si.to_local(toward.d)
 
