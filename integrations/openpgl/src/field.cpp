@@ -1,0 +1,168 @@
+#include "field.h"
+
+#include <cstdio>
+#include <cstring>
+#include <exception>
+#include <string>
+
+namespace {
+
+// A guide is built again when it can know this many times as many vertices.
+constexpr size_t kGrowth = 2;
+// With this many times the vertices of the first update it has learned what it can: the host need record no more.
+constexpr size_t kEnough = 8;
+// What a host is told then: more than the training samples of any setting.
+constexpr size_t kTrained = 1u << 30;
+
+// Hosts call C functions, which don't throw: a guide that can't be built is a warning, and rendering goes on.
+template <class Body>
+bool attempt(const Body& body) {
+  try {
+    body();
+    return true;
+  } catch (const std::exception& e) {
+    std::fprintf(stderr, "odis: %s\n", e.what());
+    return false;
+  }
+}
+
+PGLString copyOf(const std::string& text) {
+  PGLString copy{new char[text.size() + 1], text.size()};
+  std::memcpy(copy.m_str, text.c_str(), text.size() + 1);
+  return copy;
+}
+
+}  // namespace
+
+void Field::update(SampleStorage& samples) {
+  const std::vector<odis::PathVertex> vertices = samples.vertices();
+  if (vertices.empty()) return;
+  ++m_updates;
+  const bool first = !m_builder;
+  if (first) m_builder.emplace();
+  m_builder->add(vertices);
+  m_vertices += vertices.size();
+  if (first) {
+    m_firstVertices = m_vertices;
+    show(m_builder->build(vertices));
+  } else if (m_vertices >= kGrowth * m_builtFrom) {
+    show(m_builder->rebuild(*m_guide));
+  }
+}
+
+void Field::show(odis::Guide guide) {
+  m_guide = std::move(guide);
+  m_view = m_guide->view();
+  m_builtFrom = m_vertices;
+}
+
+void Field::reset() {
+  *this = {};
+}
+
+size_t Field::iteration() const {
+  return m_firstVertices > 0 && m_vertices >= kEnough * m_firstVertices ? kTrained : m_updates;
+}
+
+void Field::save(const char* file) const {
+  if (!m_guide) throw std::runtime_error("a field that was never updated can't be stored");
+  m_guide->save(file);
+}
+
+void Field::load(const char* file) {
+  show(odis::Guide::load(file));
+  m_updates = kTrained;
+}
+
+std::string Field::statistics() const {
+  return "ODIS: " + std::to_string(m_view.cellCount) + " cells from " + std::to_string(m_vertices) + " vertices in " +
+         std::to_string(m_updates) + " updates";
+}
+
+// The types behind two more handles.
+struct Device {};
+struct FieldStatistics {
+  std::string text;
+};
+
+extern "C" {
+
+void pglReleaseString(PGLString string) {
+  delete[] string.m_str;
+}
+
+PGLDevice pglNewDevice(PGL_DEVICE_TYPE, size_t) {
+  return new Device;
+}
+void pglReleaseDevice(PGLDevice device) {
+  delete device;
+}
+void pglFieldArgumentsSetDefaults(PGLFieldArguments& arguments, PGL_SPATIAL_STRUCTURE_TYPE spatial,
+                                  PGL_DIRECTIONAL_DISTRIBUTION_TYPE directional, bool, size_t) {
+  // Hosts write into what these point to.
+  static thread_local PGLKDTreeArguments tree;
+  static thread_local char directionalArguments[256];
+  arguments = {spatial, &tree, directional, directionalArguments, true, {}};
+}
+PGLField pglDeviceNewField(PGLDevice, PGLFieldArguments) {
+  return new Field;
+}
+PGLField pglDeviceNewFieldFromFile(PGLDevice, const char* file) {
+  auto field = std::make_unique<Field>();
+  return attempt([&] { field->load(file); }) ? field.release() : nullptr;
+}
+void pglReleaseField(PGLField field) {
+  delete field;
+}
+bool pglFieldStoreToFile(PGLField field, const char* file) {
+  return attempt([&] { field->save(file); });
+}
+size_t pglFieldGetIteration(PGLField field) {
+  return field->iteration();
+}
+void pglFieldSetSceneBounds(PGLField field, pgl_box3f bounds) {
+  field->bounds = bounds;
+}
+pgl_box3f pglFieldGetSceneBounds(PGLField field) {
+  return field->bounds;
+}
+void pglFieldUpdate(PGLField field, PGLSampleStorage samples) {
+  attempt([&] { field->update(*samples); });
+}
+void pglFieldUpdateSurface(PGLField field, PGLSampleStorage samples) {
+  pglFieldUpdate(field, samples);
+}
+void pglFieldUpdateVolume(PGLField, PGLSampleStorage) {}
+void pglFieldReset(PGLField field) {
+  field->reset();
+}
+bool pglFieldValidate(PGLField) {
+  return true;
+}
+bool pglFieldCompare(PGLField a, PGLField b) {
+  const odis::GuideView &ofA = a->view(), &ofB = b->view();
+  const size_t texels = size_t(ofA.cellCount) * odis::kMapTexels;
+  return ofA.cellCount == ofB.cellCount &&
+         (texels == 0 || std::memcmp(ofA.maps.texels, ofB.maps.texels, texels * sizeof(uint16_t)) == 0);
+}
+
+PGLFieldStatistics pglFieldGetSurfaceStatistics(PGLField field) {
+  return new FieldStatistics{field->statistics()};
+}
+PGLFieldStatistics pglFieldGetVolumeStatistics(PGLField) {
+  return new FieldStatistics{"ODIS: volumes are not guided"};
+}
+void pglReleaseFieldStatistics(PGLFieldStatistics statistics) {
+  delete statistics;
+}
+PGLString pglFieldStatisticsToString(PGLFieldStatistics statistics) {
+  return copyOf(statistics->text);
+}
+PGLString pglFieldStatisticsHeaderCSVString(PGLFieldStatistics) {
+  return copyOf("statistics");
+}
+PGLString pglFieldStatisticsToCSVString(PGLFieldStatistics statistics) {
+  return copyOf(statistics->text);
+}
+
+}  // extern "C"

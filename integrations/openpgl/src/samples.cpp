@@ -1,0 +1,223 @@
+#include "samples.h"
+
+#include <algorithm>
+#include <bit>
+#include <cstring>
+#include <thread>
+
+#include "path.h"
+#include "vectors.h"
+
+using namespace odis::openpgl_interface;
+
+namespace {
+
+// A vertex of a sample that came without a path: its normal is not known, so that its direction stands in.
+odis::PathVertex vertexOf(const pgl_point3f& position, const pgl_vec3f& direction) {
+  odis::PathVertex vertex;
+  vertex.position = toOdis(position);
+  vertex.normal = vertex.wi = toOdis(direction);
+  vertex.depth = 1;
+  vertex.pixel = std::bit_cast<uint32_t>(position.x) * 0x9e3779b9u ^ std::bit_cast<uint32_t>(position.y);
+  vertex.sample = std::bit_cast<uint32_t>(position.z) * 0x85ebca6bu ^ std::bit_cast<uint32_t>(direction.x);
+  return vertex;
+}
+
+}  // namespace
+
+SampleStorage::Shard& SampleStorage::ofThisThread() {
+  return m_shards[std::hash<std::thread::id>()(std::this_thread::get_id()) % m_shards.size()];
+}
+
+bool SampleStorage::keeps(uint64_t number) const {
+  return (number & ((uint64_t(1) << m_thinning) - 1)) == 0;
+}
+
+void SampleStorage::add(odis::ArrayView<const odis::PathVertex> path) {
+  if (path.empty()) return;
+  const uint64_t number = uint64_t(path[0].pixel) << 32 | path[0].sample;
+  Shard& shard = ofThisThread();
+  {
+    const std::lock_guard lock(shard.mutex);
+    if (!keeps(number)) return;
+    shard.paths.push_back({number, uint32_t(shard.vertices.size()), uint32_t(path.size())});
+    shard.vertices.insert(shard.vertices.end(), path.begin(), path.end());
+    m_count += path.size();
+  }
+  if (m_count > kMostVertices) thinOut();
+}
+
+void SampleStorage::thinOut() {
+  const std::lock_guard only(m_thinningMutex);
+  while (m_count > kMostVertices && m_thinning < 63) {
+    ++m_thinning;
+    for (Shard& shard : m_shards) {
+      const std::lock_guard lock(shard.mutex);
+      m_count -= removeFrom(shard);
+    }
+  }
+}
+
+// Removes what is not kept any more; returns the number of vertices.
+size_t SampleStorage::removeFrom(Shard& shard) const {
+  const size_t before = shard.vertices.size();
+  size_t end = 0;
+  for (Path& path : shard.paths) {
+    if (!keeps(path.number)) continue;
+    const auto begin = shard.vertices.begin() + path.begin;
+    std::copy(begin, begin + path.count, shard.vertices.begin() + ptrdiff_t(end));
+    path.begin = uint32_t(end);
+    end += path.count;
+  }
+  std::erase_if(shard.paths, [&](const Path& path) { return !keeps(path.number); });
+  shard.vertices.resize(end);
+  return before - end;
+}
+
+void SampleStorage::add(const PGLSampleData& sample) {
+  if (sample.flags & kVolumeFlags) return;
+  odis::PathVertex vertex = vertexOf(sample.position, sample.direction);
+  vertex.pdf = sample.pdf;
+  const float radiance = sample.weight * sample.pdf;
+  vertex.radiance = {radiance, radiance, radiance};
+  vertex.distance = sample.distance;
+  add({&vertex, 1});
+}
+
+void SampleStorage::add(const PGLZeroValueSampleData& sample) {
+  if (sample.volume) return;
+  odis::PathVertex vertex = vertexOf(sample.position, sample.direction);
+  vertex.pdf = 1;
+  add({&vertex, 1});
+}
+
+void SampleStorage::clear() {
+  for (Shard& shard : m_shards) {
+    const std::lock_guard lock(shard.mutex);
+    shard.vertices.clear();
+    shard.paths.clear();
+  }
+  m_count = 0;
+  m_thinning = 0;
+}
+
+std::vector<odis::PathVertex> SampleStorage::vertices() {
+  std::vector<std::pair<uint64_t, odis::ArrayView<const odis::PathVertex>>> paths;
+  for (const Shard& shard : m_shards)
+    for (const Path& path : shard.paths)
+      paths.push_back({path.number, {shard.vertices.data() + path.begin, path.count}});
+  std::sort(paths.begin(), paths.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
+  std::vector<odis::PathVertex> all;
+  all.reserve(m_count);
+  for (const auto& [number, vertices] : paths) all.insert(all.end(), vertices.begin(), vertices.end());
+  return all;
+}
+
+std::vector<PGLSampleData> SampleStorage::samples() {
+  std::vector<PGLSampleData> result;
+  for (const odis::PathVertex& v : vertices()) {
+    if (!odis::isUsable(v)) continue;
+    const float radiance = (v.radiance.x + v.radiance.y + v.radiance.z) / 3;
+    result.push_back({fromOdis(v.position), fromOdis(v.wi), radiance / v.pdf, v.pdf, v.distance, 0});
+  }
+  return result;
+}
+
+namespace {
+
+// Adds samples that a host got from a path: the path's vertices know more.
+void addSamples(SampleStorage& storage, const PGLSampleData* data, size_t count) {
+  const PathSegmentStorage* path = preparedLast();
+  if (path && data == path->samples().data() && count == path->samples().size()) {
+    storage.add(path->vertices());
+    return;
+  }
+  for (size_t i = 0; i < count; ++i) storage.add(data[i]);
+}
+
+}  // namespace
+
+extern "C" {
+
+PGLSampleStorage pglNewSampleStorage() {
+  return new SampleStorage;
+}
+PGLSampleStorage pglNewSampleStorageFromFile(const char*) {
+  return nullptr;  // only fields can be stored
+}
+bool pglSampleStorageStoreToFile(PGLSampleStorage, const char*) {
+  return false;
+}
+void pglReleaseSampleStorage(PGLSampleStorage samples) {
+  delete samples;
+}
+void pglPathSegmentStoragePropagateSamples(PGLPathSegmentStorage path, PGLSampleStorage samples, bool, bool, bool) {
+  path->prepare();
+  addSamples(*samples, path->samples().data(), path->samples().size());
+}
+void pglSampleStorageAddSample(PGLSampleStorage samples, const PGLSampleData& sample) {
+  samples->add(sample);
+}
+void pglSampleStorageAddSamples(PGLSampleStorage samples, const PGLSampleData* data, size_t count) {
+  addSamples(*samples, data, count);
+}
+void pglSampleStorageAddZeroValueSample(PGLSampleStorage samples, const PGLZeroValueSampleData& sample) {
+  samples->add(sample);
+}
+void pglSampleStorageAddZeroValueSamples(PGLSampleStorage samples, const PGLZeroValueSampleData* data,
+                                         size_t count) {
+  // Those of a path came with it.
+  const PathSegmentStorage* path = preparedLast();
+  if (path && data == path->zeroSamples().data()) return;
+  for (size_t i = 0; i < count; ++i) samples->add(data[i]);
+}
+void pglSampleStorageReserve(PGLSampleStorage, size_t, size_t) {}
+void pglSampleStorageClear(PGLSampleStorage samples) {
+  samples->clear();
+}
+void pglSampleStorageClearSurface(PGLSampleStorage samples) {
+  samples->clear();
+}
+void pglSampleStorageClearVolume(PGLSampleStorage) {}
+size_t pglSampleStorageGetSizeSurface(PGLSampleStorage samples) {
+  return samples->size();
+}
+size_t pglSampleStorageGetSizeVolume(PGLSampleStorage) {
+  return 0;
+}
+size_t pglSampleStorageGetSizeZeroValueSurface(PGLSampleStorage) {
+  return 0;
+}
+size_t pglSampleStorageGetSizeZeroValueVolume(PGLSampleStorage) {
+  return 0;
+}
+PGLSampleData pglSampleStorageGetSampleSurface(PGLSampleStorage samples, int index) {
+  const std::vector<PGLSampleData> all = samples->samples();
+  return index >= 0 && size_t(index) < all.size() ? all[size_t(index)] : PGLSampleData{};
+}
+PGLSampleData pglSampleStorageGetSampleVolume(PGLSampleStorage, int) {
+  return {};
+}
+PGLZeroValueSampleData pglSampleStorageGetZeroValueSampleSurface(PGLSampleStorage, int) {
+  return {};
+}
+PGLZeroValueSampleData pglSampleStorageGetZeroValueSampleVolume(PGLSampleStorage, int) {
+  return {};
+}
+bool pglSampleStorageValidate(PGLSampleStorage) {
+  return true;  // what is not finite was left out
+}
+void pglSampleStorageMerge(PGLSampleStorage samples, PGLSampleStorage others) {
+  const std::vector<odis::PathVertex> vertices = others->vertices();
+  for (size_t begin = 0, end; begin < vertices.size(); begin = end) {
+    for (end = begin + 1; end < vertices.size() && vertices[end].depth > vertices[end - 1].depth; ++end) {
+    }
+    samples->add({vertices.data() + begin, end - begin});
+  }
+}
+bool pglSampleStorageCompare(PGLSampleStorage a, PGLSampleStorage b) {
+  const std::vector<PGLSampleData> ofA = a->samples(), ofB = b->samples();
+  return ofA.size() == ofB.size() && std::memcmp(ofA.data(), ofB.data(), ofA.size() * sizeof ofA[0]) == 0;
+}
+
+}  // extern "C"

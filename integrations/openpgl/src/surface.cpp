@@ -1,0 +1,151 @@
+// Directions at vertices on surfaces.
+#include <algorithm>
+#include <cmath>
+
+#include "field.h"
+#include "vectors.h"
+
+using namespace odis::openpgl_interface;
+
+namespace {
+
+constexpr float kPi = 3.14159265358979f;
+// The host samples its BSDF this often, and the distribution otherwise: Cycles' default.
+constexpr float kBsdfShareOfHost = 0.5f;
+constexpr float kUniform = 1 / (4 * kPi);
+constexpr float kTexelsPerSteradian = odis::kMapTexels / (4 * kPi);
+
+odis::Float3 cosineDirection(const odis::Float3& n, float u, float v) {
+  // An orthonormal basis (Duff et al. 2017).
+  const float sign = std::copysign(1.0f, n.z), a = -1 / (sign + n.z), b = n.x * n.y * a;
+  const odis::Float3 s{1 + sign * n.x * n.x * a, sign * b, -sign * n.x}, t{b, sign + n.y * n.y * a, -n.y};
+  const float r = std::sqrt(u), phi = 2 * kPi * v;
+  return s * (r * std::cos(phi)) + t * (r * std::sin(phi)) + n * std::sqrt(std::max(1 - u, 0.0f));
+}
+
+}  // namespace
+
+// The type behind Open PGL's handle: the map of a vertex's cell times its cosine, mixed with the cosine alone where
+// the guide would rather leave directions to the BSDF than the host, whose share of them is fixed.
+struct SurfaceSamplingDistribution {
+ public:
+  bool init(const Field& field, const pgl_point3f& position);
+  void applyCosine(const pgl_vec3f& normal);
+  void clear() { m_view = nullptr; }
+
+  float sample(const pgl_point2f& u, pgl_vec3f& direction) const;
+  float pdf(const pgl_vec3f& direction) const;
+  // Of the map alone.
+  float radiancePdf(const pgl_vec3f& direction) const;
+  uint32_t cell() const { return m_cell; }
+
+ private:
+  float cosinePdf(const odis::Float3& wi) const { return std::max(dot(wi, m_normal), 0.0f) / kPi; }
+
+  const odis::GuideView* m_view = nullptr;
+  odis::Float3 m_position, m_normal;
+  uint32_t m_cell = odis::kNoCell;
+  odis::VertexMap<float> m_map;
+  float m_mapShare = 0;
+  bool m_hasNormal = false;
+};
+
+bool SurfaceSamplingDistribution::init(const Field& field, const pgl_point3f& position) {
+  m_view = field.view().cellCount > 0 ? &field.view() : nullptr;
+  m_position = toOdis(position);
+  m_cell = odis::kNoCell;
+  m_hasNormal = false;
+  m_mapShare = 0;
+  return m_view;
+}
+
+void SurfaceSamplingDistribution::applyCosine(const pgl_vec3f& normal) {
+  if (!m_view) return;
+  m_normal = toOdis(normal);
+  m_hasNormal = true;
+  m_cell = odis::findCell(*m_view, {m_position, m_normal});
+  if (m_cell == odis::kNoCell) return;
+  m_map.prepare(m_view->maps, int32_t(m_cell), m_normal, 0);
+  if (!m_map.sampleable()) return;
+  const float ofBsdf = odis::bsdfFraction(*m_view, int32_t(m_cell), 1.0f);
+  m_mapShare = std::min((1 - ofBsdf) / (1 - kBsdfShareOfHost), 1.0f);
+}
+
+float SurfaceSamplingDistribution::sample(const pgl_point2f& u, pgl_vec3f& direction) const {
+  odis::Float3 wi;
+  if (!m_hasNormal) {
+    wi = odis::squareToDirection(odis::Vector2<float>{u.x, u.y});
+  } else if (u.x < m_mapShare) {
+    wi = m_map.sample(u.x / m_mapShare, u.y).wi;
+  } else {
+    wi = cosineDirection(m_normal, (u.x - m_mapShare) / (1 - m_mapShare), u.y);
+  }
+  direction = fromOdis(wi);
+  return pdf(direction);
+}
+
+float SurfaceSamplingDistribution::pdf(const pgl_vec3f& direction) const {
+  const odis::Float3 wi = toOdis(direction);
+  if (!m_hasNormal) return kUniform;
+  const float ofCosine = (1 - m_mapShare) * cosinePdf(wi);
+  return m_mapShare > 0 ? ofCosine + m_mapShare * m_map.pdf(wi) : ofCosine;
+}
+
+float SurfaceSamplingDistribution::radiancePdf(const pgl_vec3f& direction) const {
+  if (!m_view || m_cell == odis::kNoCell) return kUniform;
+  const float* sums = m_view->maps.sums + size_t(m_cell) * odis::kSumsPerMap + 3 * odis::kMapBlocks;
+  float total = 0;
+  for (int block = 0; block < odis::kMapBlocks; ++block) total += sums[block];
+  const uint16_t* texels = m_view->maps.texels + size_t(m_cell) * odis::kMapTexels;
+  return texels[odis::texelOf(toOdis(direction))] / total * kTexelsPerSteradian;
+}
+
+extern "C" {
+
+PGLSurfaceSamplingDistribution pglFieldNewSurfaceSamplingDistribution(PGLField) {
+  return new SurfaceSamplingDistribution;
+}
+void pglReleaseSurfaceSamplingDistribution(PGLSurfaceSamplingDistribution distribution) {
+  delete distribution;
+}
+bool pglFieldInitSurfaceSamplingDistribution(PGLField field, PGLSurfaceSamplingDistribution distribution,
+                                             pgl_point3f position, float*, bool) {
+  return distribution->init(*field, position);
+}
+void pglSurfaceSamplingDistributionApplyCosineProduct(PGLSurfaceSamplingDistribution distribution,
+                                                      pgl_vec3f normal) {
+  distribution->applyCosine(normal);
+}
+bool pglSurfaceSamplingDistributionSupportsApplyCosineProduct(PGLSurfaceSamplingDistribution) {
+  return true;
+}
+pgl_vec3f pglSurfaceSamplingDistributionSample(PGLSurfaceSamplingDistribution distribution, pgl_point2f u) {
+  pgl_vec3f direction;
+  distribution->sample(u, direction);
+  return direction;
+}
+float pglSurfaceSamplingDistributionPDF(PGLSurfaceSamplingDistribution distribution, pgl_vec3f direction) {
+  return distribution->pdf(direction);
+}
+float pglSurfaceSamplingDistributionSamplePDF(PGLSurfaceSamplingDistribution distribution, pgl_point2f u,
+                                              pgl_vec3f& direction) {
+  return distribution->sample(u, direction);
+}
+float pglSurfaceSamplingDistributionIncomingRadiancePDF(PGLSurfaceSamplingDistribution distribution,
+                                                        pgl_vec3f direction) {
+  return distribution->radiancePdf(direction);
+}
+uint32_t pglSurfaceSamplingDistributionGetId(PGLSurfaceSamplingDistribution distribution) {
+  return distribution->cell();
+}
+bool pglSurfaceSamplingDistributionValidate(PGLSurfaceSamplingDistribution) {
+  return true;
+}
+void pglSurfaceSamplingDistributionClear(PGLSurfaceSamplingDistribution distribution) {
+  distribution->clear();
+}
+PGLRegion pglSurfaceSamplingGetRegion(PGLSurfaceSamplingDistribution) {
+  return nullptr;
+}
+
+}  // extern "C"

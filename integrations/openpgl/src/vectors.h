@@ -1,0 +1,20 @@
+// Between Open PGL's vectors and ODIS's.
+#pragma once
+
+#include <odis/odis.hpp>
+
+#include "openpgl/openpgl.h"
+
+namespace odis::openpgl_interface {
+
+// The flags that version 0.4 or a later one gives samples in volumes.
+inline constexpr uint32_t kVolumeFlags = 3;
+
+inline Float3 toOdis(const pgl_vec3f& v) {
+  return {v.x, v.y, v.z};
+}
+inline pgl_vec3f fromOdis(const Float3& v) {
+  return {v.x, v.y, v.z};
+}
+
+}  // namespace odis::openpgl_interface
