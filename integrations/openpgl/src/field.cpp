@@ -75,8 +75,8 @@ void Field::load(const char* file) {
 }
 
 std::string Field::statistics() const {
-  return "ODIS: " + std::to_string(m_view.cellCount) + " cells from " + std::to_string(m_vertices) + " vertices in " +
-         std::to_string(m_updates) + " updates";
+  return "ODIS: " + std::to_string(m_view.cellCount) + " cells from " + std::to_string(m_vertices) +
+         " vertices in " + std::to_string(m_updates) + " updates";
 }
 
 // The types behind two more handles.

@@ -121,8 +121,9 @@ void PathSegmentStorage::record(uint32_t path, size_t i) {
 void PathSegmentStorage::addSampleOf(const odis::PathVertex& vertex) {
   const odis::Float3 toPixel = vertex.radiance;
   if (meanOf(toPixel) > 0)
-    m_samples.push_back({fromOdis(vertex.position), fromOdis(vertex.wi), meanOf(toPixel) / vertex.pdf, vertex.pdf,
-                         std::min(vertex.distance, maxDistance), vertex.discrete ? kVolumeFlags : 0});
+    m_samples.push_back({fromOdis(vertex.position), fromOdis(vertex.wi), meanOf(toPixel) / vertex.pdf,
+                         vertex.pdf, std::min(vertex.distance, maxDistance),
+                         vertex.discrete ? kVolumeFlags : 0});
   else
     m_zeroSamples.push_back({fromOdis(vertex.position), fromOdis(vertex.wi), vertex.discrete});
 }
@@ -157,8 +158,9 @@ bool PathSegmentStorage::isValid() const {
   for (size_t i = 0; i < m_count; ++i) {
     const PGLPathSegmentData& s = m_segments[i];
     const bool finite = isFinite(s.position) && isFinite(s.directionIn) && isFinite(s.directionOut) &&
-                        isFinite(s.normal) && isFinite(s.scatteringWeight) && isFinite(s.transmittanceWeight) &&
-                        isFinite(s.directContribution) && isFinite(s.scatteredContribution);
+                        isFinite(s.normal) && isFinite(s.scatteringWeight) &&
+                        isFinite(s.transmittanceWeight) && isFinite(s.directContribution) &&
+                        isFinite(s.scatteredContribution);
     if (!finite || !(s.pdfDirectionIn >= 0)) return false;
   }
   return true;

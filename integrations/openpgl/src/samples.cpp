@@ -151,7 +151,8 @@ bool pglSampleStorageStoreToFile(PGLSampleStorage, const char*) {
 void pglReleaseSampleStorage(PGLSampleStorage samples) {
   delete samples;
 }
-void pglPathSegmentStoragePropagateSamples(PGLPathSegmentStorage path, PGLSampleStorage samples, bool, bool, bool) {
+void pglPathSegmentStoragePropagateSamples(PGLPathSegmentStorage path, PGLSampleStorage samples, bool, bool,
+                                           bool) {
   path->prepare();
   addSamples(*samples, path->samples().data(), path->samples().size());
 }

@@ -15,7 +15,8 @@ PGLVolumeSamplingDistribution pglFieldNewVolumeSamplingDistribution(PGLField) {
 void pglReleaseVolumeSamplingDistribution(PGLVolumeSamplingDistribution distribution) {
   delete distribution;
 }
-bool pglFieldInitVolumeSamplingDistribution(PGLField, PGLVolumeSamplingDistribution, pgl_point3f, float*, bool) {
+bool pglFieldInitVolumeSamplingDistribution(PGLField, PGLVolumeSamplingDistribution, pgl_point3f, float*,
+                                            bool) {
   static std::once_flag said;
   std::call_once(said, [] { std::fputs("odis: volumes are not guided\n", stderr); });
   return false;  // the host goes on with its phase function
@@ -38,9 +39,10 @@ float pglVolumeSamplingDistributionIncomingRadiancePDF(PGLVolumeSamplingDistribu
                                                        pgl_vec3f direction) {
   return pglVolumeSamplingDistributionPDF(distribution, direction);
 }
-void pglVolumeSamplingDistributionApplySingleLobeHenyeyGreensteinProduct(PGLVolumeSamplingDistribution, pgl_vec3f,
-                                                                         float) {}
-bool pglVolumeSamplingDistributionSupportsApplySingleLobeHenyeyGreensteinProduct(PGLVolumeSamplingDistribution) {
+void pglVolumeSamplingDistributionApplySingleLobeHenyeyGreensteinProduct(PGLVolumeSamplingDistribution,
+                                                                         pgl_vec3f, float) {}
+bool pglVolumeSamplingDistributionSupportsApplySingleLobeHenyeyGreensteinProduct(
+    PGLVolumeSamplingDistribution) {
   return true;
 }
 uint32_t pglVolumeSamplingDistributionGetId(PGLVolumeSamplingDistribution) {

@@ -59,10 +59,10 @@ struct PGLPathSegmentData {
   bool volumeScatter{false};
   float pdfDirectionIn{1};
   bool isDelta{false};
-  pgl_vec3f scatteringWeight{1, 1, 1};     // f |cos| / pdfDirectionIn
-  pgl_vec3f transmittanceWeight{1, 1, 1};  // on the way to the next vertex
-  pgl_vec3f directContribution{0, 0, 0};   // emission towards the vertex before
-  float miWeight{1};                       // its MIS weight
+  pgl_vec3f scatteringWeight{1, 1, 1};       // f |cos| / pdfDirectionIn
+  pgl_vec3f transmittanceWeight{1, 1, 1};    // on the way to the next vertex
+  pgl_vec3f directContribution{0, 0, 0};     // emission towards the vertex before
+  float miWeight{1};                         // its MIS weight
   pgl_vec3f scatteredContribution{0, 0, 0};  // next-event estimate, MIS-weighted
   float russianRouletteSurvivalProbability{1};
   float eta{1};

@@ -214,9 +214,11 @@ struct PathSegmentStorage {
 };
 
 struct Field {
-  Field(Device* device, const PGLFieldArguments& arguments) : handle(pglDeviceNewField(device->handle, arguments)) {}
+  Field(Device* device, const PGLFieldArguments& arguments)
+      : handle(pglDeviceNewField(device->handle, arguments)) {}
   Field(Device* device, const FieldConfig& config) : Field(device, config.arguments) {}
-  Field(Device* device, const std::string& file) : handle(pglDeviceNewFieldFromFile(device->handle, file.c_str())) {
+  Field(Device* device, const std::string& file)
+      : handle(pglDeviceNewFieldFromFile(device->handle, file.c_str())) {
     if (!handle) throw std::runtime_error(file + ": no field can be read");
   }
   ~Field() { pglReleaseField(handle); }
@@ -231,7 +233,9 @@ struct Field {
   void UpdateVolume(const SampleStorage& samples) { pglFieldUpdateVolume(handle, samples.handle); }
   void Reset() { pglFieldReset(handle); }
   bool Validate() const { return pglFieldValidate(handle); }
-  FieldStatistics GetSurfaceStatistics() const { return FieldStatistics(pglFieldGetSurfaceStatistics(handle)); }
+  FieldStatistics GetSurfaceStatistics() const {
+    return FieldStatistics(pglFieldGetSurfaceStatistics(handle));
+  }
   FieldStatistics GetVolumeStatistics() const { return FieldStatistics(pglFieldGetVolumeStatistics(handle)); }
   bool operator==(const Field& b) const { return pglFieldCompare(handle, b.handle); }
   PGLField handle;
@@ -243,7 +247,8 @@ struct SurfaceSamplingDistribution {
   ~SurfaceSamplingDistribution() { pglReleaseSurfaceSamplingDistribution(handle); }
   SurfaceSamplingDistribution(const SurfaceSamplingDistribution&) = delete;
   SurfaceSamplingDistribution& operator=(const SurfaceSamplingDistribution&) = delete;
-  bool Init(const Field* field, const pgl_point3f& position, float& sample1D, bool useParallaxCompensation = true) {
+  bool Init(const Field* field, const pgl_point3f& position, float& sample1D,
+            bool useParallaxCompensation = true) {
     return pglFieldInitSurfaceSamplingDistribution(field->handle, handle, position, &sample1D,
                                                    useParallaxCompensation);
   }
@@ -274,7 +279,8 @@ struct VolumeSamplingDistribution {
   ~VolumeSamplingDistribution() { pglReleaseVolumeSamplingDistribution(handle); }
   VolumeSamplingDistribution(const VolumeSamplingDistribution&) = delete;
   VolumeSamplingDistribution& operator=(const VolumeSamplingDistribution&) = delete;
-  bool Init(const Field* field, const pgl_point3f& position, float& sample1D, bool useParallaxCompensation = true) {
+  bool Init(const Field* field, const pgl_point3f& position, float& sample1D,
+            bool useParallaxCompensation = true) {
     return pglFieldInitVolumeSamplingDistribution(field->handle, handle, position, &sample1D,
                                                   useParallaxCompensation);
   }

@@ -1,0 +1,135 @@
+// A path tracer that is guided through Open PGL's interface as Cycles is: half of the directions from the
+// distribution, half from the BSDF, roulette on the way to a vertex, samples handed over path by path.
+#pragma once
+
+#include <openpgl/cpp/OpenPGL.h>
+
+#include <optional>
+
+#include "frame/toy_room.h"
+
+namespace odis::test {
+
+namespace pgl = openpgl::cpp;
+
+inline pgl_vec3f toPgl(const Float3& v) {
+  return {v.x, v.y, v.z};
+}
+inline Float3 fromPgl(const pgl_vec3f& v) {
+  return {v.x, v.y, v.z};
+}
+
+// Independent random numbers (SplitMix64).
+class Numbers {
+ public:
+  explicit Numbers(uint64_t seed) : m_state(mix(seed)) {}
+  float next() { return float(mix(m_state += 0x9e3779b97f4a7c15ull) >> 40) * 0x1p-24f; }
+
+ private:
+  static uint64_t mix(uint64_t x) {
+    x = (x ^ (x >> 30)) * 0xbf58476d1ce4e5b9ull;
+    x = (x ^ (x >> 27)) * 0x94d049bb133111ebull;
+    return x ^ (x >> 31);
+  }
+  uint64_t m_state;
+};
+
+class PglHost {
+ public:
+  static constexpr int kMaxDepth = 6;
+  static constexpr float kGuidedShare = 0.5f, kSurvival = 0.8f;
+
+  explicit PglHost(const ToyRoom& room) : m_room(room) {}
+
+  // Traces a path whose first vertex is seen through (x, y) of the image, in [0, 1)^2, and records it. Without a
+  // field, or before it knows anything, directions are those of the BSDF.
+  float trace(const pgl::Field* field, pgl::PathSegmentStorage& path, Numbers numbers) const {
+    path.Clear();
+    float radiance = 0, throughput = 1;
+    Float3 origin{0.5f, 0.01f, 0.5f}, direction{numbers.next() - 0.5f, 0.6f, 0.5f - numbers.next()};
+    direction = direction / lengthOf(direction);
+    pgl::PathSegment* before = nullptr;
+    for (int depth = 1; depth <= kMaxDepth; ++depth) {
+      if (before && depth > 2) pgl::SetRussianRouletteProbability(before, kSurvival);
+      const bool ends = depth > 2 && numbers.next() >= kSurvival;
+      const ToyRoom::Hit hit = m_room.intersect(origin, direction);
+      pgl::PathSegment* segment = path.NextSegment();
+      pgl::SetPosition(segment, toPgl(hit.position));
+      pgl::SetNormal(segment, toPgl(hit.normal));
+      pgl::SetDirectionOut(segment, toPgl(direction * -1.0f));
+      // No next-event estimation: whatever is met counts in full.
+      pgl::SetDirectContribution(segment, toPgl(hit.emission));
+      radiance += throughput * hit.emission.x;
+      if (ends || depth == kMaxDepth) break;
+      if (depth > 2) throughput /= kSurvival;
+
+      float pdf = 0;
+      const Float3 wi = sampleDirection(field, hit, numbers, pdf);
+      const float cosine = dot(wi, hit.normal);
+      if (!(cosine > 0) || !(pdf > 0)) break;
+      const float weight = m_room.albedo * cosine / kPi / pdf;
+      pgl::SetDirectionIn(segment, toPgl(wi));
+      pgl::SetPDFDirectionIn(segment, pdf);
+      pgl::SetScatteringWeight(segment, toPgl(gray(weight)));
+      pgl::SetRoughness(segment, 1);
+      throughput *= weight;
+      origin = hit.position;
+      direction = wi;
+      before = segment;
+    }
+    return radiance;
+  }
+
+  // Traces paths with the seeds from `first` on and hands them over; returns the sum of what they brought.
+  double traceAndAdd(const pgl::Field* field, pgl::SampleStorage& samples, uint64_t first,
+                     uint64_t count) const {
+    pgl::PathSegmentStorage path;
+    double sum = 0;
+    for (uint64_t seed = first; seed < first + count; ++seed) {
+      sum += trace(field, path, Numbers(seed));
+      path.PrepareSamples();
+      size_t size = 0;
+      const pgl::SampleData* data = path.GetSamples(size);
+      samples.AddSamples(data, size);
+    }
+    return sum;
+  }
+
+ private:
+  Float3 sampleDirection(const pgl::Field* field, const ToyRoom::Hit& hit, Numbers& numbers,
+                         float& pdf) const {
+    const float choice = numbers.next(), u = numbers.next(), v = numbers.next();
+    float unused = 0;
+    bool guided = false;
+    std::optional<pgl::SurfaceSamplingDistribution> distribution;
+    if (field) {
+      distribution.emplace(field);
+      guided = distribution->Init(field, toPgl(hit.position), unused);
+      if (guided) distribution->ApplyCosineProduct(toPgl(hit.normal));
+    }
+    Float3 wi;
+    if (guided && choice < kGuidedShare) {
+      pgl_vec3f sampled;
+      distribution->SamplePDF({u, v}, sampled);
+      wi = fromPgl(sampled);
+    } else {
+      wi = cosineDirection(hit.normal, u, v);
+    }
+    const float ofBsdf = std::max(dot(wi, hit.normal), 0.0f) / kPi;
+    pdf = guided ? kGuidedShare * distribution->PDF(toPgl(wi)) + (1 - kGuidedShare) * ofBsdf : ofBsdf;
+    return wi;
+  }
+
+  static Float3 cosineDirection(const Float3& n, float u, float v) {
+    const Float3 tangent = std::abs(n.x) > 0.5f ? Float3{0, 1, 0} : Float3{1, 0, 0};
+    Float3 s = tangent - n * dot(tangent, n);
+    s = s / lengthOf(s);
+    const Float3 t{n.y * s.z - n.z * s.y, n.z * s.x - n.x * s.z, n.x * s.y - n.y * s.x};
+    const float r = std::sqrt(u), phi = 2 * kPi * v;
+    return s * (r * std::cos(phi)) + t * (r * std::sin(phi)) + n * std::sqrt(std::max(1 - u, 1e-6f));
+  }
+
+  ToyRoom m_room;
+};
+
+}  // namespace odis::test

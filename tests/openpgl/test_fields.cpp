@@ -1,0 +1,179 @@
+// A field that learns from paths, and the directions that it gives.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <memory>
+#include <optional>
+#include <thread>
+#include <vector>
+
+#include "openpgl/host.h"
+#include "support/chi2.h"
+#include "support/temporary_folder.h"
+
+namespace odis::test {
+namespace {
+
+class PglFields : public ::testing::Test {
+ protected:
+  PglFields() {
+    config.Init(PGL_SPATIAL_STRUCTURE_KDTREE, PGL_DIRECTIONAL_DISTRIBUTION_PARALLAX_AWARE_VMM);
+    config.SetSpatialStructureArgMaxDepth(16);
+    room.lampSize = 0.1f;
+  }
+  std::unique_ptr<pgl::Field> newField() { return std::make_unique<pgl::Field>(&device, config); }
+  std::unique_ptr<pgl::Field> taughtField(uint64_t paths = 20000) {
+    std::unique_ptr<pgl::Field> field = newField();
+    pgl::SampleStorage samples;
+    PglHost(room).traceAndAdd(nullptr, samples, 1, paths);
+    field->Update(samples);
+    return field;
+  }
+  // The distribution on the floor.
+  void prepare(pgl::SurfaceSamplingDistribution& distribution, const pgl::Field& field, const Float3& position = {0.3f, 0.4f, 1e-4f}) {
+    float unused = 0;
+    ASSERT_TRUE(distribution.Init(&field, toPgl(position), unused));
+    distribution.ApplyCosineProduct({0, 0, 1});
+  }
+
+  pgl::Device device{PGL_DEVICE_TYPE_CPU_8};
+  pgl::FieldConfig config;
+  ToyRoom room;
+};
+
+TEST_F(PglFields, KnowNothingAtFirst) {
+  const auto field = newField();
+  pgl::SurfaceSamplingDistribution distribution(field.get());
+  float unused = 0;
+  EXPECT_FALSE(distribution.Init(field.get(), {0.5f, 0.5f, 0}, unused));
+  EXPECT_EQ(field->GetIteration(), 0u);
+  field->Update(pgl::SampleStorage());
+  EXPECT_EQ(field->GetIteration(), 0u);
+}
+
+TEST_F(PglFields, SamplesFollowTheDensity) {
+  const auto field = taughtField();
+  pgl::SurfaceSamplingDistribution distribution(field.get());
+  Chi2Options options;
+  options.testCount = 3;
+  for (const Float3& position : {Float3{0.3f, 0.4f, 1e-4f}, {0.9f, 0.1f, 1e-4f}, {50, 50, 50}}) {
+    prepare(distribution, *field, position);
+    EXPECT_TRUE(chi2Test(
+        [&](float u, float v, float) {
+          pgl_vec3f wi;
+          const float pdf = distribution.SamplePDF({u, v}, wi);
+          EXPECT_NEAR(pdf, distribution.PDF(wi), 1e-4f * pdf);
+          return std::optional(fromPgl(wi));
+        },
+        [&](const Float3& wi) { return distribution.PDF(toPgl(wi)); }, options));
+  }
+}
+
+TEST_F(PglFields, RadianceDensityIntegratesToOne) {
+  const auto field = taughtField();
+  pgl::SurfaceSamplingDistribution distribution(field.get());
+  prepare(distribution, *field);
+  double sum = 0;
+  constexpr int kSteps = 400;
+  for (int i = 0; i < kSteps * kSteps; ++i) {
+    const float z = 2 * (float(i / kSteps) + 0.5f) / kSteps - 1, phi = 2 * kPi * (float(i % kSteps) + 0.5f) / kSteps;
+    const float r = std::sqrt(1 - z * z);
+    sum += distribution.IncomingRadiancePDF({r * std::cos(phi), r * std::sin(phi), z});
+  }
+  EXPECT_NEAR(sum * 4 * kPi / (kSteps * kSteps), 1, 0.01);
+}
+
+TEST_F(PglFields, GuidedImagesAreRightAndLessNoisy) {
+  const PglHost host(room);
+  const auto moments = [&](const pgl::Field* field, uint64_t first) {
+    pgl::PathSegmentStorage path;
+    double sum = 0, squares = 0;
+    constexpr uint64_t kPaths = 100000;
+    for (uint64_t i = 0; i < kPaths; ++i) {
+      const double value = host.trace(field, path, Numbers(first + i));
+      sum += value;
+      squares += value * value;
+    }
+    const double mean = sum / kPaths;
+    return std::pair(mean, (squares / kPaths - mean * mean) / kPaths);
+  };
+  const auto field = taughtField(40000);
+  const auto [path, ofPath] = moments(nullptr, 1'000'000);
+  const auto [guided, ofGuided] = moments(field.get(), 2'000'000);
+  EXPECT_LT(std::abs(path - guided), 4 * std::sqrt(ofPath + ofGuided)) << path << " and " << guided;
+  EXPECT_LT(ofGuided, 0.7 * ofPath);
+}
+
+TEST_F(PglFields, DoNotDependOnThreadsNorOrder) {
+  const PglHost host(room);
+  const auto taughtBy = [&](int threads) {
+    pgl::SampleStorage samples;
+    std::vector<std::thread> workers;
+    constexpr uint64_t kPaths = 8000;
+    for (int t = threads - 1; t >= 0; --t)
+      workers.emplace_back([&, t] { host.traceAndAdd(nullptr, samples, 1 + uint64_t(t) * kPaths / uint64_t(threads), kPaths / uint64_t(threads)); });
+    for (std::thread& worker : workers) worker.join();
+    std::unique_ptr<pgl::Field> field = newField();
+    field->Update(samples);
+    return field;
+  };
+  const auto one = taughtBy(1), four = taughtBy(4);
+  EXPECT_TRUE(*one == *four);
+  EXPECT_FALSE(*one == *taughtField(7000));
+}
+
+TEST_F(PglFields, StopAskingForSamplesWhenTheyHaveEnough) {
+  const auto field = newField();
+  pgl::SampleStorage samples;
+  for (uint64_t update = 0; update < 7; ++update) {
+    PglHost(room).traceAndAdd(nullptr, samples, 1 + 1000 * update, 1000);
+    field->Update(samples);
+    samples.Clear();
+    EXPECT_EQ(field->GetIteration(), update + 1);
+  }
+  PglHost(room).traceAndAdd(nullptr, samples, 7001, 1200);
+  field->Update(samples);
+  EXPECT_GT(field->GetIteration(), 1000000u);
+  field->Reset();
+  EXPECT_EQ(field->GetIteration(), 0u);
+}
+
+TEST_F(PglFields, AreStoredAndLoaded) {
+  const TemporaryFolder folder;
+  const std::string file = folder.path("field");
+  EXPECT_FALSE(newField()->Store(file));
+  const auto field = taughtField(5000);
+  ASSERT_TRUE(field->Store(file));
+  const pgl::Field loaded(&device, file);
+  EXPECT_TRUE(*field == loaded);
+  EXPECT_THROW(pgl::Field(&device, folder.path("none")), std::runtime_error);
+  EXPECT_NE(loaded.GetSurfaceStatistics().ToString().find("cells"), std::string::npos);
+}
+
+TEST_F(PglFields, TakeSamplesWithoutPaths) {
+  const auto field = newField();
+  pgl::SampleStorage samples;
+  Numbers numbers(1);
+  for (int i = 0; i < 20000; ++i) {
+    const float phi = 2 * kPi * numbers.next(), r = std::sqrt(numbers.next());
+    const Float3 wi{r * std::cos(phi), r * std::sin(phi), std::sqrt(1 - r * r)};
+    const bool bright = dot(wi, {0.6f, 0, 0.8f}) > 0.95f;
+    const float pdf = std::max(wi.z, 1e-3f) / kPi;
+    samples.AddSample({{numbers.next(), numbers.next(), 0}, toPgl(wi), (bright ? 10 : 0.1f) / pdf, pdf, 1, 0});
+  }
+  EXPECT_EQ(samples.GetSizeSurface(), 20000u);
+  field->Update(samples);
+  pgl::SurfaceSamplingDistribution distribution(field.get());
+  prepare(distribution, *field, {0.5f, 0.5f, 0});
+  EXPECT_GT(distribution.PDF({0.6f, 0, 0.8f}), 3 * distribution.PDF({-0.6f, 0, 0.8f}));
+}
+
+TEST_F(PglFields, VolumesAreLeftToTheHost) {
+  const auto field = taughtField(2000);
+  pgl::VolumeSamplingDistribution distribution(field.get());
+  float unused = 0;
+  EXPECT_FALSE(distribution.Init(field.get(), {0, 0, 0}, unused));
+}
+
+}  // namespace
+}  // namespace odis::test

@@ -1,0 +1,124 @@
+// What the library makes of the segments that a host records.
+#include <gtest/gtest.h>
+#include <openpgl/cpp/OpenPGL.h>
+
+#include <cmath>
+#include <vector>
+
+namespace {
+
+namespace pgl = openpgl::cpp;
+
+// A vertex at height z of a path that goes straight up.
+pgl::PathSegment* addVertex(pgl::PathSegmentStorage& path, float z) {
+  pgl::PathSegment* segment = path.NextSegment();
+  pgl::SetPosition(segment, {0, 0, z});
+  pgl::SetDirectionOut(segment, {0, 0, -1});
+  pgl::SetNormal(segment, {0, 0, -1});
+  return segment;
+}
+
+void scatter(pgl::PathSegment* segment, float weight, float pdf) {
+  pgl::SetDirectionIn(segment, {0, 0, 1});
+  pgl::SetPDFDirectionIn(segment, pdf);
+  pgl::SetScatteringWeight(segment, {weight, weight, weight});
+}
+
+std::vector<pgl::SampleData> samplesOf(pgl::PathSegmentStorage& path) {
+  path.PrepareSamples();
+  size_t count = 0;
+  const pgl::SampleData* data = path.GetSamples(count);
+  return {data, data + count};
+}
+
+TEST(PglPaths, RadianceComesFromFurtherAlong) {
+  pgl::PathSegmentStorage path;
+  pgl::PathSegment* first = addVertex(path, 0);
+  scatter(first, 0.5f, 0.25f);
+  pgl::SetRussianRouletteProbability(first, 0.5f);
+  pgl::PathSegment* second = addVertex(path, 2);
+  pgl::SetScatteredContribution(second, {1, 1, 1});
+  pgl::AddScatteredContribution(second, {1, 1, 1});
+  pgl::SetDirectContribution(second, {3, 3, 3});
+  pgl::SetMiWeight(second, 0.5f);
+  scatter(second, 0.25f, 2);
+  pgl::PathSegment* third = addVertex(path, 3);
+  pgl::SetDirectContribution(third, {8, 8, 8});
+  pgl::SetMiWeight(third, 0.75f);
+
+  const std::vector<pgl::SampleData> samples = samplesOf(path);
+  ASSERT_EQ(samples.size(), 2u);
+  // Emission as it is; what the second vertex scatters over the probability that the path came to it.
+  EXPECT_NEAR(samples[0].weight * samples[0].pdf, 3 * 0.5f + (2 + 0.25f * 8 * 0.75f) / 0.5f, 1e-5);
+  EXPECT_EQ(samples[0].pdf, 0.25f);
+  EXPECT_EQ(samples[0].distance, 2);
+  EXPECT_NEAR(samples[1].weight * samples[1].pdf, 8 * 0.75f, 1e-5);
+  EXPECT_EQ(samples[1].position.z, 2);
+  EXPECT_NEAR(path.CalculatePixelEstimate(false).x, 0.5f * (1.5f + (2 + 1.5f) / 0.5f), 1e-5);
+  EXPECT_TRUE(path.Validate());
+}
+
+TEST(PglPaths, NothingIsLearnedAtMirrorsNorInVolumes) {
+  for (const bool volume : {false, true}) {
+    pgl::PathSegmentStorage path;
+    scatter(addVertex(path, 0), 1, 1);
+    pgl::PathSegment* middle = addVertex(path, 1);
+    scatter(middle, 0.5f, 1);
+    if (volume)
+      pgl::SetVolumeScatter(middle, true);
+    else
+      pgl::SetIsDelta(middle, true);
+    pgl::SetDirectContribution(addVertex(path, 2), {4, 4, 4});
+    const std::vector<pgl::SampleData> samples = samplesOf(path);
+    ASSERT_EQ(samples.size(), 1u);
+    EXPECT_EQ(samples[0].position.z, 0);
+    EXPECT_NEAR(samples[0].weight, 2, 1e-6);
+  }
+}
+
+TEST(PglPaths, BackgroundIsOneMoreSegment) {
+  pgl::PathSegmentStorage path;
+  scatter(addVertex(path, 0), 1, 0.5f);
+  pgl::PathSegment background;
+  pgl::SetPosition(&background, {0, 0, 1e6f});
+  pgl::SetDirectionOut(&background, {0, 0, -1});
+  pgl::SetDirectContribution(&background, {2, 2, 2});
+  path.AddSegment(background);
+  const std::vector<pgl::SampleData> samples = samplesOf(path);
+  ASSERT_EQ(samples.size(), 1u);
+  EXPECT_EQ(samples[0].weight, 4);
+  EXPECT_GE(samples[0].distance, 1e6f);
+}
+
+TEST(PglPaths, DarkPathsGiveZeroSamples) {
+  pgl::PathSegmentStorage path;
+  scatter(addVertex(path, 0), 1, 1);
+  addVertex(path, 1);
+  EXPECT_TRUE(samplesOf(path).empty());
+  EXPECT_EQ(path.GetNumZeroValueSamples(), 1);
+  EXPECT_EQ(path.GetNumSegments(), 2);
+  path.Clear();
+  EXPECT_EQ(path.GetNumSegments(), 0);
+  EXPECT_TRUE(samplesOf(path).empty());
+}
+
+TEST(PglPaths, SegmentsStayWhereTheyAreWhileOthersFollow) {
+  pgl::PathSegmentStorage path;
+  pgl::PathSegment* first = addVertex(path, 0);
+  for (int i = 1; i < 1000; ++i) addVertex(path, float(i));
+  pgl::SetEta(first, 1.5f);
+  EXPECT_EQ(first->position.z, 0);
+  EXPECT_EQ(path.GetNumSegments(), 1000);
+}
+
+TEST(PglPaths, WhatIsNotFiniteIsNoSample) {
+  for (const float wrong : {NAN, INFINITY}) {
+    pgl::PathSegmentStorage path;
+    scatter(addVertex(path, wrong), 1, 1);
+    pgl::SetDirectContribution(addVertex(path, 1), {1, 1, 1});
+    EXPECT_FALSE(path.ValidateSegments());
+    EXPECT_TRUE(samplesOf(path).empty());
+  }
+}
+
+}  // namespace
