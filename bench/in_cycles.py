@@ -1,0 +1,124 @@
+#!/usr/bin/env python3
+"""What a libopenpgl gains and costs in Cycles' own program: error and processor time beside unguided paths.
+
+    bench/in_cycles.py CYCLES SCENE... --guide NAME=FOLDER... [--spp 4,16] [--seeds 4] [--reference-spp 4096] [--cache DIR]
+
+CYCLES is a program that links libopenpgl as a shared library, SCENE a folder that
+integrations/openpgl/convert_scene.py wrote, FOLDER one that holds a libopenpgl.so.0. Errors are 0.1 %-trimmed relMSE as
+src/eval/metrics.h has it, to an unguided image of another seed; times are of all threads, without what an image of 8 x 8
+pixels takes (loading). Medians over seeds; ratios are to unguided paths. Needs `pip install mitsuba` to read OpenEXR.
+"""
+import argparse
+import os
+import pathlib
+import re
+import resource
+import subprocess
+import sys
+import tempfile
+
+import mitsuba as mi
+import numpy as np
+
+mi.set_variant("scalar_rgb")
+REFERENCE_SEED = 1 << 20
+
+
+def read(file):
+    return np.array(mi.Bitmap(str(file)).convert(mi.Bitmap.PixelFormat.RGB, mi.Struct.Type.Float32), np.float64)
+
+
+def trimmed_relative_error(image, reference):
+    """0.1 %-trimmed relMSE, as src/eval/metrics.h defines it."""
+    scale = 1 / (reference @ np.array([0.212671, 0.715160, 0.072169])).mean()
+    errors = ((scale * (image - reference)) ** 2 / ((scale * reference) ** 2 + 0.01)).mean(axis=2).ravel()
+    errors[~np.isfinite(errors)] = np.inf
+    kept = errors.size - int(0.001 * errors.size)
+    return np.partition(errors, kept - 1)[:kept].mean()
+
+
+class Program:
+    def __init__(self, cycles, threads, any_library):
+        """any_library: the folder of a libopenpgl, which the program does not start without."""
+        self.cycles, self.threads, self.any_library = cycles, threads, any_library
+
+    def render(self, scene, spp, seed, library=None, output=None, size=None):
+        """Renders with the guide of a folder, None for unguided paths; returns processor seconds."""
+        guiding = f'seed="{seed}" use_guiding="{"true" if library else "false"}"'
+        file = scene / f".scene-{os.getpid()}.xml"
+        text = (scene / "scene.xml").read_text()
+        file.write_text(text.replace("@guiding@", guiding))
+        environment = {**os.environ, "LD_LIBRARY_PATH": str(library or self.any_library)}
+        command = [self.cycles, "--background", "--quiet", "--samples", str(spp), "--threads", str(self.threads)]
+        # The program has a size of its own unless it is told one.
+        width, height = size or re.search(r'<camera width="(\d+)" height="(\d+)"', text).groups()
+        command += ["--width", str(width), "--height", str(height)]
+        with tempfile.TemporaryDirectory() as folder:
+            target = output or pathlib.Path(folder) / "image.exr"
+            before = resource.getrusage(resource.RUSAGE_CHILDREN)
+            done = subprocess.run([*command, "--output", str(target), str(file)], env=environment, capture_output=True)
+            after = resource.getrusage(resource.RUSAGE_CHILDREN)
+        file.unlink()
+        if done.returncode:
+            raise RuntimeError(f"{scene}: {self.cycles} failed: {done.stderr.decode()[-500:]}")
+        return after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime
+
+
+def reference_of(program, scene, args):
+    args.cache.mkdir(parents=True, exist_ok=True)
+    file = args.cache / f"{scene.name}-{args.reference_spp}.exr"
+    if not file.exists():
+        part = file.with_name(f"part-{file.name}")
+        program.render(scene, args.reference_spp, REFERENCE_SEED, output=part)
+        part.rename(file)
+    return read(file)
+
+
+def measure(program, scene, guides, spp, args):
+    """For each guide, unguided first: errors and seconds, [seed]."""
+    reference = reference_of(program, scene, args)
+    loading = np.median([program.render(scene, 1, 0, size=(8, 8)) for _ in range(3)])
+    found = {name: ([], []) for name in guides}
+    for seed in range(args.seeds):
+        for name, library in guides.items():
+            with tempfile.TemporaryDirectory() as folder:
+                image = pathlib.Path(folder) / "image.exr"
+                seconds = program.render(scene, spp, seed, library, image) - loading
+                found[name][0].append(trimmed_relative_error(read(image), reference))
+                found[name][1].append(max(seconds, 1e-3))
+    return found
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__.split("\n\n")[0])
+    parser.add_argument("cycles")
+    parser.add_argument("scenes", nargs="+", type=pathlib.Path)
+    parser.add_argument("--guide", action="append", required=True, metavar="NAME=FOLDER")
+    parser.add_argument("--spp", default="4,16")
+    parser.add_argument("--seeds", type=int, default=4)
+    parser.add_argument("--threads", type=int, default=os.cpu_count())
+    parser.add_argument("--reference-spp", type=int, default=4096)
+    parser.add_argument("--cache", type=pathlib.Path, default=pathlib.Path("cycles-references"))
+    args = parser.parse_args()
+    guides = dict(guide.split("=", 1) for guide in args.guide)
+    program, ratios = Program(args.cycles, args.threads, next(iter(guides.values()))), {}
+    guides = {"off": None, **guides}
+    print("| scene | samples | guide | error | seconds | error ratio | time ratio | error × time |\n"
+          "|---|--:|---|--:|--:|--:|--:|--:|", flush=True)
+    for scene in args.scenes:
+        for spp in map(int, args.spp.split(",")):
+            found = measure(program, scene, guides, spp, args)
+            off = [np.median(values) for values in found["off"]]
+            for name, values in found.items():
+                error, seconds = map(np.median, values)
+                ratio = error / off[0], seconds / off[1]
+                ratios.setdefault((spp, name), []).append(ratio)
+                print(f"| {scene.name} | {spp} | {name} | {error:.4g} | {seconds:.2f} | {ratio[0]:.2f} | {ratio[1]:.2f} | "
+                      f"{ratio[0] * ratio[1]:.2f} |", flush=True)
+    for (spp, name), values in ratios.items():
+        error, time = np.exp(np.log(values).mean(axis=0))
+        print(f"| mean of {len(values)} | {spp} | {name} | | | {error:.2f} | {time:.2f} | {error * time:.2f} |")
+
+
+if __name__ == "__main__":
+    sys.exit(main())
