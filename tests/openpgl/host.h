@@ -41,8 +41,8 @@ class PglHost {
 
   explicit PglHost(const ToyRoom& room) : m_room(room) {}
 
-  // Traces a path whose first vertex is seen through (x, y) of the image, in [0, 1)^2, and records it. Without a
-  // field, or before it knows anything, directions are those of the BSDF.
+  // Traces a path from the camera and records it; returns what it brought. Without a field, or before that
+  // knows anything, directions are those of the BSDF.
   float trace(const pgl::Field* field, pgl::PathSegmentStorage& path, Numbers numbers) const {
     path.Clear();
     float radiance = 0, throughput = 1;

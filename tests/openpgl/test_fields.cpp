@@ -30,7 +30,8 @@ class PglFields : public ::testing::Test {
     return field;
   }
   // The distribution on the floor.
-  void prepare(pgl::SurfaceSamplingDistribution& distribution, const pgl::Field& field, const Float3& position = {0.3f, 0.4f, 1e-4f}) {
+  void prepare(pgl::SurfaceSamplingDistribution& distribution, const pgl::Field& field,
+               const Float3& position = {0.3f, 0.4f, 1e-4f}) {
     float unused = 0;
     ASSERT_TRUE(distribution.Init(&field, toPgl(position), unused));
     distribution.ApplyCosineProduct({0, 0, 1});
@@ -76,7 +77,8 @@ TEST_F(PglFields, RadianceDensityIntegratesToOne) {
   double sum = 0;
   constexpr int kSteps = 400;
   for (int i = 0; i < kSteps * kSteps; ++i) {
-    const float z = 2 * (float(i / kSteps) + 0.5f) / kSteps - 1, phi = 2 * kPi * (float(i % kSteps) + 0.5f) / kSteps;
+    const float z = 2 * (float(i / kSteps) + 0.5f) / kSteps - 1,
+                phi = 2 * kPi * (float(i % kSteps) + 0.5f) / kSteps;
     const float r = std::sqrt(1 - z * z);
     sum += distribution.IncomingRadiancePDF({r * std::cos(phi), r * std::sin(phi), z});
   }
@@ -111,7 +113,10 @@ TEST_F(PglFields, DoNotDependOnThreadsNorOrder) {
     std::vector<std::thread> workers;
     constexpr uint64_t kPaths = 8000;
     for (int t = threads - 1; t >= 0; --t)
-      workers.emplace_back([&, t] { host.traceAndAdd(nullptr, samples, 1 + uint64_t(t) * kPaths / uint64_t(threads), kPaths / uint64_t(threads)); });
+      workers.emplace_back([&, t] {
+        host.traceAndAdd(nullptr, samples, 1 + uint64_t(t) * kPaths / uint64_t(threads),
+                         kPaths / uint64_t(threads));
+      });
     for (std::thread& worker : workers) worker.join();
     std::unique_ptr<pgl::Field> field = newField();
     field->Update(samples);
@@ -159,7 +164,8 @@ TEST_F(PglFields, TakeSamplesWithoutPaths) {
     const Float3 wi{r * std::cos(phi), r * std::sin(phi), std::sqrt(1 - r * r)};
     const bool bright = dot(wi, {0.6f, 0, 0.8f}) > 0.95f;
     const float pdf = std::max(wi.z, 1e-3f) / kPi;
-    samples.AddSample({{numbers.next(), numbers.next(), 0}, toPgl(wi), (bright ? 10 : 0.1f) / pdf, pdf, 1, 0});
+    samples.AddSample(
+        {{numbers.next(), numbers.next(), 0}, toPgl(wi), (bright ? 10 : 0.1f) / pdf, pdf, 1, 0});
   }
   EXPECT_EQ(samples.GetSizeSurface(), 20000u);
   field->Update(samples);
