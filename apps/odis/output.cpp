@@ -14,9 +14,10 @@ using namespace render;
 
 Layers parseLayers(const std::string& text) {
   Layers layers;
-  const std::pair<const char*, bool*> known[] = {{"albedo", &layers.albedo},       {"normal", &layers.normal},
-                                                 {"position", &layers.position},   {"depth", &layers.depth},
-                                                 {"roughness", &layers.roughness}, {"guide", &layers.guide}};
+  const std::pair<const char*, bool*> known[] = {{"alpha", &layers.alpha},   {"albedo", &layers.albedo},
+                                                 {"normal", &layers.normal}, {"position", &layers.position},
+                                                 {"depth", &layers.depth},   {"roughness", &layers.roughness},
+                                                 {"guide", &layers.guide}};
   std::istringstream stream(text);
   for (std::string name; std::getline(stream, name, ',');) {
     bool found = false;
@@ -24,7 +25,9 @@ Layers parseLayers(const std::string& text) {
       if (name == "all" || name == layer) found = *wanted = true;
     if (!found)
       throw UsageError(fmt::format(
-          "--aov: found \"{}\", expected albedo, normal, position, depth, roughness, guide or all", name));
+          "--aov: found \"{}\", expected alpha, albedo, normal, position, depth, roughness, guide or "
+          "all",
+          name));
   }
   return layers;
 }
@@ -95,6 +98,7 @@ void writeLayers(const std::string& path, const RenderedImage& frame, const Film
                  const Layers& layers, const std::map<std::string, std::string>& metadata) {
   Planes planes;
   planes.add("", "RGB", frame.color, false);
+  if (layers.alpha) planes.add("A", frame.alpha, true);
   planes.add("variance.", "RGB", frame.variance, false);
   if (layers.albedo) planes.add("albedo.", "RGB", frame.albedo, true);
   if (layers.normal) planes.add("N.", "XYZ", frame.normal, true);

@@ -395,6 +395,9 @@ TEST(Parameters, NamesOfEarlierVersions) {
   EXPECT_EQ(
       value({{"type", "roughconductor"}, {"alpha", 0.3}, {"eta", 0.4}, {"k", 4.0}, {"ext_eta", "water"}}),
       value({{"type", "roughconductor"}, {"alpha", 0.3}, {"eta", 0.4}, {"k", 4.0}, {"ext_eta", 1.333}}));
+  // As of measured metals whose channels are negative in sRGB.
+  EXPECT_EQ(value({{"type", "roughconductor"}, {"alpha", 0.3}, {"eta", -0.4}, {"k", -4.0}}),
+            value({{"type", "roughconductor"}, {"alpha", 0.3}, {"eta", 0.4}, {"k", 4.0}}));
   expectNear(value({{"type", "roughconductor"}, {"alpha", 0.3}, {"eta", 0.8}, {"k", 8.0}, {"ext_eta", 2.0}}),
              value({{"type", "roughconductor"}, {"alpha", 0.3}, {"eta", 0.4}, {"k", 4.0}}), 1e-5f);
 }

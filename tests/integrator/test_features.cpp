@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numeric>
 #include <set>
 
 #include "integrator/test_scenes.h"
@@ -50,6 +51,45 @@ TEST(GuideFeatures, SayWhatWasDecided) {
   EXPECT_GT(known, 1000);
   EXPECT_GT(asTold, 980);
   EXPECT_GT(cells.size(), 50u);
+}
+
+TEST(Alpha, IsTheShareThatIsNeitherEmptyNorHidden) {
+  const std::string hide =
+      "<integrator type=\"path\"><boolean name=\"hide_emitters\" value=\"true\"/></integrator>";
+  const std::string lamp =
+      "<shape type=\"rectangle\"><emitter type=\"area\"><rgb name=\"radiance\" "
+      "value=\"1\"/></emitter></shape>";
+  const std::string veil =
+      "<shape type=\"rectangle\"><bsdf type=\"mask\"><float name=\"opacity\" value=\"0.25\"/>"
+      "<bsdf type=\"diffuse\"/></bsdf></shape>";
+  const std::string sky = "<emitter type=\"constant\"/>", point = "<emitter type=\"point\"/>";
+  const std::string black =
+      "<shape type=\"rectangle\"><bsdf type=\"diffuse\"><rgb name=\"reflectance\" "
+      "value=\"0\"/></bsdf></shape>";
+  const struct {
+    std::string scene;
+    double expected;
+    int maxDepth = -1;
+  } cases[] = {{hide + veil + sky, 0.25}, {veil + sky, 1}, {veil + point, 0.25}, {hide + lamp, 0},
+               {hide + lamp + sky, 0},    {lamp, 1, 1},    {hide + sky, 0},      {black + point, 1},
+               {hide + black + sky, 1},   {point, 0},      {veil + sky, 1, 1},   {hide + black + sky, 1, 1}};
+  for (const IntegratorKind integrator : {IntegratorKind::path, IntegratorKind::odis})
+    for (const auto& [scene, expected, maxDepth] : cases) {
+      RenderOptions options;
+      options.integrator = integrator;
+      options.spp = 64;
+      options.maxDepth = maxDepth;
+      const auto loaded =
+          test::loadScene(scene + test::sensor("origin=\"0,0,1\" target=\"0,0,0\" up=\"0,1,0\"", 40, 16, 16));
+      EXPECT_TRUE(test::renderScene(*loaded, options).image.alpha.empty());
+      options.features = true;
+      const RenderedImage image = test::renderScene(*loaded, options).image;
+      ASSERT_EQ(image.alpha.size(), 256u);
+      const double mean = std::accumulate(image.alpha.begin(), image.alpha.end(), 0.0) / 256;
+      // Four standard deviations of 16384 independent samples, where chance decides.
+      const double tolerance = expected > 0 && expected < 1 ? 4 * std::sqrt(0.25 * 0.75 / 16384) : 1e-6;
+      EXPECT_NEAR(mean, expected, tolerance) << scene;
+    }
 }
 
 TEST(GuideFeatures, DifferWhereLightDoes) {

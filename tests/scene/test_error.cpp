@@ -92,6 +92,13 @@ TEST(Errors, SayWhereWhatAndWhatWasExpected) {
   for (const auto& [body, expected] : cases) EXPECT_EQ(errorIn(body), expected) << body;
 }
 
+TEST(Errors, OfTextThatCanBeSeen) {
+  const std::string invisible = "\u200b \u00a0\ufeff\n";
+  EXPECT_EQ(errorIn(invisible + "<bsdf type='diffuse'/>" + invisible + invisible), "no error");
+  EXPECT_EQ(errorIn(invisible + "<bsdf type='diffuse'/>\u200b x"),
+            "test.xml:3:27: found the text 'x', expected elements only");
+}
+
 TEST(Errors, OfXmlItself) {
   EXPECT_EQ(errorOf("<scene version='3.0.0'>\n <bsdf type='x'>\n</scene>")
                 .rfind("test.xml:3:3: this is not well-formed", 0),

@@ -125,6 +125,15 @@ TEST(Load, DrawsWhatItDoesNotKnowAsWellAsItCan) {
   EXPECT_EQ(loaded.warnings.texts(Effect::same).size(), 2u);
 }
 
+TEST(Load, MeasuresIrradianceWithUnknownSensorsOfShapes) {
+  const Loaded loaded = load(kLight +
+                             "<shape type='rectangle'><sensor type='flux'><film type='hdrfilm'/>"
+                             "</sensor></shape>");
+  ASSERT_TRUE(loaded.scene) << loaded.error;
+  EXPECT_TRUE(loaded.warnsOf("the sensor 'flux' of a shape is unknown, an irradiancemeter is used"));
+  EXPECT_EQ(loaded.warnings.texts().size(), 1u);
+}
+
 TEST(Load, TellsWhatChangesThePictureFromWhatDoesNot) {
   const Loaded loaded = load(
       "<integrator type='moment'><integrator type='path'><integer name='block_size' value='8'/>"

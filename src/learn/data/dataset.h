@@ -47,7 +47,8 @@ using CountProgress = std::function<void(size_t done, size_t total)>;
 // WriteError, and ShardError if two of them have the same name and are not the same.
 void gatherShards(const std::vector<std::string>& folders, const std::string& into,
                   const CountProgress& progress);
-// Removes what killed processes left half-made of shards that are there.
+// Removes half-made files of shards that are there: those of killed processes, and those of processes on
+// any machine that make the same shard in vain (makeShard).
 void removeLeftOvers(const std::string& folder);
 // Reads and unpacks all shards of a folder and describes them in a manifest. Shards that are damaged or
 // were made with other settings than the first are complained about, and left out.

@@ -215,13 +215,21 @@ bool makeShard(const ShardSource& source, const DataSettings& settings, const As
   for (const char* view : kViewFiles)
     if (fs::exists(sceneFolder + "/" + view))
       views.push_back(addView(writer, sceneFolder + "/" + view, views.size(), source.seed, settings));
-  writer.write(file, {{"software", "ODIS " ODIS_VERSION_STRING},
-                      {"name", source.name},
-                      {"seed", source.seed},
-                      {"split", splitName(splitOf(source.seed))},
-                      {"settings", made},
-                      {"scene", sceneJson(sceneFolder)},
-                      {"views", views}});
+  const nlohmann::ordered_json header = {{"software", "ODIS " ODIS_VERSION_STRING},
+                                         {"name", source.name},
+                                         {"seed", source.seed},
+                                         {"split", splitName(splitOf(source.seed))},
+                                         {"settings", made},
+                                         {"scene", sceneJson(sceneFolder)},
+                                         {"views", views}};
+  try {
+    writer.write(file, header);
+  } catch (const render::WriteError&) {
+    // Another process made the same shard meanwhile, and may have removed this one's unfinished file as a
+    // left-over.
+    if (!fs::exists(file)) throw;
+    return false;
+  }
   return true;
 }
 

@@ -39,8 +39,9 @@ std::string shardFile(const std::string& folder, const std::string& name);
 // What the generator says of the scene in a folder; an empty object if it did not make it.
 nlohmann::ordered_json sceneJson(const std::string& folder);
 
-// Makes the shard in the folder, unless it is there: a function of source, settings and assets. Returns
-// whether it was made. Throws SceneError, GenerateError (another shard of that name is there), WriteError.
+// Makes the shard in the folder, unless it is there, or another process was quicker: a function of source,
+// settings and assets. Returns whether it was made. Throws SceneError, GenerateError (another shard of that
+// name is there), WriteError.
 bool makeShard(const ShardSource& source, const DataSettings& settings, const Assets& assets,
                const std::string& folder);
 

@@ -88,7 +88,8 @@ ComplexIor readComplexIor(const Properties& properties, Builder& builder) {
   ComplexIor result;
   const std::string material = properties.string("material", "none");
   // Mirrors are made with a large k.
-  const Declaration declaration{"colour or texture", between(0, 1e6)};
+  // Spectra of coloured metals have negative channels in linear sRGB. Fresnel's equations take the squares.
+  const Declaration declaration{"colour or texture", between(-1e6, 1e6)};
   const TexturePtr eta = builder.optionalTexture(properties, "eta", declaration),
                    k = builder.optionalTexture(properties, "k", declaration);
   if (eta || k || material == "none") {

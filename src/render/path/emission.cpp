@@ -8,8 +8,9 @@ namespace odis::render {
 namespace {
 
 void addEmission(const PathSettings& settings, Batch& batch, const Bounce& bounce, const Emission& met) {
-  if (isBlack(met.radiance)) return;
   Path& path = *bounce.path;
+  path.visible |= !settings.scene->integrator().hideEmitters;
+  if (isBlack(met.radiance)) return;
   const float pdf = path.bySampling ? lightPdf(*settings.lights, path.previous, path.ray.direction, met) : 0;
   const float weight = path.bySampling ? powerHeuristic(path.directionPdf, pdf) : 1;
   path.radiance += path.throughput * met.radiance * weight;
@@ -61,6 +62,8 @@ void meetEmission(const PathSettings& settings, Batch& batch, Bounces bounces) {
                     path.bySampling ? &path.previous : nullptr,
                     [&](const Emission& met) { addEmission(settings, batch, bounce, met); });
     bounce.scatters = hit && (settings.maxDepth < 0 || bounce.depth < settings.maxDepth);
+    // Where depth ends a path nobody draws a lobe, and the surface counts as one that hides what is behind.
+    if (hit && !bounce.scatters) bounce.path->visible = true;
   }
 }
 
@@ -83,6 +86,7 @@ void playRouletteOnArrival(const PathSettings& settings, Batch& batch, Bounces b
     }
     path.radiance += standIn * (1 - 1 / survival);
     path.throughput /= survival;
+    if (!path.visible) path.visibleWeight /= survival;
     if (batch.recording) batch.recorder.survived(path.handle, survival);
   }
 }

@@ -5,7 +5,9 @@
 
 namespace odis::render {
 
-void FeatureSums::add(const FirstHit& first) {
+void FeatureSums::add(const FirstHit& first, float sampleAlpha) {
+  alpha += sampleAlpha;
+  ++samples;
   if (!first.valid) return;
   albedo += first.albedo;
   normal += first.normal;
@@ -41,6 +43,7 @@ void writeFeatures(const std::vector<FeatureSums>& sums, bool guide, RenderedIma
     image.position.push_back(s.position * scale);
     image.depth.push_back(s.depth * scale);
     image.roughness.push_back(s.roughness * scale);
+    image.alpha.push_back(s.samples > 0 ? s.alpha / float(s.samples) : 0.0f);
     if (!guide) continue;
     const auto mean = [&](float sum, float otherwise) {
       return s.guided > 0 ? sum / float(s.guided) : otherwise;

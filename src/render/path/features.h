@@ -24,7 +24,7 @@ struct FirstHit {
   float survival = 1;                // that learned roulette would give a path with this throughput
 };
 
-// Sums of features over the samples that met a surface. 80 bytes a pixel.
+// Sums of features over the samples that met a surface, and of alpha over all. 88 bytes a pixel.
 struct FeatureSums {
   Rgb albedo{0, 0, 0};
   Vec3 normal{0, 0, 0}, geometricNormal{0, 0, 0}, position{0, 0, 0};
@@ -33,15 +33,18 @@ struct FeatureSums {
   float bsdfFraction = 0, entropy = 0, survival = 0;
   uint32_t guided = 0;      // number of samples that found a cell
   uint32_t cell = kNoCell;  // that the last of them found
+  float alpha = 0;          // filter weights of the samples that saw anything, over their survival
+  uint32_t samples = 0;     // number of all samples
 
-  void add(const FirstHit& first);
+  // Adds a sample, and its alpha times its filter weight.
+  void add(const FirstHit& first, float sampleAlpha);
 };
 
 // The entropy of a map's texels in bits: 8 for an even map, 0 if all light comes through one texel.
 float entropy(const uint16_t* texels);
 
-// Fills the image's features with their means. Where no sample found a cell the BSDF sampling fraction and
-// the survival are 1, the map has the entropy of an even one, and the cell's index is -1.
+// Fills the image's features and its alpha with their means. Where no sample found a cell the BSDF sampling
+// fraction and the survival are 1, the map has the entropy of an even one, and the cell's index is -1.
 void writeFeatures(const std::vector<FeatureSums>& sums, bool guide, RenderedImage& image);
 
 }  // namespace odis::render

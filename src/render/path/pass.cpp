@@ -51,7 +51,8 @@ void collect(const Pass& pass, std::span<const Path> paths, TileResult& result) 
         {pixel, sample, toOdis(value), uint32_t(path.counts.rays + path.counts.shadowRays)});
     result.counts.add(path.counts);
     if (pass.emitted) (*pass.emitted)[pixel] += path.emitted * filterWeight;
-    if (pass.features) (*pass.features)[pixel].add(path.first);
+    if (pass.features)
+      (*pass.features)[pixel].add(path.first, path.visible ? path.visibleWeight * filterWeight : 0);
   }
 }
 
@@ -109,6 +110,7 @@ Path cameraPath(const Pass& pass, uint32_t index, uint32_t sample) {
   const Ray ray = cameraRay(*pass.path.scene, pixel, sampler, filterWeight);
   Path path(ray, sampler);
   path.hidesEnvironment = pass.path.scene->integrator().hideEmitters;
+  path.visible = !pass.path.features || (!path.hidesEnvironment && !pass.path.scene->environments().empty());
   path.identity = {index, sample, filterWeight};
   if (!pass.pixelValues.empty()) path.pixelValue = pass.pixelValues[index];
   return path;

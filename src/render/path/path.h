@@ -63,6 +63,10 @@ struct Path {
   bool bySampling = false;        // whether the ray's direction competes with next-event estimation
   float directionPdf = 0;         // solid-angle density of the ray's direction, if so
   bool hidesEnvironment = false;  // whether the ray is one that doesn't see the surroundings
+  // For alpha: whether the camera sees anything along the path, true without features, and one over the
+  // probability with which roulette left the path until it did.
+  bool visible = false;
+  float visibleWeight = 1;
   float uSurvival = 0;      // random number that decides, where the ray arrives, whether the path goes on
   LightReference previous;  // where the ray started
   float distance = 0;       // length of the path from the camera to there

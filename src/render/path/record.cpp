@@ -6,6 +6,8 @@ namespace odis::render {
 void describeFirstHits(const PathSettings& settings, Bounces bounces) {
   if (!settings.features) return;
   for (Bounce& bounce : bounces) {
+    // As in Mitsuba, whatever lobe but a null one is drawn hides what is behind.
+    bounce.path->visible |= bounce.next.lobe != Lobe::null;
     FirstHit& first = bounce.path->first;
     if (first.valid || isDiscrete(bounce.next.lobe)) continue;
     const auto& [at, wo] = *bounce.vertex;

@@ -15,6 +15,9 @@ struct RenderedImage {
   std::vector<Rgb> albedo;    // features at the first non-delta vertex; empty unless asked for
   std::vector<Vec3> normal, geometricNormal, position;
   std::vector<float> depth, roughness;
+  // The share of the pixel in which the camera sees surfaces, lights or the surroundings; like Mitsuba's,
+  // colours are multiplied by it already. Empty unless features are asked for.
+  std::vector<float> alpha;
   // What the guide has decided at that vertex: BSDF sampling fraction, entropy of the map in bits,
   // survival, cell; and the number of the pixel's samples. Empty unless asked for.
   std::vector<float> guideBsdfFraction, guideEntropy, guideSurvival, guideCell, guideSamples;

@@ -50,6 +50,7 @@ void departRays(Bounces bounces) {
     Path& path = *bounce.path;
     const SurfacePoint& at = bounce.vertex->at;
     path.throughput *= bounce.weight;
+    if (!path.visible) path.visibleWeight /= bounce.survival;
     path.hidesEnvironment &= bounce.next.lobe == Lobe::null;
     path.bySampling = !isDiscrete(bounce.next.lobe);
     path.directionPdf = bounce.next.pdf;

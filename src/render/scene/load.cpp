@@ -86,7 +86,7 @@ std::unique_ptr<Scene> Scene::load(const std::string& path, const LoadOptions& o
   scene->setIntegrator(loadIntegrator(singles.integrator, part("sampler"), warnings));
   const Vec2i resolution(film.width, film.height);
   if (sensor) {
-    scene->setSensor(meter.shape ? makeMeter(*sensor, resolution, meter.shape)
+    scene->setSensor(meter.shape ? makeMeter(*sensor, resolution, meter.shape, warnings)
                                  : makeSensor(*sensor, resolution, warnings));
     if (sensor->child("medium")) shapes.warnOfMedia(*sensor);
     builder.warnUnqueried(*sensor);

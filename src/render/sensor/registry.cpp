@@ -88,10 +88,13 @@ SensorPtr makeSensor(const Properties& node, const Vec2i& resolution, Warnings& 
 }
 
 SensorPtr makeMeter(const Properties& node, const Vec2i& resolution,
-                    const std::shared_ptr<const Shape>& shape) {
-  if (node.type != "irradiancemeter")
+                    const std::shared_ptr<const Shape>& shape, Warnings& warnings) {
+  if (findFactory(kFactories, node.type))
     throw SceneError(node.location,
                      "found the sensor '" + node.type + "' in a shape, expected an irradiancemeter");
+  if (node.type != "irradiancemeter")
+    warnings.add(node.location,
+                 "the sensor '" + node.type + "' of a shape is unknown, an irradiancemeter is used");
   if (!(shape->area() > 0))
     throw SceneError(node.location, "found an irradiancemeter on a shape without area, expected one with");
   return std::make_shared<IrradianceMeter>(shape, resolution);

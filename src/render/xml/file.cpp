@@ -16,6 +16,22 @@ bool isPredefined(const std::string& entity) {
   return false;
 }
 
+// Where the first thing in a text stands that can be seen, or its end. No-break spaces, spaces of width zero
+// and byte order marks come with what is pasted from web pages.
+size_t skipSpace(const std::string& text) {
+  size_t at = 0;
+  for (bool found = true; found;) {
+    at = std::min(text.find_first_not_of(" \t\r\n", at), text.size());
+    found = false;
+    for (const char* invisible : {"\u00a0", "\u200b", "\ufeff"})
+      if (text.compare(at, std::strlen(invisible), invisible) == 0) {
+        at += std::strlen(invisible);
+        found = true;
+      }
+  }
+  return at;
+}
+
 // Where what begins at `start` ends, if it is a comment or the like in which '&' has no meaning; else
 // `start`.
 size_t skipUnparsed(const std::string& text, size_t start) {
@@ -106,8 +122,8 @@ void XmlFile::rejectText(const pugi::xml_node& node) const {
   for (const pugi::xml_node& child : node.children()) {
     if (child.type() != pugi::node_pcdata && child.type() != pugi::node_cdata) continue;
     const std::string text = child.value();
-    const size_t start = text.find_first_not_of(" \t\r\n");
-    if (start == std::string::npos) continue;
+    const size_t start = skipSpace(text);
+    if (start == text.size()) continue;
     const size_t length = text.find_first_of(" \t\r\n", start) - start;
     throw SceneError(
         locate(size_t(std::max<ptrdiff_t>(child.offset_debug(), 0)) + start),
