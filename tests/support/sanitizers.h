@@ -14,8 +14,8 @@ inline constexpr bool kSanitized = __has_feature(address_sanitizer) || kThreadSa
 inline constexpr bool kSanitized = false, kThreadSanitized = false;
 #endif
 
-// How many images a comparison of expectations renders. A few of them show races as well as many, and under the
-// thread sanitizer each takes ten times as long; too few are left there to compare.
+// How many images a comparison of expectations renders. A few of them show races as well as many, and under
+// the thread sanitizer each takes ten times as long; too few are left there to compare.
 inline constexpr int imagesToCompare(int images) {
   return kThreadSanitized ? 2 : images;
 }
