@@ -66,6 +66,10 @@ inline std::vector<ElementType> allElementTypes() {
   for (const char* type : {"sky", "sunsky"})
     find(type).parameters["resolution"] = "<integer name='resolution' value='4'/>";
   find("thinlens").parameters["aperture_radius"] = "<float name='aperture_radius' value='0.1'/>";
+  // A shutter may not close before it opens.
+  for (ElementType& element : all)
+    if (element.tag == "sensor")
+      element.parameters["shutter_open"] = "<float name='shutter_open' value='-1e15'/>";
   return all;
 }
 
@@ -130,7 +134,10 @@ class ElementMaker {
     if (node.tag == "bsdf") made.bsdf = builder.bsdf(node);
     if (node.tag == "texture") builder.texture(node);
     if (node.tag == "shape") makeShape(node, builder);
-    if (node.tag == "sensor") makeSensor(node, {8, 8}, warnings);
+    if (node.tag == "sensor") {
+      readShutter(node);
+      makeSensor(node, {8, 8}, builder);
+    }
     if (node.tag == "film") loadFilm(&node, {}, warnings);
     if (node.tag == "sampler") loadIntegrator(nullptr, &node, warnings);
     if (node.tag == "integrator") loadIntegrator(&node, nullptr, warnings);
@@ -142,7 +149,7 @@ class ElementMaker {
     } else if (node.tag == "emitter") {
       builder.emitters(node);
     }
-    if (node.tag == "shape" || node.tag == "sensor" || node.type == "area") builder.warnUnqueried(node);
+    if (node.tag == "shape" || node.type == "area") builder.warnUnqueried(node);
     if (node.tag == "rfilter") {
       Properties film;
       film.tag = "film";

@@ -182,14 +182,32 @@ TEST(Includes, PutScenesAndSingleElementsInPlace) {
   EXPECT_EQ(parsed.folders.size(), 2u);
 }
 
-TEST(Animation, IsItsFirstTransform) {
+TEST(Animation, HasAllItsKeyFrames) {
   Warnings warnings;
   const auto root = parse(
-      "<shape type='sphere'><animation name='toWorld'><transform time='0'><translate x='1'/>"
-      "</transform><transform time='1'/></animation></shape>",
+      "<shape type='sphere'><animation name='toWorld'><transform time='-0.5'><translate x='1'/>"
+      "</transform><transform time='1e1'/></animation></shape>",
       {}, &warnings);
-  EXPECT_EQ(root->child("shape")->transform("to_world")[3][0], 1);
-  EXPECT_EQ(warnings.texts().size(), 1u);
+  const render::Animation* animation = root->child("shape")->animation("to_world");
+  ASSERT_TRUE(animation);
+  ASSERT_EQ(animation->size(), 2u);
+  EXPECT_EQ(animation->front().time, -0.5);
+  EXPECT_EQ(animation->front().toWorld[3][0], 1);
+  EXPECT_EQ(animation->back().time, 10);
+  EXPECT_TRUE(warnings.texts().empty());
+}
+
+TEST(Animation, IsItsFirstTransformWhereNothingCanMove) {
+  const std::string animation =
+      "<animation name='to_world'><transform time='0'><translate x='1'/></transform><transform time='1'/>"
+      "</animation>";
+  for (const char* element : {"shape type='shapegroup'", "emitter type='sunsky'", "texture type='bitmap'"}) {
+    Warnings warnings;
+    const std::string tag(element, std::string(element).find(' '));
+    const auto root = parse("<" + std::string(element) + ">" + animation + "</" + tag + ">", {}, &warnings);
+    EXPECT_EQ(root->child(tag)->transform("to_world")[3][0], 1);
+    EXPECT_EQ(warnings.texts().size(), 1u);
+  }
 }
 
 }  // namespace

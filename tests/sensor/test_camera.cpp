@@ -1,6 +1,7 @@
 // Rays of cameras against directions worked out by hand, for every way to state the field of view.
 #include <gtest/gtest.h>
 
+#include "render/scene/builder.h"
 #include "render/sensor/field_of_view.h"
 #include "render/sensor/registry.h"
 
@@ -17,6 +18,11 @@ Properties camera(const std::string& type = "perspective") {
   node.type = type;
   node.location = {"test.xml", 3, 5};
   return node;
+}
+
+std::shared_ptr<Sensor> sensorOf(const Properties& node, const Vec2i& resolution, Warnings& warnings) {
+  Builder builder(warnings);
+  return makeSensor(node, resolution, builder);
 }
 
 void set(Properties& node, const std::string& name, PropertyValue value) {
@@ -48,7 +54,7 @@ TEST(Perspective, SpansTheAngleAlongItsAxis) {
     set(node, "fov_axis", std::string(c.axis));
     for (const Vec2i& size : {kWide, kTall}) {
       Warnings warnings;
-      const auto sensor = makeSensor(node, size, warnings);
+      const auto sensor = sensorOf(node, size, warnings);
       const float half = size == kWide ? c.wide : c.tall, halfHeight = half * size.y / size.x;
       const Vec2 corner(float(size.x), float(size.y));
       expectNear(atDepthOne(sensor->ray({0, 0}, {})), {half, halfHeight, 1}, c.axis);
@@ -77,7 +83,7 @@ TEST(Perspective, ShiftsThePrincipalPoint) {
   set(node, "principal_point_offset_y", 0.2);
   Warnings warnings;
   // The middle of the film sees what (0.6, 0.7) of the film would see without the shift.
-  expectNear(atDepthOne(makeSensor(node, kWide, warnings)->ray({100, 50}, {})), {-0.2f, -0.2f, 1}, "center");
+  expectNear(atDepthOne(sensorOf(node, kWide, warnings)->ray({100, 50}, {})), {-0.2f, -0.2f, 1}, "center");
 }
 
 TEST(Perspective, StandsAndMirrorsInTheWorld) {
@@ -88,7 +94,7 @@ TEST(Perspective, StandsAndMirrorsInTheWorld) {
   toWorld[3][1] = 7;
   set(node, "to_world", toWorld);
   Warnings warnings;
-  const Ray ray = makeSensor(node, kWide, warnings)->ray({0, 0}, {});
+  const Ray ray = sensorOf(node, kWide, warnings)->ray({0, 0}, {});
   // Half a diagonal of the film away from its middle, at the near plane.
   expectNear(ray.origin, {-0.01f, 7 + 0.005f, 0.01f}, "near plane");
   expectNear(atDepthOne(ray), {-1, 0.5f, 1}, "mirrored");
@@ -103,7 +109,7 @@ TEST(Perspective, LeavesOutScaleWithAWarning) {
   toWorld[2][2] = 3;
   set(node, "to_world", toWorld);
   Warnings warnings;
-  expectNear(atDepthOne(makeSensor(node, kWide, warnings)->ray({0, 0}, {})), {-1, 0.5f, 1}, "scaled");
+  expectNear(atDepthOne(sensorOf(node, kWide, warnings)->ray({0, 0}, {})), {-1, 0.5f, 1}, "scaled");
   ASSERT_EQ(warnings.texts().size(), 1u);
   EXPECT_EQ(warnings.texts()[0].rfind("test.xml:4:7: ", 0), 0u);
 }
@@ -114,7 +120,7 @@ TEST(Perspective, SeesWhatLiesBetweenItsPlanes) {
   set(node, "near_clip", 2.0);
   set(node, "far_clip", 5.0);
   Warnings warnings;
-  const Ray ray = makeSensor(node, kWide, warnings)->ray({0, 0}, {});
+  const Ray ray = sensorOf(node, kWide, warnings)->ray({0, 0}, {});
   expectNear(ray.origin, {2, 1, 2}, "near plane");
   expectNear(ray.origin + ray.direction * ray.tMax, {5, 2.5f, 5}, "far plane");
 }
@@ -123,17 +129,17 @@ TEST(Perspective, SeesWhatLiesBetweenItsPlanes) {
 TEST(Orthographic, IsThatOfMitsuba) {
   Properties node = camera("orthographic");
   Warnings warnings;
-  Ray ray = makeSensor(node, kWide, warnings)->ray({0, 0}, {});
+  Ray ray = sensorOf(node, kWide, warnings)->ray({0, 0}, {});
   expectNear(ray.origin, {1, 0.5f, 0.01f}, "corner");
   expectNear(ray.direction, {0, 0, 1}, "direction");
   EXPECT_FLOAT_EQ(ray.tMax, 9999.99f);
-  expectNear(makeSensor(node, kTall, warnings)->ray({100, 200}, {}).origin, {-1, -2, 0.01f}, "tall");
+  expectNear(sensorOf(node, kTall, warnings)->ray({100, 200}, {}).origin, {-1, -2, 0.01f}, "tall");
   Matrix4 toWorld;
   for (int i = 0; i < 3; ++i) toWorld[i][i] = std::array{3.0f, 2.0f, 5.0f}[size_t(i)];
   set(node, "to_world", toWorld);
   set(node, "near_clip", 1.0);
   set(node, "far_clip", 7.0);
-  ray = makeSensor(node, kWide, warnings)->ray({0, 0}, {});
+  ray = sensorOf(node, kWide, warnings)->ray({0, 0}, {});
   expectNear(ray.origin, {3, 1, 5}, "scaled");
   expectNear(ray.direction, {0, 0, 1}, "direction");
   EXPECT_FLOAT_EQ(ray.tMax, 6);
@@ -145,7 +151,7 @@ TEST(RadianceMeter, LooksAlongItsDirection) {
   set(node, "origin", Vec3(1, 2, 3));
   set(node, "direction", Vec3(0, 3, 4));
   Warnings warnings;
-  const Ray ray = makeSensor(node, kWide, warnings)->ray({7, 9}, {0.2f, 0.3f});
+  const Ray ray = sensorOf(node, kWide, warnings)->ray({7, 9}, {0.2f, 0.3f});
   expectNear(ray.origin, {1, 2, 3}, "origin");
   expectNear(ray.direction, {0, 0.6f, 0.8f}, "direction");
 }
@@ -159,7 +165,7 @@ TEST(ThinLens, FocusesOnAPlane) {
   toWorld[3][0] = 3;
   set(node, "to_world", toWorld);
   Warnings warnings;
-  const auto sensor = makeSensor(node, kWide, warnings);
+  const auto sensor = sensorOf(node, kWide, warnings);
   float widest = 0;
   for (float u = 0; u < 1; u += 0.125f)
     for (float v = 0; v < 1; v += 0.125f) {
@@ -182,7 +188,7 @@ TEST(Sensor, RejectsWhatCannotSee) {
   const auto error = [](const Properties& node) -> std::string {
     Warnings warnings;
     try {
-      makeSensor(node, kWide, warnings);
+      sensorOf(node, kWide, warnings);
     } catch (const SceneError& e) {
       return e.what();
     }
@@ -223,7 +229,7 @@ TEST(Sensor, RejectsWhatCannotSee) {
 
 TEST(Sensor, OfUnknownTypeIsAPinhole) {
   Warnings warnings;
-  EXPECT_TRUE(makeSensor(camera("perspectiv"), kWide, warnings));
+  EXPECT_TRUE(sensorOf(camera("perspectiv"), kWide, warnings));
   ASSERT_EQ(warnings.texts().size(), 1u);
   EXPECT_NE(warnings.texts()[0].find("did you mean 'perspective'?"), std::string::npos);
 }

@@ -12,7 +12,7 @@ float distanceFromCamera(const render::Scene& scene, const PathVertex& v) {
   const render::Crop& crop = scene.film().crop;
   const int x = crop.x + int(v.pixel) % crop.width, y = crop.y + int(v.pixel) / crop.width;
   const Vec2 pixel(float(x) + 0.5f, float(y) + 0.5f);
-  return render::length(render::fromOdis(v.position) - scene.sensor().ray(pixel, Vec2(0.5f, 0.5f)).origin);
+  return render::length(render::fromOdis(v.position) - scene.sensor().ray(pixel, Vec2(0.5f, 0.5f), 0).origin);
 }
 
 }  // namespace

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "render/emitter/moving_light.h"
+
 namespace odis::learn {
 
 using render::Path;
@@ -163,7 +165,8 @@ void TargetTracer::traceLights(std::span<const Start> starts, Target& target) {
       if (!start.at.shape->bsdf().traits().evaluable) continue;
       const auto choice = m_lights.sampleGroup(start.reference, group, uChoice, u);
       if (!choice.emitter) continue;
-      const render::EmitterSample light = choice.emitter->sample(choice.part, start.at.p, choice.u);
+      const render::EmitterSample light =
+          render::sampleLightAt(start.at.time, *choice.emitter, choice.part, start.at.p, choice.u);
       if (!(light.pdf > 0)) continue;
       const render::BsdfValue bsdf =
           start.at.shape->bsdf().evaluate(start.at, start.wo, start.at.shading.toLocal(light.wi));

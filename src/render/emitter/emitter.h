@@ -5,6 +5,7 @@
 #include <memory>
 
 #include "render/emitter/light_bounds.h"
+#include "render/math/motion.h"
 #include "render/math/surface_point.h"
 
 namespace odis::render {
@@ -37,11 +38,17 @@ class Emitter {
   // These numbers, but for rounding; any where sample() never goes.
   virtual Vec2 invert(const Vec3& /*wi*/) const { return {0, 0}; }
 
+  // How it moves, null if it doesn't. All else that an emitter says is then said in its own space, which the
+  // motion takes to the world: moving_light.h asks it for a time.
+  const Motion* motion() const { return m_motion.get(); }
+  void setMotion(std::shared_ptr<const Motion> motion) { m_motion = std::move(motion); }
+
   // The emitter's place among those of its scene.
   uint32_t index() const { return m_index; }
   void setIndex(uint32_t index) { m_index = index; }
 
  private:
+  std::shared_ptr<const Motion> m_motion;
   uint32_t m_index = 0;
 };
 

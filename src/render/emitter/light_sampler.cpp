@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "render/emitter/moving_light.h"
 #include "render/math/distribution.h"
 
 namespace odis::render {
@@ -24,6 +25,11 @@ float usable(float weight) {
   return weight > 0 ? std::min(weight, kMostWeight) : 0.0f;
 }
 
+// Regions of an environment that turns would lie elsewhere at every moment.
+bool isDivisible(const Emitter& emitter) {
+  return emitter.invertible() && !emitter.motion();
+}
+
 }  // namespace
 
 LightSampler::LightSampler(const std::vector<const Emitter*>& emitters)
@@ -38,7 +44,7 @@ LightSampler::LightSampler(const std::vector<const Emitter*>& emitters)
     m_firstLight.push_back(uint32_t(lights.size()));
     const uint32_t parts = emitters[i]->partCount();
     for (uint32_t part = 0; part < parts; ++part) {
-      lights.push_back(emitters[i]->bounds(part));
+      lights.push_back(boundsWhileOpen(*emitters[i], part));
       lights.back().phi = usable(lights.back().phi);
       m_emitterOf.push_back(i);
     }
@@ -69,7 +75,7 @@ float LightSampler::treeProbability(const LightReference& ref) const {
 void LightSampler::divide(uint32_t lights) {
   const uint32_t count = uint32_t(m_infinite.size());
   uint32_t divisible = 0;
-  for (const uint32_t emitter : m_infinite) divisible += m_emitters[emitter]->invertible();
+  for (const uint32_t emitter : m_infinite) divisible += isDivisible(*m_emitters[emitter]);
   // The finest grid that leaves some groups to the lights of the tree.
   const uint32_t most = kMaxLightGroups - std::min(lights, kTreeGroups);
   m_side = kFinestGrid;
@@ -82,7 +88,7 @@ void LightSampler::divide(uint32_t lights) {
       m_groupOf[emitter] = kMostInfiniteGroups - 1;
       continue;
     }
-    m_divided[emitter] = m_side > 1 && m_emitters[emitter]->invertible();
+    m_divided[emitter] = m_side > 1 && isDivisible(*m_emitters[emitter]);
     m_groupOf[emitter] = uint32_t(m_memberOf.size());
     if (m_divided[emitter]) m_dividedLights.push_back({m_groupOf[emitter], regions()});
     m_memberOf.resize(m_memberOf.size() + (m_divided[emitter] ? regions() : 1), member);

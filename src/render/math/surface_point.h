@@ -16,6 +16,7 @@ struct SurfacePoint {
   CoordinateFrame shading;  // unit shading frame; n points to the same side as ng, s follows dpdu
   Vec2 uv;                  // texture coordinates
   Vec3 dpdu, dpdv;  // world-space partial derivatives of p with respect to uv (zero where there are none)
+  float time = 0;   // of the ray that met it
   const Shape* shape = nullptr;
   uint32_t primitive = 0;  // triangle of a mesh; 0 for analytic shapes
   Vec2 barycentric;        // (b1, b2) on a triangle

@@ -124,6 +124,7 @@ struct Ray {
   Vec3 origin;
   Vec3 direction;  // unit length
   float tMax = kInfinity;
+  float time = 0;  // as a fraction of the time that the shutter is open
 };
 
 }  // namespace odis::render

@@ -50,8 +50,8 @@ struct ShadowRay {
   Rgb radiance;
 };
 
-// What the paths of a batch share while they are traced; kept from batch to batch for its memory. 48 + 28 +
-// 216 bytes a path and 28 + 16 a shadow ray.
+// What the paths of a batch share while they are traced; kept from batch to batch for its memory. 48 + 32 +
+// 216 bytes a path and 32 + 16 a shadow ray.
 struct Batch {
   std::vector<uint32_t> active;  // paths that have a ray to trace
   std::vector<Ray> rays;         // theirs

@@ -1,4 +1,5 @@
 // Next-event estimation: the choice of a light, its MIS weight, shadow rays.
+#include "render/emitter/moving_light.h"
 #include "render/path/bounce.h"
 
 namespace odis::render {
@@ -16,7 +17,7 @@ LightEstimate sampleLight(const PathSettings& settings, const Vertex& vertex, co
   const Vec2 u = sampler.get2D();
   const LightSampler::Choice choice = settings.lights->sample(reference, uChoice, u);
   if (!choice.emitter) return result;
-  const EmitterSample light = choice.emitter->sample(choice.part, at.p, choice.u);
+  const EmitterSample light = sampleLightAt(at.time, *choice.emitter, choice.part, at.p, choice.u);
   if (!(light.pdf > 0) || isBlack(light.radiance)) return result;
   result.group = choice.group;
   result.wi = light.wi;

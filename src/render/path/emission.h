@@ -1,6 +1,7 @@
 // Emission that rays meet, and its density under next-event estimation where the ray started.
 #pragma once
 
+#include "render/emitter/moving_light.h"
 #include "render/path/path.h"
 
 namespace odis::render {
@@ -20,9 +21,10 @@ void forEachEmission(const Scene& scene, const Ray& ray, const SurfacePoint* at,
                      const Use& use) {
   if (!at) {
     for (const EnvironmentEmitter* e : scene.environments())
-      use(Emission{e->radiance(ray.direction), *e, 0, from ? e->pdf(from->p, ray.direction) : 0});
+      use(Emission{radianceAt(ray.time, *e, ray.direction), *e, 0,
+                   from ? pdfAt(ray.time, *e, from->p, ray.direction) : 0});
   } else if (const SurfaceEmitter* e = at->shape->emitter()) {
-    use(Emission{e->radiance(*at, -ray.direction), *e, e->part(*at), from ? e->pdf(from->p, *at) : 0});
+    use(Emission{e->radiance(*at, -ray.direction), *e, e->part(*at), from ? pdfAt(*e, from->p, *at) : 0});
   }
 }
 

@@ -62,7 +62,7 @@ Ray beyondEmitters(const Scene& scene, Ray ray) {
   SurfacePoint at;
   for (int i = 0; i < kMostLights && scene.intersect(ray, at) && at.shape->emitter(); ++i) {
     const Ray rest = Scene::spawn(at, ray.direction);
-    ray = {rest.origin, ray.direction, ray.tMax - dot(rest.origin - ray.origin, ray.direction)};
+    ray = {rest.origin, ray.direction, ray.tMax - dot(rest.origin - ray.origin, ray.direction), ray.time};
   }
   return ray;
 }
@@ -93,11 +93,14 @@ uint32_t tileCount(const Crop& crop) {
   return uint32_t(tilesX(crop) * ((crop.height + kTileSize - 1) / kTileSize));
 }
 
-Ray cameraRay(const Scene& scene, Vec2i pixel, Sampler& sampler, float& filterWeight) {
+Ray cameraRay(const Scene& scene, Vec2i pixel, Sampler& sampler, float& filterWeight,
+              std::optional<float> time) {
   const FilterSample offset = scene.film().filter->sample(sampler.get2D());
   const Vec2 film = Vec2(pixel.x + 0.5f, pixel.y + 0.5f) + offset.offset;
   filterWeight = offset.weight * scene.sensor().weight(film);
-  const Ray ray = scene.sensor().ray(film, sampler.get2D());
+  const Vec2 lens = sampler.get2D();
+  if (!time) time = scene.moves() ? sampler.get1D() : 0;
+  const Ray ray = scene.sensor().ray(film, lens, *time);
   return scene.integrator().hideEmitters ? beyondEmitters(scene, ray) : ray;
 }
 

@@ -4,6 +4,7 @@
 #include <odis/odis.hpp>
 
 #include <functional>
+#include <optional>
 
 #include "render/path/path.h"
 #include "render/path/progress.h"
@@ -42,7 +43,9 @@ uint32_t tileCount(const Crop& crop);
 // The path of a sample of a pixel, before it is traced. The position in the pixel is drawn from the
 // reconstruction filter, whose weight is the path's.
 Path cameraPath(const Pass& pass, uint32_t pixel, uint32_t sample);
-// The camera ray of a sample; the filter's weight is returned.
-Ray cameraRay(const Scene& scene, Vec2i pixel, Sampler& sampler, float& filterWeight);
+// The camera ray of a sample; the filter's weight is returned. Where something moves its time is drawn too,
+// unless it is given.
+Ray cameraRay(const Scene& scene, Vec2i pixel, Sampler& sampler, float& filterWeight,
+              std::optional<float> time = {});
 
 }  // namespace odis::render

@@ -19,7 +19,7 @@ void findVertices(const PathSettings& settings, std::span<const Path> paths, Bat
     Vertex& vertex = batch.vertices[i];
     vertex.at.shape = hit.shape;
     if (!hit.shape) continue;
-    new (&vertex.at) SurfacePoint(hit.shape->surfacePoint(batch.rays[i], hit.raw));  // without a copy
+    new (&vertex.at) SurfacePoint(hit.surfacePoint(batch.rays[i]));  // without a copy
     vertex.wo = vertex.at.shading.toLocal(-batch.rays[i].direction);
   }
 }

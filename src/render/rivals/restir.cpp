@@ -11,7 +11,7 @@ namespace odis::render {
 namespace {
 
 // Streams of random numbers beside the camera paths'.
-constexpr uint64_t kBeyondSeed = 0x6265796f6e64ull, kReuseSeed = 0x7265757365ull;
+constexpr uint64_t kBeyondSeed = 0x6265796f6e64ull, kReuseSeed = 0x7265757365ull, kTimeSeed = 0x74696d65ull;
 // Neighbours whose surface faces elsewhere by more than that are not asked: their samples seldom fit.
 constexpr float kLeastCosine = 0.9f;
 
@@ -28,6 +28,7 @@ class ReusedFrame {
         m_scene(*pass.path.scene),
         m_options(options),
         m_sample(sample),
+        m_time(m_scene.moves() ? samplerOf(0, kTimeSeed).get1D() : 0),
         m_pixels(size_t(m_scene.film().crop.width) * size_t(m_scene.film().crop.height)) {}
 
   size_t pixelCount() const { return m_pixels.size(); }
@@ -38,7 +39,7 @@ class ReusedFrame {
     Sampler sampler = samplerOf(index, 0);
     const Crop& crop = m_scene.film().crop;
     const Vec2i place(crop.x + int(index) % crop.width, crop.y + int(index) / crop.width);
-    const Ray ray = cameraRay(m_scene, place, sampler, pixel.filterWeight);
+    const Ray ray = cameraRay(m_scene, place, sampler, pixel.filterWeight, m_time);
     pixel.path = traceRestirPath(m_pass.path, ray, sampler, samplerOf(index, kBeyondSeed));
     if (pixel.path.sample.valid) pixel.own = contributionOf(pixel.path.sample, pixel.path.point);
   }
@@ -134,6 +135,8 @@ class ReusedFrame {
   const Scene& m_scene;
   RestirOptions m_options;
   uint32_t m_sample;
+  // The same for all pixels: a neighbour's sample that was found at another time would not be one of here.
+  float m_time;
   std::vector<FramePixel> m_pixels;
 };
 

@@ -1,4 +1,6 @@
 #include "render/rivals/restir_trace.h"
+
+#include "render/emitter/moving_light.h"
 #include "render/path/emission.h"
 
 namespace odis::render {
@@ -20,7 +22,7 @@ DrawnLight drawLight(const PathSettings& settings, const SurfacePoint& at, const
   if (!at.shape->bsdf().traits().evaluable) return result;
   const LightSampler::Choice choice = settings.lights->sample(lightReference(at, wo), uChoice, u);
   if (!choice.emitter) return result;
-  const EmitterSample light = choice.emitter->sample(choice.part, at.p, choice.u);
+  const EmitterSample light = sampleLightAt(at.time, *choice.emitter, choice.part, at.p, choice.u);
   if (!(light.pdf > 0) || isBlack(light.radiance)) return result;
   ++counts.shadowRays;
   if (settings.scene->occluded(Scene::spawn(at, light.wi, light.distance))) return result;

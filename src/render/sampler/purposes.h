@@ -14,8 +14,8 @@ inline constexpr uint32_t kDimensionsPerVertex = 8;
 // share theirs.
 using Purposes = uint32_t;
 
-// Where in the pixel, and through which point of the lens.
-inline constexpr Purposes kPixelAndLens = 1u << 1 | 1u << 2;
+// Where in the pixel, through which point of the lens, and when.
+inline constexpr Purposes kPixelAndLens = 1u << 1 | 1u << 2 | 1u << 3;
 // Next-event estimation at the first vertex: which light, and which point or direction of it.
 inline constexpr Purposes kFirstLightChoice = 1u << 9;
 inline constexpr Purposes kFirstLightPoint = 1u << 10;

@@ -1,5 +1,7 @@
 #include "render/scene/builder.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <map>
 
@@ -19,7 +21,7 @@ std::string unknownType(const Properties& node, const std::vector<std::string>& 
 bool isWithoutEffect(const Properties& node, const std::string& name) {
   static const std::map<std::string, std::vector<std::string>> known = {
       // The distance of focus is one of all of Mitsuba's cameras; only thinlens has a lens to focus.
-      {"sensor", {"focus_distance", "sampling_weight", "shutter_close", "shutter_open"}},
+      {"sensor", {"focus_distance", "sampling_weight"}},
       {"emitter", {"mis_compensation", "sampling_weight"}},
       // Hints for hierarchies of boxes and the order of triangles.
       {"shape",
@@ -33,6 +35,35 @@ bool isWithoutEffect(const Properties& node, const std::string& name) {
 }
 
 }  // namespace
+
+std::optional<Placed> Builder::placed(const Properties& node, Scale scale) {
+  const Animation* given = node.animation("to_world");
+  if (!given) return {};
+  Animation animation = *given;
+  for (KeyFrame& key : animation) {
+    if (scale == Scale::kept) break;
+    const Matrix4 rigid = withoutScale(key.toWorld);
+    if (rigid != key.toWorld)
+      warn(node.placeOf("to_world"), "the animation of the " + node.tag +
+                                         " scales, which changes nothing of it; the scale is left out");
+    key.toWorld = rigid;
+  }
+  Placed result{node, nullptr};
+  Matrix4 place = Motion::matrixAt(animation, m_shutter.open);
+  if (m_shutter.closed()) {
+    if (!m_toldOfClosedShutter)
+      warn(node.placeOf("to_world"),
+           fmt::format("nothing moves, as the sensor opens and closes its shutter at the same time, {}",
+                       m_shutter.open),
+           Effect::same);
+    m_toldOfClosedShutter = true;
+  } else if (auto motion = std::make_shared<Motion>(animation, m_shutter); !motion->isStill()) {
+    result.motion = std::move(motion);
+    place = Matrix4();
+  }
+  result.node.parameters.at("to_world").value = place;
+  return result;
+}
 
 TexturePtr Builder::texture(const Properties& parent, const std::string& name, const Declaration& declaration,
                             const Rgb& fallback) {
@@ -91,8 +122,12 @@ BsdfPtr Builder::nestedBsdf(const Properties& parent, int index) {
 
 std::vector<EmitterPtr> Builder::emitters(const Properties& node) {
   if (const EmitterFactory factory = findEmitterFactory(node.type)) {
-    std::vector<EmitterPtr> made = factory(node, *this);
-    warnUnqueried(node);
+    const std::optional<Placed> moving = placed(node, Scale::leftOut);
+    const Properties& element = moving ? moving->node : node;
+    std::vector<EmitterPtr> made = factory(element, *this);
+    warnUnqueried(element);
+    if (moving)
+      for (const EmitterPtr& emitter : made) emitter->setMotion(moving->motion);
     return made;
   }
   warn(node.location, unknownType(node, emitterTypes()) + ", it is left out");

@@ -4,6 +4,7 @@
 
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <unordered_map>
 #include <vector>
@@ -18,6 +19,14 @@ namespace odis::render {
 
 class Image;
 
+// An element that has an animation for its place, with a place that stands.
+struct Placed {
+  Properties node;                       // its `to_world` is no animation
+  std::shared_ptr<const Motion> motion;  // comes after that; null if nothing moves while the shutter is open
+};
+// What becomes of the scale in the key frames.
+enum class Scale { kept, leftOut };
+
 // What a colour within a texture may be: its use says what is sensible.
 inline constexpr Declaration kAnyTexture{"colour or texture"};
 // The gamma of an image file: of a power curve, or -1 for sRGB.
@@ -26,8 +35,11 @@ inline constexpr NumberRange kGammaRange{0.01, 100, true, true, -1};
 class Builder {
  public:
   // `folders`: where files are looked for that are not beside the scene file that names them.
-  explicit Builder(Warnings& warnings, std::vector<std::string> folders = {})
-      : m_warnings(warnings), m_folders(std::move(folders)) {}
+  explicit Builder(Warnings& warnings, std::vector<std::string> folders = {}, const Shutter& shutter = {})
+      : m_warnings(warnings), m_folders(std::move(folders)), m_shutter(shutter) {}
+
+  // How an element moves while the shutter is open; nothing if it has no animation.
+  std::optional<Placed> placed(const Properties& node, Scale scale);
 
   // A texture parameter: a nested <texture>, an rgb, a number, or the fallback as a constant. A constant
   // outside of the declared range is refused, or left as it is for who clamps it; textures are looked up as
@@ -62,6 +74,8 @@ class Builder {
  private:
   Warnings& m_warnings;
   std::vector<std::string> m_folders, m_files;
+  Shutter m_shutter;
+  bool m_toldOfClosedShutter = false;
   std::unordered_map<const Properties*, TexturePtr> m_textures;
   std::unordered_map<const Properties*, BsdfPtr> m_bsdfs;
   std::unordered_map<std::string, std::shared_ptr<const Image>> m_images;

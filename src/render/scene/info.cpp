@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <set>
 
 namespace odis::render {
@@ -21,6 +22,11 @@ std::string describe(const Scene& scene, const Warnings& warnings) {
     if (!groups.insert(instance.group.get()).second) continue;
     for (const ShapePtr& shape : *instance.group) add(*shape);
   }
+  const uint64_t moving = std::count_if(scene.instances().begin(), scene.instances().end(),
+                                        [](const Instance& instance) { return instance.motion != nullptr; });
+  const uint64_t movingLights =
+      std::count_if(scene.emitters().begin(), scene.emitters().end(),
+                    [](const Emitter* emitter) { return emitter->motion() != nullptr; });
   const SceneBounds& bounds = scene.bounds();
   const FilmSettings& film = scene.film();
   const IntegratorSettings& integrator = scene.integrator();
@@ -29,6 +35,9 @@ std::string describe(const Scene& scene, const Warnings& warnings) {
   if (!scene.instances().empty())
     text += fmt::format("instances    {} of {} groups, showing {} primitives\n", scene.instances().size(),
                         groups.size(), instanced);
+  if (scene.moves())
+    text += fmt::format("motion       of {} instances, {} emitters{}\n", moving, movingLights,
+                        scene.sensor().motion() ? " and the sensor" : "");
   text += fmt::format("bsdfs        {}\n", bsdfs.size());
   text += fmt::format("emitters     {}: {} of shapes, {} environments, {} others\n", scene.emitters().size(),
                       lights, environments, scene.emitters().size() - lights - environments);
@@ -39,7 +48,7 @@ std::string describe(const Scene& scene, const Warnings& warnings) {
     text += fmt::format(", crop {} x {} at ({}, {})", film.crop.width, film.crop.height, film.crop.x,
                         film.crop.y);
   text += fmt::format(", filter {}\n", film.filter->name());
-  const Ray view = scene.sensor().ray(Vec2(float(film.width), float(film.height)) * 0.5f, Vec2(0.5f));
+  const Ray view = scene.sensor().ray(Vec2(float(film.width), float(film.height)) * 0.5f, Vec2(0.5f), 0);
   text += fmt::format("sensor       at ({}, {}, {}), looks along ({}, {}, {})\n", view.origin.x,
                       view.origin.y, view.origin.z, view.direction.x, view.direction.y, view.direction.z);
   text +=

@@ -31,6 +31,7 @@ RTCRay embreeRay(const Ray& ray) {
   result.dir_y = ray.direction.y;
   result.dir_z = ray.direction.z;
   result.tfar = ray.tMax;
+  result.time = ray.time;
   result.mask = ~0u;
   return result;
 }
@@ -50,12 +51,45 @@ size_t fillPacket(RTCRay16& packet, int* valid, std::span<const Ray> rays) {
     packet.dir_x[i] = ray.direction.x;
     packet.dir_y[i] = ray.direction.y;
     packet.dir_z[i] = ray.direction.z;
-    packet.tnear[i] = packet.time[i] = 0;
+    packet.tnear[i] = 0;
+    packet.time[i] = ray.time;
     packet.tfar[i] = ray.tMax;
     packet.mask[i] = ~0u;
     packet.flags[i] = 0;
   }
   return count;
+}
+
+RTCGeometry stillInstance(RTCDevice device, RTCScene group, const Matrix4& toWorld) {
+  RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_INSTANCE);
+  rtcSetGeometryInstancedScene(geometry, group);
+  // Imath's rows are Embree's columns.
+  rtcSetGeometryTransform(geometry, 0, RTC_FORMAT_FLOAT4X4_COLUMN_MAJOR, toWorld.getValue());
+  return geometry;
+}
+
+RTCQuaternionDecomposition embreePose(const Pose& pose) {
+  RTCQuaternionDecomposition result;
+  rtcInitQuaternionDecomposition(&result);
+  const auto& [x, y, z] = pose.stretch;
+  rtcQuaternionDecompositionSetScale(&result, x.x, y.y, z.z);
+  rtcQuaternionDecompositionSetSkew(&result, y.x, z.x, z.y);
+  const auto& [r, v] = pose.rotation;
+  rtcQuaternionDecompositionSetQuaternion(&result, r, v.x, v.y, v.z);
+  const Vec3& t = pose.translation;
+  rtcQuaternionDecompositionSetTranslation(&result, t.x, t.y, t.z);
+  return result;
+}
+
+RTCGeometry movingInstance(RTCDevice device, RTCScene group, const Motion& motion) {
+  RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_INSTANCE);
+  rtcSetGeometryInstancedScene(geometry, group);
+  rtcSetGeometryTimeStepCount(geometry, unsigned(motion.poses().size()));
+  for (unsigned step = 0; step < motion.poses().size(); ++step) {
+    const RTCQuaternionDecomposition pose = embreePose(motion.poses()[step]);
+    rtcSetGeometryTransformQuaternion(geometry, step, &pose);
+  }
+  return geometry;
 }
 
 }  // namespace
@@ -74,15 +108,14 @@ Intersector::Intersector(const std::vector<ShapePtr>& shapes, const std::vector<
       m_groupScenes.push_back(makeScene(*instance.group, *m_groups.back()));
       rtcCommitScene(m_groupScenes.back());
     }
-    RTCGeometry geometry = rtcNewGeometry(m_device, RTC_GEOMETRY_TYPE_INSTANCE);
-    rtcSetGeometryInstancedScene(geometry, m_groupScenes[entry->second]);
-    // Imath's rows are Embree's columns.
-    rtcSetGeometryTransform(geometry, 0, RTC_FORMAT_FLOAT4X4_COLUMN_MAJOR, instance.toWorld.getValue());
+    const RTCScene group = m_groupScenes[entry->second];
+    RTCGeometry geometry = instance.motion ? movingInstance(m_device, group, *instance.motion)
+                                           : stillInstance(m_device, group, instance.toWorld);
     rtcCommitGeometry(geometry);
-    rtcAttachGeometryByID(m_scene, geometry, unsigned(m_shapes.size() + m_placements.size()));
+    rtcAttachGeometryByID(m_scene, geometry, unsigned(m_shapes.size() + m_placed.size()));
     rtcReleaseGeometry(geometry);
     const Matrix4 inverse(Imath::M44d(instance.toWorld).inverse());
-    m_placements.push_back({instance.toWorld, inverse, m_groups[entry->second].get()});
+    m_placed.push_back({{instance.toWorld, inverse}, instance.motion.get(), m_groups[entry->second].get()});
   }
   rtcCommitScene(m_scene);
   if (const RTCError error = rtcGetDeviceError(m_device); error != RTC_ERROR_NONE) {
@@ -119,20 +152,19 @@ bool Intersector::intersect(const Ray& ray, SurfacePoint& at) const {
   rayHit.hit.geomID = rayHit.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
   embreeIntersect(m_scene, rayHit);
   const RTCHit& found = rayHit.hit;
-  const Hit hit = resolve(found.geomID, found.instID[0],
-                          {rayHit.ray.tfar, found.u, found.v, found.primID, nullptr, nullptr});
+  const Hit hit =
+      resolve(found.geomID, found.instID[0], {rayHit.ray.tfar, found.u, found.v, found.primID, nullptr});
   if (!hit.shape) return false;
-  at = hit.shape->surfacePoint(ray, hit.raw);
+  at = hit.surfacePoint(ray);
   return true;
 }
 
 Hit Intersector::resolve(unsigned geometry, unsigned instance, const RawHit& raw) const {
   if (geometry == RTC_INVALID_GEOMETRY_ID) return {};
   if (instance == RTC_INVALID_GEOMETRY_ID) return {m_shapes[geometry], raw};
-  const Placement& placement = m_placements[instance - m_shapes.size()];
-  Hit hit{(*placement.shapes)[geometry], raw};
-  hit.raw.instanceToWorld = &placement.toWorld;
-  hit.raw.worldToInstance = &placement.toInstance;
+  const Placed& placed = m_placed[instance - m_shapes.size()];
+  Hit hit{(*placed.shapes)[geometry], raw, placed.motion};
+  hit.raw.instance = &placed.placement;
   return hit;
 }
 

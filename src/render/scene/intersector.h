@@ -30,8 +30,10 @@ class Intersector {
 
  private:
   using ShapeArray = std::vector<const Shape*>;  // by Embree's geometry number
-  struct Placement {
-    Matrix4 toWorld, toInstance;
+  // An instance.
+  struct Placed {
+    Placement placement;   // if it is still
+    const Motion* motion;  // null if it is
     const ShapeArray* shapes;
   };
 
@@ -45,7 +47,7 @@ class Intersector {
   std::vector<RTCSceneTy*> m_groupScenes;
   ShapeArray m_shapes;
   std::vector<std::unique_ptr<ShapeArray>> m_groups;
-  std::vector<Placement> m_placements;
+  std::vector<Placed> m_placed;
 };
 
 }  // namespace odis::render

@@ -61,12 +61,24 @@ Singles loadObjects(const Properties& root, Scene& scene, ShapeLoader& shapes, B
   return result;
 }
 
+// The sensor that the scene is seen by, in a shape if there is no other; null if there is none.
+const Properties* findSensor(const Properties& node) {
+  for (const char* tag : {"sensor", "shape"})
+    for (const Properties::Child& child : node.children) {
+      if (child.node->tag != tag || child.node->type == "instance") continue;
+      const Properties* sensor = child.node->tag == "sensor" ? child.node.get() : findSensor(*child.node);
+      if (sensor) return sensor;
+    }
+  return nullptr;
+}
+
 }  // namespace
 
 std::unique_ptr<Scene> Scene::load(const std::string& path, const LoadOptions& options, Warnings& warnings) {
   const ParsedScene parsed = parseScene(path, options.defines, warnings);
   const Properties& root = *parsed.root;
-  Builder builder(warnings, parsed.folders);
+  const Properties* seenBy = findSensor(root);
+  Builder builder(warnings, parsed.folders, seenBy ? readShutter(*seenBy) : Shutter());
   auto scene = std::make_unique<Scene>();
   ShapeLoader shapes(*scene, builder);
 
@@ -86,10 +98,11 @@ std::unique_ptr<Scene> Scene::load(const std::string& path, const LoadOptions& o
   scene->setIntegrator(loadIntegrator(singles.integrator, part("sampler"), warnings));
   const Vec2i resolution(film.width, film.height);
   if (sensor) {
-    scene->setSensor(meter.shape ? makeMeter(*sensor, resolution, meter.shape, warnings)
-                                 : makeSensor(*sensor, resolution, warnings));
     if (sensor->child("medium")) shapes.warnOfMedia(*sensor);
-    builder.warnUnqueried(*sensor);
+    const std::shared_ptr<Sensor> made = meter.shape ? makeMeter(*sensor, resolution, meter.shape, builder)
+                                                     : makeSensor(*sensor, resolution, builder);
+    if (meter.shape) made->setMotion(meter.motion);
+    scene->setSensor(made);
   } else {
     warnings.add({path}, "the scene has no sensor, all of it is shown from its +z side", Effect::same);
     scene->setSensor(defaultSensor(scene->bounds(), resolution));

@@ -26,12 +26,29 @@ void ShapeLoader::load(const Properties& node) {
     loadInstance(node);
   } else if (node.type == "merge") {
     for (const Properties* part : childrenOf(node, "shape")) load(*part);
-  } else if (ShapePtr shape = make(node, false)) {
+  } else if (auto [shape, motion] = make(node, false); motion) {
+    m_scene.addInstance({std::make_shared<const std::vector<ShapePtr>>(1, std::move(shape)), {}, motion});
+  } else if (shape) {
     m_scene.addShape(std::move(shape));
   }
 }
 
-ShapePtr ShapeLoader::make(const Properties& node, bool grouped) {
+ShapeLoader::Made ShapeLoader::make(const Properties& node, bool grouped) {
+  std::optional<Placed> placed = m_builder.placed(node, Scale::kept);
+  if (!placed) return {makeStill(node, grouped), nullptr};
+  if (grouped && placed->motion) {
+    m_builder.warn(node.placeOf("to_world"),
+                   "a shape can't move within its shape group, it stays where it is when the shutter opens");
+    placed->node.parameters.at("to_world").value = placed->motion->matrixAt(0);
+    placed->motion = nullptr;
+  }
+  Made made{makeStill(placed->node, grouped), placed->motion};
+  if (!made.shape) return {};
+  if (m_meter.shape == made.shape) m_meter.motion = made.motion;
+  return made;
+}
+
+ShapePtr ShapeLoader::makeStill(const Properties& node, bool grouped) {
   std::vector<std::string> known = shapeTypes();
   if (std::find(known.begin(), known.end(), node.type) == known.end()) {
     known.insert(known.end(), {"instance", "shapegroup", "merge"});
@@ -60,7 +77,7 @@ ShapePtr ShapeLoader::make(const Properties& node, bool grouped) {
   for (const Properties* emitter : emitters) setEmitter(*shape, *emitter, grouped);
   warnOfMissingAttributes(*shape, node);
   for (const Properties* sensor : childrenOf(node, "sensor"))
-    if (!m_meter.node) m_meter = {sensor, shape};
+    if (!m_meter.node) m_meter = {sensor, shape, nullptr};
   if (!childrenOf(node, "medium").empty()) warnOfMedia(node);
   for (const Properties* subsurface : childrenOf(node, "subsurface"))
     m_builder.warn(subsurface->location,
@@ -118,7 +135,7 @@ void ShapeLoader::collect(const Properties& node, std::vector<ShapePtr>& shapes)
                                            ", expected shapes that are not instanced themselves");
     } else if (part->type == "merge") {
       collect(*part, shapes);
-    } else if (ShapePtr shape = make(*part, true)) {
+    } else if (ShapePtr shape = make(*part, true).shape) {
       shapes.push_back(std::move(shape));
     }
   }
@@ -131,14 +148,16 @@ void ShapeLoader::loadInstance(const Properties& node) {
         node.location,
         "found an instance without its shape group, expected one <ref> to a <shape type=\"shapegroup\">");
   const Group shapes = group(*groups[0]);
-  const Matrix4 toWorld = node.transform("to_world");
-  m_builder.warnUnqueried(node);
+  const std::optional<Placed> placed = m_builder.placed(node, Scale::kept);
+  const Properties& still = placed ? placed->node : node;
+  const Matrix4 toWorld = still.transform("to_world");
+  m_builder.warnUnqueried(still);
   if (shapes->empty()) {
     m_builder.warn(node.location, "the shape group of this instance is empty, there is nothing to draw",
                    Effect::same);
     return;
   }
-  m_scene.addInstance({shapes, toWorld});
+  m_scene.addInstance({shapes, toWorld, placed ? placed->motion : nullptr});
 }
 
 void ShapeLoader::warnOfMedia(const Properties& node) {

@@ -19,6 +19,7 @@ class ShapeLoader {
   struct Meter {
     const Properties* node = nullptr;
     std::shared_ptr<const Shape> shape;
+    std::shared_ptr<const Motion> motion;  // of the shape; null if it is still
   };
   const Meter& meter() const { return m_meter; }
   // Media are not drawn: one warning for all of them.
@@ -27,7 +28,13 @@ class ShapeLoader {
  private:
   using Group = std::shared_ptr<const std::vector<ShapePtr>>;
 
-  ShapePtr make(const Properties& node, bool grouped);
+  // A shape with all that is nested in it, and how it moves, null if it doesn't.
+  struct Made {
+    ShapePtr shape;  // null: nothing to draw
+    std::shared_ptr<const Motion> motion;
+  };
+  Made make(const Properties& node, bool grouped);
+  ShapePtr makeStill(const Properties& node, bool grouped);
   // Warns of textures, in a BSDF or an emitter, that name an attribute which the shape does not have.
   void warnOfMissingAttributes(const Shape& shape, const Properties& node);
   void setEmitter(Shape& shape, const Properties& node, bool grouped);

@@ -11,20 +11,35 @@ Scene::Scene() = default;
 Scene::~Scene() = default;
 
 void Scene::addShape(ShapePtr shape) {
-  if (SurfaceEmitter* emitter = shape->emitter()) {
-    emitter->setIndex(uint32_t(m_emitters.size()));
-    m_emitters.push_back(emitter);
-  }
+  if (shape->emitter()) enlist(*shape->emitter());
   m_shapes.push_back(std::move(shape));
 }
 
 void Scene::addInstance(Instance instance) {
+  if (instance.motion) {
+    m_moves = true;
+    for (const ShapePtr& shape : *instance.group) {
+      if (!shape->emitter()) continue;
+      shape->emitter()->setMotion(instance.motion);
+      enlist(*shape->emitter());
+    }
+  }
   m_instances.push_back(std::move(instance));
 }
 
+void Scene::enlist(Emitter& emitter) {
+  emitter.setIndex(uint32_t(m_emitters.size()));
+  m_emitters.push_back(&emitter);
+  if (emitter.motion()) m_moves = true;
+}
+
+void Scene::setSensor(std::shared_ptr<const Sensor> sensor) {
+  m_sensor = std::move(sensor);
+  if (m_sensor->motion()) m_moves = true;
+}
+
 void Scene::addEmitter(EmitterPtr emitter) {
-  emitter->setIndex(uint32_t(m_emitters.size()));
-  m_emitters.push_back(emitter.get());
+  enlist(*emitter);
   if (const auto* environment = dynamic_cast<const EnvironmentEmitter*>(emitter.get()))
     m_environments.push_back(environment);
   m_ownedEmitters.push_back(std::move(emitter));
@@ -60,15 +75,15 @@ Ray Scene::spawn(const SurfacePoint& at, const Vec3& direction, float distance) 
   const float error = std::max(at.pError, positionError(maxAbs(at.p)));
   const float offset = std::copysign(error, dot(at.ng, direction));
   const Vec3 origin = at.p + at.ng * offset;
-  if (distance == kInfinity) return {origin, direction, distance};
+  if (distance == kInfinity) return {origin, direction, distance, at.time};
   // Aim at the same target from the new origin, and stop before it by what its own position may be wrong and
   // by what is lost of a long distance.
   const Vec3 target = at.p + direction * distance;
   const Vec3 toTarget = target - origin;
   const float remaining = length(toTarget);
   const float margin = std::max(remaining * 1e-4f, 2 * (error + positionError(maxAbs(target))));
-  if (!(remaining > margin)) return {origin, direction, 0.0f};
-  return {origin, toTarget * (1 / remaining), remaining - margin};
+  if (!(remaining > margin)) return {origin, direction, 0.0f, at.time};
+  return {origin, toTarget * (1 / remaining), remaining - margin, at.time};
 }
 
 uint64_t Scene::bytes() const {

@@ -55,10 +55,11 @@ struct LoadOptions {
   std::optional<Crop> crop;
 };
 
-// A shapegroup placed in the world.
+// A shape group, or a shape that moves, placed in the world.
 struct Instance {
   std::shared_ptr<const std::vector<ShapePtr>> group;
   Matrix4 toWorld;
+  std::shared_ptr<const Motion> motion;  // in place of `toWorld`; null: it stays there
 };
 
 class Scene {
@@ -72,14 +73,17 @@ class Scene {
   bool intersect(const Ray& ray, SurfacePoint& at) const;
   // Whether anything lies within (0, ray.tMax). Thread-safe.
   bool occluded(const Ray& ray) const;
-  // The same for many rays at once; shape null where a ray met nothing. hit.shape->surfacePoint(ray, hit.raw)
-  // gives the place.
+  // The same for many rays at once; shape null where a ray met nothing. hit.surfacePoint(ray) gives the
+  // place.
   void intersect(std::span<const Ray> rays, std::span<Hit> hits) const;
   void occluded(std::span<const Ray> rays, std::span<uint8_t> hidden) const;
 
   // A ray that leaves `at` and does not meet the surface again at its start.
   static Ray spawn(const SurfacePoint& at, const Vec3& direction, float distance = kInfinity);
 
+  // Whether anything moves while the shutter is open, so that rays need a time.
+  bool moves() const { return m_moves; }
+  // Of all that is there while the shutter is open.
   const SceneBounds& bounds() const { return m_bounds; }
   const Sensor& sensor() const { return *m_sensor; }
   const FilmSettings& film() const { return m_film; }
@@ -94,15 +98,18 @@ class Scene {
   uint64_t bytes() const;  // memory of geometry, acceleration structure and textures
 
   // For building scenes in code (tests, the loader): add, then finish() once.
-  void addShape(ShapePtr shape);  // with its BSDF and emitter set
-  void addInstance(Instance instance);
+  void addShape(ShapePtr shape);        // with its BSDF and emitter set
+  void addInstance(Instance instance);  // if it moves, its shapes may emit light: no others may share them
   void addEmitter(EmitterPtr emitter);
-  void setSensor(std::shared_ptr<const Sensor> sensor) { m_sensor = std::move(sensor); }
+  void setSensor(std::shared_ptr<const Sensor> sensor);
   void setFilm(const FilmSettings& film) { m_film = film; }
   void setIntegrator(const IntegratorSettings& settings) { m_integrator = settings; }
   void finish();
 
  private:
+  // Gives an emitter its index.
+  void enlist(Emitter& emitter);
+
   std::vector<ShapePtr> m_shapes;
   std::vector<Instance> m_instances;
   std::vector<EmitterPtr> m_ownedEmitters;
@@ -112,6 +119,7 @@ class Scene {
   FilmSettings m_film;
   IntegratorSettings m_integrator;
   SceneBounds m_bounds;
+  bool m_moves = false;
   std::vector<std::string> m_files;
   std::unique_ptr<Intersector> m_intersector;
 };

@@ -6,7 +6,8 @@
 //   fov, fov_axis, focal_length see field_of_view.h
 //   principal_point_offset_x/y  shifts the image, in widths and heights of it (default: 0)
 //   near_clip, far_clip         see clip.h
-//   focus_distance, shutter_open, shutter_close   have no effect
+//   shutter_open, shutter_close when it sees the scene, see registry.h
+//   focus_distance              has no effect
 #pragma once
 
 #include "render/sensor/clip.h"

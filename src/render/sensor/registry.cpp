@@ -1,6 +1,7 @@
 // The cameras that a scene file can name.
 #include "render/sensor/registry.h"
 
+#include "render/scene/builder.h"
 #include "render/scene/factory_table.h"
 #include "render/sensor/field_of_view.h"
 #include "render/sensor/irradiance_meter.h"
@@ -12,23 +13,15 @@
 namespace odis::render {
 namespace {
 
-using SensorPtr = std::shared_ptr<const Sensor>;
+using SensorPtr = std::shared_ptr<Sensor>;
 
 // The camera's place without scale, which would bend angles and distances.
 Matrix4 rigidToWorld(const Properties& node, Warnings& warnings) {
-  Matrix4 toWorld = node.transform("to_world");
-  bool scaled = false;
-  for (int i = 0; i < 3; ++i) {
-    Vec3 axis(toWorld[i][0], toWorld[i][1], toWorld[i][2]);
-    if (std::abs(lengthSquared(axis) - 1) <= 1e-3f) continue;
-    scaled = true;
-    axis = normalize(axis);
-    for (int j = 0; j < 3; ++j) toWorld[i][j] = axis[j];
-  }
-  if (scaled)
+  const Matrix4 toWorld = node.transform("to_world"), rigid = withoutScale(toWorld);
+  if (rigid != toWorld)
     warnings.add(node.parameters.at("to_world").location,
                  "the transform of the sensor scales, which cameras can't; the scale is left out");
-  return toWorld;
+  return rigid;
 }
 
 Projection readProjection(const Properties& node, const Vec2i& resolution) {
@@ -79,25 +72,45 @@ constexpr std::pair<const char*, SensorFactory> kFactories[] = {
 
 }  // namespace
 
-SensorPtr makeSensor(const Properties& node, const Vec2i& resolution, Warnings& warnings) {
-  if (const SensorFactory factory = findFactory(kFactories, node.type))
-    return factory(node, resolution, warnings);
-  warnings.add(node.location, "the sensor '" + node.type + "' is unknown" +
-                                  suggestion(node.type, sensorTypes()) + ", a perspective sensor is used");
-  return makePerspective(node, resolution, warnings);
+SensorPtr makeSensor(const Properties& node, const Vec2i& resolution, Builder& builder) {
+  Warnings& warnings = builder.warnings();
+  SensorFactory factory = findFactory(kFactories, node.type);
+  if (!factory) {
+    warnings.add(node.location, "the sensor '" + node.type + "' is unknown" +
+                                    suggestion(node.type, sensorTypes()) + ", a perspective sensor is used");
+    factory = makePerspective;
+  }
+  const std::optional<Placed> placed =
+      builder.placed(node, factory == makeOrthographic ? Scale::kept : Scale::leftOut);
+  const Properties& element = placed ? placed->node : node;
+  const SensorPtr sensor = factory(element, resolution, warnings);
+  if (placed) sensor->setMotion(placed->motion);
+  builder.warnUnqueried(element);
+  return sensor;
 }
 
 SensorPtr makeMeter(const Properties& node, const Vec2i& resolution,
-                    const std::shared_ptr<const Shape>& shape, Warnings& warnings) {
+                    const std::shared_ptr<const Shape>& shape, Builder& builder) {
   if (findFactory(kFactories, node.type))
     throw SceneError(node.location,
                      "found the sensor '" + node.type + "' in a shape, expected an irradiancemeter");
   if (node.type != "irradiancemeter")
-    warnings.add(node.location,
-                 "the sensor '" + node.type + "' of a shape is unknown, an irradiancemeter is used");
+    builder.warnings().add(
+        node.location, "the sensor '" + node.type + "' of a shape is unknown, an irradiancemeter is used");
   if (!(shape->area() > 0))
     throw SceneError(node.location, "found an irradiancemeter on a shape without area, expected one with");
+  builder.warnUnqueried(node);
   return std::make_shared<IrradianceMeter>(shape, resolution);
+}
+
+Shutter readShutter(const Properties& node) {
+  constexpr NumberRange times = between(-1e15, 1e15);
+  const float open = node.number("shutter_open", times, 0.0f);
+  const Shutter shutter{open, node.number("shutter_close", times, std::max(open, 0.0f))};
+  if (shutter.close < shutter.open)
+    node.refuse("shutter_close", fmt::format("{}", shutter.close),
+                fmt::format("at least the {} of shutter_open", shutter.open));
+  return shutter;
 }
 
 std::vector<std::string> sensorTypes() {

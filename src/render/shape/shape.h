@@ -20,13 +20,12 @@ struct ShapeSample {
   float pdf = 0;  // solid angle at the reference point; 0 if nothing could be sampled
 };
 
-// A hit as Embree reports it, with the object-to-world matrix of the instance it is in (null: no instance).
+// A hit as Embree reports it, with the place of the instance it is in (null: no instance).
 struct RawHit {
   float t = 0;
   float u = 0, v = 0;
   uint32_t primitive = 0;
-  const Matrix4* instanceToWorld = nullptr;
-  const Matrix4* worldToInstance = nullptr;
+  const Placement* instance = nullptr;
 };
 
 class Shape;
@@ -35,7 +34,14 @@ class Shape;
 struct Hit {
   const Shape* shape = nullptr;
   RawHit raw;
+  const Motion* motion = nullptr;  // of an instance that moves, whose place raw.instance is not
+
+  // The point in world space that the ray met.
+  SurfacePoint surfacePoint(const Ray& ray) const;
 };
+
+// The same for an instance that moves.
+SurfacePoint movingPoint(const Ray& ray, const Hit& hit);
 
 // Bounds of a primitive (a triangle of a mesh, the whole of other shapes): its box, and a cone about all
 // shading normals.
@@ -98,6 +104,12 @@ class Shape {
   BsdfPtr m_bsdf;
   std::shared_ptr<SurfaceEmitter> m_emitter;
 };
+
+inline SurfacePoint Hit::surfacePoint(const Ray& ray) const {
+  SurfacePoint at = motion ? movingPoint(ray, *this) : shape->surfacePoint(ray, raw);
+  at.time = ray.time;
+  return at;
+}
 
 using ShapePtr = std::shared_ptr<Shape>;
 

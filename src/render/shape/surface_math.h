@@ -54,15 +54,15 @@ inline ShapeSample uniformAreaSample(const Vec3& ref, const SurfacePoint& at, fl
 // The ray in the space of the instance that was hit; its direction is not of unit length there, so t is the
 // same.
 inline Ray toObject(const Ray& ray, const RawHit& hit) {
-  if (!hit.worldToInstance) return ray;
-  return {transformPoint(*hit.worldToInstance, ray.origin),
-          transformVector(*hit.worldToInstance, ray.direction), ray.tMax};
+  if (!hit.instance) return ray;
+  return {transformPoint(hit.instance->toInstance, ray.origin),
+          transformVector(hit.instance->toInstance, ray.direction), ray.tMax, ray.time};
 }
 
 // Takes a point from the space of the instance that was hit to world space.
 inline void toWorld(SurfacePoint& at, const RawHit& hit) {
-  if (!hit.instanceToWorld) return;
-  const Matrix4 &m = *hit.instanceToWorld, &inverse = *hit.worldToInstance;
+  if (!hit.instance) return;
+  const auto& [m, inverse] = *hit.instance;
   float scale = 0;
   for (int row = 0; row < 3; ++row) scale += sqr(m[row][0]) + sqr(m[row][1]) + sqr(m[row][2]);
   at.p = transformPoint(m, at.p);

@@ -45,5 +45,7 @@ Matrix4 parseTransform(const std::vector<XmlElement>& steps, RotationAxis axis);
 
 // Whether the matrix is affine and has an inverse, as the place of a shape or a sensor must.
 bool isInvertibleAffine(const Matrix4& matrix);
+// Whether it turns right hands into left ones.
+bool mirrors(const Matrix4& matrix);
 
 }  // namespace odis::render

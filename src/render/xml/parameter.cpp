@@ -1,5 +1,8 @@
 // The elements that hold a value: <float>, <rgb>, <transform>, <spectrum> and their like.
+#include <fmt/format.h>
+
 #include <cmath>
+#include <set>
 
 #include "render/xml/names.h"
 #include "render/xml/parser.h"
@@ -31,6 +34,28 @@ double parseTemperature(std::string text, const SourceLocation& at) {
   return kelvin;
 }
 
+// Whether an element says where its owner is.
+bool isPlace(const XmlElement& e, const Properties& owner) {
+  const bool hasPlace = owner.tag == "shape" || owner.tag == "sensor" || owner.tag == "emitter";
+  return hasPlace && snakeCase(e.require("name")) == "to_world";
+}
+
+void rejectSingular(const Matrix4& matrix, const SourceLocation& at, const Properties& owner) {
+  if (isInvertibleAffine(matrix)) return;
+  throw SceneError(at,
+                   "found a transform 'to_world' that has no inverse or is not affine, expected one that "
+                   "keeps the volume of the " +
+                       owner.tag);
+}
+
+// Whether an element may be given a place that changes with time.
+bool canMove(const Properties& owner) {
+  if (owner.tag == "shape") return owner.type != "shapegroup" && owner.type != "merge";
+  if (owner.tag == "sensor") return true;
+  static const std::set<std::string> emitters = {"directional", "envmap", "point", "projector", "spot"};
+  return owner.tag == "emitter" && emitters.count(owner.type) > 0;
+}
+
 }  // namespace
 
 bool XmlParser::parseNestedValue(const Place& place, const pugi::xml_node& node, const XmlElement& e,
@@ -39,24 +64,52 @@ bool XmlParser::parseNestedValue(const Place& place, const pugi::xml_node& node,
   if (tag == "transform") {
     e.allow({"name"});
     const Matrix4 matrix = parseTransformSteps(place, node);
-    const bool places = owner.tag == "shape" || owner.tag == "sensor" || owner.tag == "emitter";
-    if (places && snakeCase(e.require("name")) == "to_world" && !isInvertibleAffine(matrix))
-      throw SceneError(e.at,
-                       "found a transform 'to_world' that has no inverse or is not affine, expected one that "
-                       "keeps the volume of the " +
-                           owner.tag);
+    if (isPlace(e, owner)) rejectSingular(matrix, e.at, owner);
     addParameter(owner, e, matrix);
     return true;
   }
   if (tag == "animation") {
-    e.allow({"name"});
-    const pugi::xml_node first = node.child("transform");
-    if (!first) throw SceneError(e.at, "found no <transform> in <animation>, expected at least one");
-    m_warnings.add(e.at, "motion is not supported, the first transform of the animation is used");
-    addParameter(owner, e, parseTransformSteps(place, first));
+    parseAnimation(place, node, e, owner);
     return true;
   }
   return false;
+}
+
+void XmlParser::parseAnimation(const Place& place, const pugi::xml_node& node, const XmlElement& e,
+                               Properties& owner) {
+  e.allow({"name"});
+  place.file.rejectText(node);
+  Animation animation;
+  for (const pugi::xml_node& child : node.children()) {
+    if (child.type() != pugi::node_element) continue;
+    const XmlElement key = element(place, child);
+    if (key.tag != "transform")
+      throw SceneError(key.at, "found <" + key.tag + "> in <animation>, expected <transform time=\"...\">");
+    key.allow({"time"});
+    const double time = parseNumber(key.require("time"), "the time", key.at);
+    if (!animation.empty() && !(time > animation.back().time))
+      throw SceneError(key.at, fmt::format("found the time {} after {} in <animation>, expected a later one",
+                                           time, animation.back().time));
+    const Matrix4 matrix = parseTransformSteps(place, child);
+    if (isPlace(e, owner)) rejectSingular(matrix, key.at, owner);
+    if (!animation.empty() && mirrors(matrix) != mirrors(animation.back().toWorld))
+      throw SceneError(key.at,
+                       "found a transform that mirrors beside one that doesn't in <animation>, expected one "
+                       "that can be reached without flattening the " +
+                           owner.tag);
+    animation.push_back({time, matrix});
+  }
+  if (animation.size() < 2)
+    throw SceneError(e.at, fmt::format("found {} <transform> in <animation>, expected at least two; what "
+                                       "doesn't move has a <transform> in place of the <animation>",
+                                       animation.size()));
+  if (isPlace(e, owner) && canMove(owner)) {
+    addParameter(owner, e, std::move(animation));
+    return;
+  }
+  m_warnings.add(e.at, "'" + e.require("name") + "' of the " + owner.tag + " '" + owner.type +
+                           "' can't move, the first transform of the animation is used");
+  addParameter(owner, e, animation.front().toWorld);
 }
 
 bool XmlParser::parseValue(const Place& place, const pugi::xml_node& node, const XmlElement& e,

@@ -8,8 +8,8 @@ namespace odis::render {
 namespace {
 
 std::string describe(const PropertyValue& value) {
-  static const char* const kinds[] = {"a boolean", "an integer", "a number",   "the string",
-                                      "a point",   "a colour",   "a transform"};
+  static const char* const kinds[] = {"a boolean", "an integer", "a number",    "the string",
+                                      "a point",   "a colour",   "a transform", "an animation"};
   if (const std::string* text = std::get_if<std::string>(&value)) return "the string '" + *text + "'";
   return kinds[value.index()];
 }
@@ -133,6 +133,11 @@ Rgb Properties::color(const std::string& name, const NumberRange& range, std::op
 
 Matrix4 Properties::transform(const std::string& name, const Matrix4& fallback) const {
   return get(*this, name, &fallback, "transform");
+}
+
+const Animation* Properties::animation(const std::string& name) const {
+  const auto found = parameters.find(name);
+  return found == parameters.end() ? nullptr : std::get_if<Animation>(&found->second.value);
 }
 
 void Properties::declare(const std::string& name, const Declaration& declaration) const {

@@ -11,13 +11,14 @@
 #include <vector>
 
 #include "render/math/interval.h"
+#include "render/math/motion.h"
 #include "render/math/vec.h"
 #include "render/xml/error.h"
 
 namespace odis::render {
 
 // A spectrum given as wavelength:value pairs or as a file name is turned into linear RGB by the parser.
-using PropertyValue = std::variant<bool, int64_t, double, std::string, Vec3, Rgb, Matrix4>;
+using PropertyValue = std::variant<bool, int64_t, double, std::string, Vec3, Rgb, Matrix4, Animation>;
 
 // What a parameter may be, as the getter that read it has said. The manual's table is checked against these.
 struct Declaration {
@@ -67,6 +68,8 @@ class Properties {
   // A number is a grey.
   Rgb color(const std::string& name, const NumberRange& range, std::optional<Rgb> fallback = {}) const;
   Matrix4 transform(const std::string& name, const Matrix4& fallback = {}) const;  // rows multiply: p * M
+  // The key frames of a transform that moves; null if it doesn't. Does not mark it as queried.
+  const Animation* animation(const std::string& name) const;
   // A number that may be absent.
   std::optional<float> optionalNumber(const std::string& name, const NumberRange& range) const;
 

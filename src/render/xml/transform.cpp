@@ -98,6 +98,10 @@ Matrix4 parseTransform(const std::vector<XmlElement>& steps, RotationAxis axis) 
   return Matrix4(product);
 }
 
+bool mirrors(const Matrix4& matrix) {
+  return Matrix(matrix).determinant() < 0;
+}
+
 bool isInvertibleAffine(const Matrix4& matrix) {
   double volume = 1;
   const Matrix m(matrix);

@@ -1,0 +1,15 @@
+// Points on shapes that move.
+#include "render/shape/shape.h"
+
+namespace odis::render {
+
+SurfacePoint movingPoint(const Ray& ray, const Hit& hit) {
+  const Placement placement = hit.motion->placementAt(ray.time);
+  RawHit raw = hit.raw;
+  raw.instance = &placement;
+  SurfacePoint at = hit.shape->surfacePoint(ray, raw);
+  at.pError += hit.motion->positionError();
+  return at;
+}
+
+}  // namespace odis::render
