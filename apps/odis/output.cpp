@@ -95,6 +95,7 @@ void writeLayers(const std::string& path, const RenderedImage& frame, const Film
                  const Layers& layers, const std::map<std::string, std::string>& metadata) {
   Planes planes;
   planes.add("", "RGB", frame.color, false);
+  planes.add("noisy.", "RGB", frame.noisy, false);
   planes.add("variance.", "RGB", frame.variance, false);
   if (layers.albedo) planes.add("albedo.", "RGB", frame.albedo, true);
   if (layers.normal) planes.add("N.", "XYZ", frame.normal, true);
