@@ -32,52 +32,56 @@ struct DenoiserImages {
   std::vector<render::Vec3> normal;
 };
 
-// An error of a file says which one.
-template <typename Work>
-auto about(const std::string& file, Work work) {
+using FindLayer = std::optional<std::string> (*)(const LayeredImage&);
+
+void rejectDisplayed(const std::string& path) {
+  for (const char* ending : {".png", ".jpg", ".jpeg", ".tga", ".bmp"})
+    if (endsWith(path, ending))
+      throw eval::ImageError(path +
+                             ": found an image of 8 bits, as a screen shows it; expected linear colours as "
+                             "they were rendered, in an .exr or .hdr file");
+}
+
+std::vector<render::Rgb> pixelsOf(const std::string& file, const LayeredImage& image,
+                                  const std::string& layer) {
   try {
-    return work();
+    return eval::layerColor(image, layer).pixels;
   } catch (const eval::ImageError& error) {
     throw eval::ImageError(file + ": " + error.what());
   }
 }
 
-void rejectDisplayed(const std::string& path) {
-  for (const char* ending : {".png", ".jpg", ".jpeg", ".tga", ".bmp"})
-    if (endsWith(path, ending))
-      throw eval::ImageError(path + ": found an image of 8 bits, as a screen shows it; expected linear colours "
-                                    "as they were rendered, in an .exr or .hdr file");
+void requireSameWindow(const std::string& file, const LayeredImage& image, const std::string& otherFile,
+                       const LayeredImage& other) {
+  const auto text = [](const render::ImageWindow& w) {
+    return fmt::format("{} x {} pixels at {},{}", w.width, w.height, w.x, w.y);
+  };
+  const std::string expected = text(image.window), found = text(other.window);
+  if (found != expected)
+    throw eval::ImageError(
+        fmt::format("{}: has {}, expected {} as {} has", otherFile, found, expected, file));
 }
 
-// A layer of a further file, if one is named, else of the image, if it has one; empty otherwise.
-std::vector<render::Rgb> auxiliary(const LayeredImage& image, const std::string& imageFile,
-                                   const std::string& file, const std::string& chosenLayer,
-                                   const std::optional<std::string>& foundLayer,
-                                   std::string (*find)(const LayeredImage&)) {
+// Albedo or normals: the chosen layer, else the one that is found by its name, of a file of their own if one
+// is named. Empty if the image has none.
+std::vector<render::Rgb> auxiliary(const std::string& imageFile, const LayeredImage& image,
+                                   const std::string& file, const std::string& layer, FindLayer find) {
   if (file.empty()) {
-    if (chosenLayer.empty() && !foundLayer) return {};
-    const std::string& layer = chosenLayer.empty() ? *foundLayer : chosenLayer;
-    return about(imageFile, [&] { return eval::layerColor(image, layer).pixels; });
+    const std::optional<std::string> found = layer.empty() ? find(image) : layer;
+    return found ? pixelsOf(imageFile, image, *found) : std::vector<render::Rgb>();
   }
   const LayeredImage other = eval::readChannels(file);
-  if (const std::string difference = eval::windowDifference(image, other); !difference.empty())
-    throw eval::ImageError(fmt::format("{}: {} as {} has", file, difference, imageFile));
-  return about(file, [&] {
-    return eval::layerColor(other, chosenLayer.empty() ? find(other) : chosenLayer).pixels;
-  });
+  requireSameWindow(imageFile, image, file, other);
+  return pixelsOf(file, other, layer.empty() ? find(other).value_or("") : layer);
 }
 
 DenoiserImages imagesOf(const DenoiseArguments& a, const LayeredImage& image) {
-  eval::DenoiserLayers layers;
-  about(a.image, [&] { layers = eval::findDenoiserLayers(image); });
-  if (!a.layer.empty()) layers.color = a.layer;
   DenoiserImages images;
-  images.color = about(a.image, [&] { return eval::layerColor(image, layers.color).pixels; });
+  const std::string layer = a.layer.empty() ? eval::findColorLayer(image).value_or("") : a.layer;
+  images.color = pixelsOf(a.image, image, layer);
   if (a.auxiliaries == "none") return images;
-  images.albedo =
-      auxiliary(image, a.image, a.albedo, a.albedoLayer, layers.albedo, eval::findAlbedoLayer);
-  for (const render::Rgb& n :
-       auxiliary(image, a.image, a.normal, a.normalLayer, layers.normal, eval::findNormalLayer))
+  images.albedo = auxiliary(a.image, image, a.albedo, a.albedoLayer, eval::findAlbedoLayer);
+  for (const render::Rgb& n : auxiliary(a.image, image, a.normal, a.normalLayer, eval::findNormalLayer))
     images.normal.emplace_back(n.x, n.y, n.z);
   return images;
 }
@@ -96,9 +100,9 @@ int runDenoise(const DenoiseArguments& a) {
   outputs.add(a.output, {".exr", ".png"});
   if (!a.png.empty()) outputs.add(a.png, {".png"});
   outputs.rejectInputs({a.image, a.albedo, a.normal});
-  const render::Denoiser denoiser(a.threads);
   LayeredImage image = eval::readChannels(a.image);
   DenoiserImages images = imagesOf(a, image);
+  const render::Denoiser denoiser(a.threads);
   if (images.albedo.empty() && a.auxiliaries != "none" && !a.quiet)
     say(fmt::format("warning: {}: found no albedo: denoised by its colours alone\n", a.image));
   if (images.albedo.empty()) images.normal.clear();
@@ -132,8 +136,8 @@ Command addDenoiseCommand(CLI::App& parent) {
   CLI::App* app = parent.add_subcommand("denoise", "Denoise a rendered image with Open Image Denoise");
   app->footer(
       "Layers of `odis render --denoise` or `--aov albedo,normal` are found by their names, so are those of\n"
-      "Cycles, Mitsuba and pbrt. OUTPUT has all channels of IMAGE, R, G and B being denoised, and the colours\n"
-      "before that as the layer noisy. More: docs/denoising.md.");
+      "Cycles, Mitsuba and pbrt. OUTPUT has all channels of IMAGE, R, G and B being denoised, and the\n"
+      "colours before that as the layer noisy. More: docs/denoising.md.");
   const auto a = std::make_shared<DenoiseArguments>();
   app->add_option("IMAGE", a->image, "EXR or HDR file")->required();
   app->add_option("-o,--output", a->output, "Image to write, .exr or .png")->required();
@@ -150,7 +154,9 @@ Command addDenoiseCommand(CLI::App& parent) {
   app->add_option("--layer", a->layer, "Which layer holds the colours, as in noisy of noisy.R");
   app->add_option("--albedo-layer", a->albedoLayer, "Which layer holds the albedo");
   app->add_option("--normal-layer", a->normalLayer, "Which layer holds the normals");
-  app->add_option("--threads", a->threads, "0: one a core")->check(within(kThreadCount))->capture_default_str();
+  app->add_option("--threads", a->threads, "0: one a core")
+      ->check(within(kThreadCount))
+      ->capture_default_str();
   app->add_flag("-q,--quiet", a->quiet, "Print errors only");
   return {app, [a] { return runDenoise(*a); }};
 }

@@ -162,7 +162,9 @@ static int runRender(RenderArguments& a) {
   if (result.stats.interrupted) tellOfSaved(a);
   if (!isWorthWriting(a, result.stats)) return InterruptScope::exitCode();
   std::optional<DenoiserError> failure;
-  if (denoiser && !InterruptScope::interrupted()) {
+  if (denoiser && InterruptScope::interrupted()) {
+    say("interrupted: the image is not denoised\n");
+  } else if (denoiser) {
     failure = denoiseImage(*denoiser, result.image, progress, stats.denoising);
     layers.albedo = layers.normal = true;  // as the denoiser had them
   }

@@ -1,28 +1,19 @@
 #include "eval/denoiser_layers.h"
 
-#include <fmt/format.h>
-#include <fmt/ranges.h>
-
 #include <algorithm>
 #include <cctype>
+#include <initializer_list>
 
 namespace odis::eval {
 
-namespace {
-
-using Names = std::vector<std::string>;
-const Names kColors{"noisy", "noisy image", "", "combined"};
-const Names kAlbedos{"denoising albedo", "albedo"};
-const Names kNormals{"denoising normal", "ns", "sh_normal", "nn", "normal", "n"};
-
 // "denoising albedo" of "ViewLayer.Denoising Albedo".
-std::string plainName(const std::string& layer) {
+static std::string plainName(const std::string& layer) {
   std::string name = layer.substr(layer.rfind('.') + 1);
   std::transform(name.begin(), name.end(), name.begin(), [](unsigned char c) { return std::tolower(c); });
   return name;
 }
 
-bool hasColor(const LayeredImage& image, const std::string& layer) {
+static bool hasColor(const LayeredImage& image, const std::string& layer) {
   try {
     layerColor(image, layer);
     return true;
@@ -31,46 +22,25 @@ bool hasColor(const LayeredImage& image, const std::string& layer) {
   }
 }
 
-std::optional<std::string> find(const LayeredImage& image, const Names& names) {
+static std::optional<std::string> findLayer(const LayeredImage& image,
+                                            std::initializer_list<const char*> names) {
   const std::vector<std::string> layers = layerNames(image);
-  for (const std::string& name : names)
+  for (const char* name : names)
     for (const std::string& layer : layers)
       if (plainName(layer) == name && hasColor(image, layer)) return layer;
   return {};
 }
 
-std::string require(const LayeredImage& image, const std::optional<std::string>& layer, const char* what) {
-  if (layer) return *layer;
-  std::vector<std::string> names;
-  for (const auto& [channel, values] : image.channels) names.push_back(channel);
-  throw ImageError(fmt::format("found no {} in the channels {}", what, fmt::join(names, ", ")));
+std::optional<std::string> findColorLayer(const LayeredImage& image) {
+  return findLayer(image, {"noisy", "noisy image", "", "combined"});
 }
 
-}  // namespace
-
-DenoiserLayers findDenoiserLayers(const LayeredImage& image) {
-  return {require(image, find(image, kColors), "colours (R, G, B)"), find(image, kAlbedos),
-          find(image, kNormals)};
+std::optional<std::string> findAlbedoLayer(const LayeredImage& image) {
+  return findLayer(image, {"denoising albedo", "albedo"});
 }
 
-std::string findAlbedoLayer(const LayeredImage& image) {
-  Names names = kAlbedos;
-  names.push_back("");
-  return require(image, find(image, names), "albedo");
-}
-
-std::string findNormalLayer(const LayeredImage& image) {
-  Names names = kNormals;
-  names.push_back("");
-  return require(image, find(image, names), "normals");
-}
-
-std::string windowDifference(const LayeredImage& a, const LayeredImage& b) {
-  const auto text = [](const render::ImageWindow& w) {
-    return fmt::format("{} x {} at {},{}", w.width, w.height, w.x, w.y);
-  };
-  const std::string first = text(a.window), second = text(b.window);
-  return first == second ? "" : fmt::format("has {} pixels, expected {}", second, first);
+std::optional<std::string> findNormalLayer(const LayeredImage& image) {
+  return findLayer(image, {"denoising normal", "ns", "sh_normal", "nn", "normal", "n"});
 }
 
 }  // namespace odis::eval

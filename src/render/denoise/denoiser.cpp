@@ -89,8 +89,7 @@ class Filter {
 void requireSizes(const DenoiserInput& input) {
   const size_t pixels = size_t(input.width) * size_t(input.height);
   const auto fits = [&](size_t count) { return count == 0 || count == pixels; };
-  if (pixels == 0 || input.color.size() != pixels || !fits(input.albedo.size()) ||
-      !fits(input.normal.size()))
+  if (pixels == 0 || input.color.size() != pixels || !fits(input.albedo.size()) || !fits(input.normal.size()))
     throw std::invalid_argument("images to denoise differ in size");
   if (input.albedo.empty() && !input.normal.empty())
     throw std::invalid_argument("normals are of use to the denoiser together with an albedo only");

@@ -43,9 +43,9 @@ class Denoiser {
   // "Open Image Denoise 2.5.1".
   const std::string& name() const { return m_name; }
 
-  // The denoised colours; nothing if progress was cancelled. Colours that are not finite count as black, negative
-  // ones as 0; what of the auxiliaries is out of range is clamped. The same input gives the same bits for
-  // any number of threads. Throws DenoiserError.
+  // The denoised colours; nothing if progress was cancelled. Colours that are not finite count as black,
+  // negative ones as 0; what of the auxiliaries is out of range is clamped. The same input gives the same
+  // bits for any number of threads. Throws DenoiserError.
   std::optional<std::vector<Rgb>> denoise(const DenoiserInput& input, Auxiliaries auxiliaries,
                                           Progress& progress) const;
 
