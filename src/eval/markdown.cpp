@@ -57,11 +57,11 @@ std::vector<std::string> rowCells(const ComparisonRow& row) {
       row.equalTime ? fmt::format("{:.3g} in time of {}", row.samples, row.spp) : fmt::format("{}", row.spp);
   std::vector<std::string> cells{row.scene, row.method, samples};
   if (row.isMean())
-    cells.insert(cells.end(), {"", "", "", ""});
+    cells.insert(cells.end(), {"", "", "", "", ""});
   else
-    cells.insert(cells.end(),
-                 {fmt::format("{:.3g}", row.error.trimmedRelMse), fmt::format("{:.3f}", row.error.flip),
-                  fmt::format("{:.2f}", row.seconds), fmt::format("{:.1f}", row.rays * 1e-6)});
+    cells.insert(cells.end(), {fmt::format("{:.3g}", row.error.trimmedRelMse),
+                               fmt::format("{:.3f}", row.error.flip), fmt::format("{:.3f}", row.error.ssim),
+                               fmt::format("{:.2f}", row.seconds), fmt::format("{:.1f}", row.rays * 1e-6)});
   cells.insert(cells.end(), {intervalText(row.errorRatio), intervalText(row.errorTimeRatio),
                              intervalText(row.errorRaysRatio), neededText(row.needed)});
   return cells;
@@ -72,7 +72,7 @@ std::string referencesTable(const std::vector<ComparisonRow>& rows, const std::v
   for (const SceneRecord& scene : scenes) {
     double smallest = std::numeric_limits<double>::infinity();
     for (const ComparisonRow& row : rows)
-      if (row.scene == scene.name) smallest = std::min(smallest, row.error.trimmedRelMse);
+      if (row.scene == scene.name && !row.denoised) smallest = std::min(smallest, row.error.trimmedRelMse);
     if (!scene.referenceError)
       cells.push_back({scene.name, "not known", ""});
     else
@@ -84,14 +84,24 @@ std::string referencesTable(const std::vector<ComparisonRow>& rows, const std::v
   return layOut(cells, 1);
 }
 
+// Of the images as rendered, or denoised.
+std::string rowsTable(const std::vector<ComparisonRow>& rows, bool denoised) {
+  const std::string needed = rows.empty() ? "first method needs" : rows.front().method + " needs";
+  std::vector<std::vector<std::string>> cells{{"scene", "method", "spp", "error", "FLIP", "SSIM", "seconds",
+                                               "Mrays", "error ratio", "error x time", "error x rays",
+                                               needed}};
+  for (const ComparisonRow& row : rows)
+    if (row.denoised == denoised) cells.push_back(rowCells(row));
+  return layOut(cells, 2);
+}
+
 }  // namespace
 
 std::string markdownTables(const std::vector<ComparisonRow>& rows, const std::vector<SceneRecord>& scenes) {
-  const std::string needed = rows.empty() ? "first method needs" : rows.front().method + " needs";
-  std::vector<std::vector<std::string>> cells{{"scene", "method", "spp", "error", "FLIP", "seconds", "Mrays",
-                                               "error ratio", "error x time", "error x rays", needed}};
-  for (const ComparisonRow& row : rows) cells.push_back(rowCells(row));
-  return layOut(cells, 2) + "\n" + referencesTable(rows, scenes);
+  std::string text = rowsTable(rows, false) + "\n";
+  if (std::any_of(rows.begin(), rows.end(), [](const ComparisonRow& row) { return row.denoised; }))
+    text += "The same images denoised:\n\n" + rowsTable(rows, true) + "\n";
+  return text + referencesTable(rows, scenes);
 }
 
 }  // namespace odis::eval
