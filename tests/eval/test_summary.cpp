@@ -96,7 +96,6 @@ TEST(SamplesNeeded, FollowsTheCurveInLogarithms) {
   EXPECT_EQ(samplesNeeded(curve, 1 / 3.0).samples, 4);
 }
 
-// Where noise lets the curve rise again, its first way down counts.
 // Denoised images are compared with denoised ones of the first method only, and have a curve of their own.
 TEST(Summary, KeepsDenoisedApart) {
   std::vector<Measurement> measurements;
@@ -123,6 +122,7 @@ TEST(Summary, KeepsDenoisedApart) {
   EXPECT_NE(text.find("0.707", text.find("The same images denoised:")), std::string::npos) << text;
 }
 
+// Where noise lets the curve rise again, its first way down counts.
 TEST(SamplesNeeded, TakesTheLeastOfSeveral) {
   const std::vector<CurvePoint> curve{{1, 1}, {4, 0.25}, {16, 0.5}, {64, 0.1}};
   EXPECT_NEAR(samplesNeeded(curve, 0.5).samples, 2, 1e-9);
