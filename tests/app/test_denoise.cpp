@@ -1,4 +1,6 @@
 // `odis render --denoise` and `odis denoise`.
+#include <nlohmann/json.hpp>
+
 #include "command_runner.h"
 #include "render/image/write.h"
 #include "support/denoiser.h"
@@ -119,6 +121,50 @@ TEST_F(Denoising, KeepsOtherChannels) {
   EXPECT_EQ(image("out.exr").channels.at("A"), alpha);
   EXPECT_EQ(image("out.exr").channels.at("noisy.G"), color);
   EXPECT_TRUE(exists("out.png"));
+}
+
+TEST_F(Denoising, ComparisonsMeasureBoth) {
+  ODIS_NEEDS_DENOISER();
+  const std::string compare =
+      "compare room.xml -o out --denoise --spp 1,4 --seeds 2 --reference-spp 64 --images -q --methods "
+      "'path=--integrator path,restir=--integrator restir'";
+  const Outcome outcome = run(compare);
+  ASSERT_EQ(outcome.code, 0) << outcome.text;
+  EXPECT_NE(outcome.text.find("The same images denoised:"), std::string::npos) << outcome.text;
+  EXPECT_TRUE(exists("out/images/room-4.png") && exists("out/images/room-4-denoised.png"));
+
+  const auto json = nlohmann::json::parse(text("out/comparison.json"));
+  EXPECT_TRUE(json.at("denoiser").get<std::string>().starts_with("Open Image Denoise"));
+  ASSERT_EQ(json.at("rows").size(), 8u);
+  ASSERT_EQ(json.at("runs").size(), 16u);
+  for (const auto& row : json.at("rows")) {
+    const bool denoised = row.at("denoised");
+    EXPECT_EQ(row.at("image").get<std::string>().find("-denoised-") != std::string::npos, denoised) << row;
+    EXPECT_TRUE(exists("out/" + row.at("image").get<std::string>())) << row;
+    EXPECT_GT(row.at("ssim"), 0) << row;
+  }
+  const std::string page = text("out/report.html");
+  EXPECT_NE(page.find("\"denoised\":true"), std::string::npos);
+
+  // Going on renders nothing again: times stay.
+  ASSERT_EQ(run(compare).code, 0);
+  EXPECT_EQ(nlohmann::json::parse(text("out/comparison.json")).at("runs"), json.at("runs"));
+  // Without the denoiser the same results are half of them.
+  ASSERT_EQ(run("compare room.xml -o out --spp 1,4 --seeds 2 --reference-spp 64 -q --methods "
+                "'path=--integrator path,restir=--integrator restir'")
+                .code,
+            0);
+  const auto plain = nlohmann::json::parse(text("out/comparison.json"));
+  EXPECT_EQ(plain.at("runs").size(), 8u);
+  EXPECT_EQ(plain.at("runs").at(0), json.at("runs").at(0));
+  EXPECT_TRUE(plain.at("denoiser").is_null());
+}
+
+TEST_F(Denoising, ComparisonsNeedTheLibraryFirst) {
+  const Outcome outcome =
+      runShell("ODIS_OIDN=nowhere/lib.so '" ODIS_COMMAND "' compare room.xml -o out --denoise -q");
+  EXPECT_EQ(outcome.code, 5) << outcome.text;
+  EXPECT_FALSE(exists("out"));
 }
 
 }  // namespace
