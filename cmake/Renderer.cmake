@@ -11,7 +11,7 @@ add_library(odis_render STATIC ${RENDER_SOURCES})
 target_include_directories(odis_render PUBLIC src)
 target_link_libraries(odis_render
   PUBLIC odis_static embree TBB::tbb Imath::Imath fmt::fmt
-  PRIVATE odis_compiler OpenEXR::OpenEXR pugixml::pugixml stb JPEG::JPEG ZLIB::ZLIB)
+  PRIVATE odis_compiler OpenEXR::OpenEXR pugixml::pugixml stb JPEG::JPEG ZLIB::ZLIB ${CMAKE_DL_LIBS})
 if(openpgl_FOUND)
   target_link_libraries(odis_render PRIVATE openpgl::openpgl)
 endif()

@@ -20,6 +20,7 @@ enum ExitCode {
   kUsageError = 2,
   kSceneError = 3,  // a scene or an image that cannot be read
   kWriteError = 4,
+  kDenoiserError = 5,  // there is no denoiser, or it failed; what was rendered is written
   kInterrupted = 130,  // by Ctrl-C; what was there is written
   kTerminated = 143    // the same by SIGTERM
 };
@@ -43,6 +44,7 @@ Command addRenderCommand(CLI::App& parent, const std::string& commandLine);
 Command addSceneCommand(CLI::App& parent);
 Command addScenesCommand(CLI::App& parent);
 Command addDatasetCommand(CLI::App& parent);
+Command addDenoiseCommand(CLI::App& parent);
 Command addMetricsCommand(CLI::App& parent);
 Command addImageCommand(CLI::App& parent);
 Command addMontageCommand(CLI::App& parent);

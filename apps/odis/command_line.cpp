@@ -18,6 +18,7 @@
 #include "learn/scenes/generate.h"
 #include "learn/train/learner.h"
 #include "odis_version.h"
+#include "render/denoise/oidn_library.h"
 #include "render/xml/error.h"
 #include "suggest.h"
 
@@ -25,7 +26,8 @@ namespace odis::app {
 
 static constexpr const char* kExitCodes =
     "Exit codes: 0 all went well, 1 internal error, 2 wrong usage, 3 an input can't be read,\n"
-    "4 an output can't be written, 130 interrupted by Ctrl-C, 143 by SIGTERM (what was rendered is written).";
+    "4 an output can't be written, 5 there is no denoiser or it failed, 130 interrupted by Ctrl-C,\n"
+    "143 by SIGTERM (what was rendered is written).";
 
 static int fail(ExitCode code, const std::string& message) {
   say(fmt::format("error: {}\n", message));
@@ -64,6 +66,7 @@ std::vector<Command> addCommands(CLI::App& parent, const std::string& commandLin
           addInspectCommand(parent),
           addAgreementCommand(parent),
           addBenchCommand(parent),
+          addDenoiseCommand(parent),
           addMetricsCommand(parent),
           addImageCommand(parent),
           addMontageCommand(parent),
@@ -115,6 +118,8 @@ int runCommandLine(int argc, char** argv) {
     return fail(error.code() == ODIS_ERROR_FILE ? kSceneError : kInternalError, error.what());
   } catch (const eval::ImageError& error) {
     return fail(kSceneError, error.what());
+  } catch (const render::DenoiserError& error) {
+    return fail(kDenoiserError, error.what());
   } catch (const WriteError& error) {
     return fail(kWriteError, error.what());
   } catch (const std::system_error& error) {  // of files and folders, and of printing

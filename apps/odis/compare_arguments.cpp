@@ -23,6 +23,7 @@ void CompareArguments::addTo(CLI::App& app) {
       ->capture_default_str();
   app.add_flag("--equal-time", settings.equalTime,
                "The other methods also with as many samples as fit in the first one's time");
+  app.add_flag("--denoise", denoise, "Measure every image after Open Image Denoise, too: docs/denoising.md");
   app.add_option("--seeds", settings.seeds, "How often each method renders")
       ->check(within(1, 1 << 24))
       ->capture_default_str();
@@ -60,6 +61,7 @@ void CompareArguments::apply() {
   for (const std::string& scene : settings.scenes)
     if (!names.insert(eval::sceneName(scene)).second)
       throw UsageError(fmt::format("{}: two scenes are named \"{}\"", scene, eval::sceneName(scene)));
+  if (denoise) settings.denoiser = std::make_shared<render::Denoiser>(threads);
 }
 
 std::vector<int> parseSampleCounts(const std::string& text) {

@@ -16,7 +16,8 @@ struct CompareArguments {
   SceneArguments part;
   int pixels = 0, threads = 0;
   bool images = false;  // PNGs too
-  float exposure = 0;   // of these, in stops
+  bool denoise = false;
+  float exposure = 0;  // of these, in stops
   bool quiet = false;
   std::string commandLine;
 

@@ -55,7 +55,7 @@ class ConsoleObserver : public eval::CompareObserver {
 }  // namespace
 
 // Images are named after scene and method; these are other letters of their names.
-constexpr size_t kLongestNames = NAME_MAX - 55;
+constexpr size_t kLongestNames = NAME_MAX - 65;
 
 static void checkNames(const eval::CompareSettings& settings) {
   namespace fs = std::filesystem;
@@ -98,8 +98,9 @@ static int runCompare(CompareArguments& a) {
   }
   const std::vector<eval::ComparisonRow> rows = eval::summarize(comparison.measurements);
   const std::string tables = eval::markdownTables(rows, comparison.scenes);
-  const auto json =
-      eval::comparisonJson(comparison, rows, settings.methods, {a.commandLine, eval::machineName()});
+  eval::Provenance provenance{a.commandLine, eval::machineName()};
+  if (settings.denoiser) provenance.denoiser = settings.denoiser->name();
+  const auto json = eval::comparisonJson(comparison, rows, settings.methods, provenance);
   writeText(settings.folder + "/comparison.md", tables);
   // The command line may hold bytes that are no UTF-8.
   writeText(settings.folder + "/comparison.json",

@@ -51,17 +51,18 @@ int InterruptScope::exitCode() {
 
 ConsoleProgress::ConsoleProgress(bool quiet) : m_quiet(quiet), m_terminal(isatty(STDERR_FILENO) == 1) {}
 
-void ConsoleProgress::begin(const std::string& stage, uint64_t totalSamples, uint64_t done) {
+void ConsoleProgress::begin(const std::string& stage, uint64_t total, uint64_t done, const char* unit) {
   m_stage = m_title.empty() ? stage : m_title + ": " + stage;
-  m_total = totalSamples;
+  m_unit = unit;
+  m_total = total;
   m_done = m_before = done;
   m_nextShow = std::max<uint64_t>(1, m_total / (m_terminal ? 200 : 10));
   m_start = m_lastShow = std::chrono::steady_clock::now();
 }
 
 // Called from all rendering threads: only who passes the next mark prints.
-void ConsoleProgress::advance(uint64_t samples) {
-  const uint64_t done = m_done.fetch_add(samples, std::memory_order_relaxed) + samples;
+void ConsoleProgress::advance(uint64_t more) {
+  const uint64_t done = m_done.fetch_add(more, std::memory_order_relaxed) + more;
   if (m_quiet || m_total == 0 || done < m_nextShow.load(std::memory_order_relaxed)) return;
   const std::lock_guard lock(m_mutex);
   if (done < m_nextShow || done >= m_total) return;
@@ -94,7 +95,7 @@ void ConsoleProgress::show(uint64_t done, bool last) {
   const std::string time =
       last ? durationText(seconds)
            : durationText(double(m_total - std::min(done, m_total)) / std::max(rate, 1e-6)) + " left";
-  const std::string rateText = fmt::format("{:.2f} Msamples/s, {}", rate * 1e-6, time);
+  const std::string rateText = fmt::format("{:.2f} M{}/s, {}", rate * 1e-6, m_unit, time);
   if (!m_terminal) {
     say(fmt::format("{} {:3.0f} %  {}\n", m_stage, 100 * share, rateText));
     return;

@@ -39,8 +39,8 @@ class InterruptScope {
 class ConsoleProgress : public render::Progress {
  public:
   explicit ConsoleProgress(bool quiet);
-  void begin(const std::string& stage, uint64_t totalSamples, uint64_t done) override;
-  void advance(uint64_t samples) override;
+  void begin(const std::string& stage, uint64_t total, uint64_t done, const char* unit) override;
+  void advance(uint64_t more) override;
   void end() override;
   void warn(const std::string& message) override;
   bool cancelled() const override { return InterruptScope::interrupted(); }
@@ -51,8 +51,8 @@ class ConsoleProgress : public render::Progress {
   void show(uint64_t done, bool last);
 
   bool m_quiet, m_terminal;
-  std::string m_title, m_stage;
-  uint64_t m_total = 0, m_before = 0;  // samples of the stage, and those that an earlier run took
+  std::string m_title, m_stage, m_unit;
+  uint64_t m_total = 0, m_before = 0;  // of the stage, and what of it an earlier run did
   std::atomic<uint64_t> m_done{0}, m_nextShow{0};
   std::chrono::steady_clock::time_point m_start, m_lastShow;
   std::mutex m_mutex;

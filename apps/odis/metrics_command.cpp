@@ -34,16 +34,20 @@ static int runMetrics(const MetricsArguments& arguments) {
     throw eval::ImageError(fmt::format("{}: {}", arguments.reference, error.what()));
   }
   if (arguments.json) {
-    const nlohmann::ordered_json json = {{"relMse", m.relMse}, {"trimmedRelMse", m.trimmedRelMse},
-                                         {"smape", m.smape},   {"flip", m.flip},
-                                         {"mse", m.mse},       {"nonFinitePixels", m.nonFinitePixels}};
+    const nlohmann::ordered_json json = {{"relMse", m.relMse},
+                                         {"trimmedRelMse", m.trimmedRelMse},
+                                         {"smape", m.smape},
+                                         {"flip", m.flip},
+                                         {"ssim", m.ssim},
+                                         {"mse", m.mse},
+                                         {"nonFinitePixels", m.nonFinitePixels}};
     fmt::print("{}\n", json.dump(2));
     return kOk;
   }
   fmt::print(
       "relMSE          {:.6g}\ntrimmed relMSE  {:.6g}\nSMAPE           {:.6g}\nMSE             {:.6g}\n"
-      "FLIP            {:.6g}\n",
-      m.relMse, m.trimmedRelMse, m.smape, m.mse, m.flip);
+      "FLIP            {:.6g}\nSSIM            {:.6g}\n",
+      m.relMse, m.trimmedRelMse, m.smape, m.mse, m.flip, m.ssim);
   if (m.nonFinitePixels > 0) fmt::print("not finite      {} pixels\n", m.nonFinitePixels);
   return kOk;
 }
@@ -56,7 +60,9 @@ Command addMetricsCommand(CLI::App& parent) {
       "  SMAPE   |I - R| / ((|I| + |R|) / 2 + 0.01)\n"
       "  MSE     (I - R)^2\n"
       "FLIP is LDR-FLIP at 67 pixels per degree of both images as a screen shows them: exposed so that the\n"
-      "log-average luminance of REFERENCE is 0.18, highlights rolled off as in the PNGs of `odis render`.");
+      "log-average luminance of REFERENCE is 0.18, highlights rolled off as in the PNGs of `odis render`. "
+      "SSIM\n"
+      "is of the same two images, 1 for the REFERENCE itself.");
   const auto arguments = std::make_shared<MetricsArguments>();
   app->add_option("IMAGE", arguments->image, "EXR, PNG, JPEG, TGA, BMP or HDR file")->required();
   app->add_option("REFERENCE", arguments->reference, "The same")->required();

@@ -99,6 +99,7 @@ void writeLayers(const std::string& path, const RenderedImage& frame, const Film
   Planes planes;
   planes.add("", "RGB", frame.color, false);
   if (layers.alpha) planes.add("A", frame.alpha, true);
+  planes.add("noisy.", "RGB", frame.noisy, false);
   planes.add("variance.", "RGB", frame.variance, false);
   if (layers.albedo) planes.add("albedo.", "RGB", frame.albedo, true);
   if (layers.normal) planes.add("N.", "XYZ", frame.normal, true);

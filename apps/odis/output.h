@@ -39,9 +39,9 @@ class Outputs {
 
 bool endsWith(const std::string& path, const std::string& ending);
 
-// One EXR: R, G, B; variance.R G B if there is a variance; the layers asked for: A, albedo.R G B, N.X Y Z,
-// P.X Y Z, depth.Z, roughness.Y, guide.alpha, guide.entropy, guide.survival, guide.cell, guide.samples.
-// Throws WriteError.
+// One EXR: R, G, B; noisy.R G B if those are denoised; variance.R G B if there is a variance; the layers
+// asked for: A, albedo.R G B, N.X Y Z, P.X Y Z, depth.Z, roughness.Y, guide.alpha, guide.entropy,
+// guide.survival, guide.cell, guide.samples. Throws WriteError.
 void writeLayers(const std::string& path, const render::RenderedImage& frame,
                  const render::FilmSettings& film, const Layers& layers,
                  const std::map<std::string, std::string>& metadata);

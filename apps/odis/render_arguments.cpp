@@ -101,6 +101,8 @@ void RenderArguments::addTo(CLI::App& app) {
   app.add_option("--resume", resume,
                  "Go on with a file that --save-every left; the options must be the same otherwise");
   app.add_option("--aov", aov, "Further layers: alpha,albedo,normal,position,depth,roughness,guide or all");
+  app.add_flag("--denoise", denoise,
+               "Denoise with Open Image Denoise; the image as rendered stays as the layer noisy");
   app.add_flag("--variance", variance, "Write each pixel's estimated variance as a layer");
   app.add_flag("--stats", stats, "Print what it cost");
   app.add_option("--stats-json", statsFile, "Write what it cost");

@@ -42,7 +42,7 @@ struct RenderArguments {
   int threads = 0;
   double timeLimit = 0, saveMinutes = 0;
   float exposure = 0;
-  bool variance = false, stats = false, quiet = false, verbose = false;
+  bool denoise = false, variance = false, stats = false, quiet = false, verbose = false;
   MethodArguments method;
   SceneArguments part;
   std::string commandLine;

@@ -9,6 +9,7 @@
 
 #include "command.h"
 #include "console.h"
+#include "denoising.h"
 #include "numbers.h"
 #include "output.h"
 #include "records.h"
@@ -33,7 +34,8 @@ static RenderOptions renderOptions(const RenderArguments& a, const Scene& scene,
   options.threads = a.threads;
   options.timeLimit = a.timeLimit;
   options.variance = a.variance;
-  options.features = layers.any();
+  // restir knows no features: its image is denoised by its colours alone.
+  options.features = layers.any() || (a.denoise && options.integrator != IntegratorKind::restir);
   options.guideFeatures = layers.guide;
   options.records = !a.recordsFile.empty();
   options.saving = savingOf(a, options, scene);
@@ -84,6 +86,20 @@ static Outputs outputsOf(const RenderArguments& a) {
   return outputs;
 }
 
+// Denoises the image, which stays as it is where that is interrupted or fails. Returns the failure: the image
+// is to be written first.
+static std::optional<DenoiserError> denoiseImage(const Denoiser& denoiser, RenderedImage& image,
+                                                 Progress& progress, Denoising& denoising) {
+  try {
+    const DenoiserInput input{image.width, image.height, image.color, image.albedo, image.normal};
+    if (auto colors = denoiseColors(denoiser, input, kDefaultAuxiliaries, progress, denoising))
+      image.noisy = std::exchange(image.color, std::move(*colors));
+  } catch (const DenoiserError& error) {
+    return error;
+  }
+  return {};
+}
+
 // Whether there is an image; says so where not.
 static bool isWorthWriting(const RenderArguments& a, const RenderStats& stats) {
   if (stats.spp <= 0) {
@@ -98,15 +114,33 @@ static bool isWorthWriting(const RenderArguments& a, const RenderStats& stats) {
   return false;
 }
 
+static void writeOutputs(const RenderArguments& a, const RenderResult& result, const FilmSettings& film,
+                         const Layers& layers, RunStats& stats) {
+  const auto start = std::chrono::steady_clock::now();
+  if (endsWith(a.output, ".png"))
+    writePreview(a.output, result.image, a.exposure);
+  else
+    writeLayers(a.output, result.image, film, layers, statsMetadata(stats));
+  if (!a.png.empty()) writePreview(a.png, result.image, a.exposure);
+  if (!a.recordsFile.empty()) writeRecords(a.recordsFile, result.records);
+  stats.secondsWrite = secondsSince(start);
+  if (!a.tev.empty()) sendToTev(a, result.image);
+  if (!a.statsFile.empty()) writeText(a.statsFile, statsJson(stats));
+  if (a.stats) fmt::print("{}", statsTable(stats));
+  if (a.verbose) say(fmt::format("{}: written\n", a.output));
+}
+
 static int runRender(RenderArguments& a) {
   // Find out what is wrong with the command line before time is spent.
   if (a.output.empty()) a.output = std::filesystem::path(a.scene).stem().string() + ".exr";
-  const Layers layers = parseLayers(a.aov);
+  Layers layers = parseLayers(a.aov);
   const LoadOptions load = a.part.loadOptions();
   if (!a.recordsFile.empty() && a.method.integrator != "odis")
     throw UsageError("--records: only --integrator odis has a pilot to record");
   checkSaving(a);
   const Outputs outputs = a.replay.empty() ? outputsOf(a) : Outputs();
+  std::optional<Denoiser> denoiser;
+  if (a.denoise && a.replay.empty()) denoiser.emplace(a.threads);
 
   const auto start = std::chrono::steady_clock::now();
   Warnings warnings;
@@ -124,9 +158,16 @@ static int runRender(RenderArguments& a) {
 
   const InterruptScope interruptible;
   ConsoleProgress progress(a.quiet);
-  const RenderResult result = render::render(*scene, options, progress);
+  RenderResult result = render::render(*scene, options, progress);
   if (result.stats.interrupted) tellOfSaved(a);
   if (!isWorthWriting(a, result.stats)) return InterruptScope::exitCode();
+  std::optional<DenoiserError> failure;
+  if (denoiser && InterruptScope::interrupted()) {
+    say("interrupted: the image is not denoised\n");
+  } else if (denoiser) {
+    failure = denoiseImage(*denoiser, result.image, progress, stats.denoising);
+    layers.albedo = layers.normal = true;  // as the denoiser had them
+  }
 
   stats.render = result.stats;
   stats.bytesScene = scene->bytes();
@@ -135,19 +176,9 @@ static int runRender(RenderArguments& a) {
   stats.scene = a.scene;
   stats.integrator = a.method.integrator;
   stats.commandLine = a.commandLine;
-  const auto writeStart = std::chrono::steady_clock::now();
-  if (endsWith(a.output, ".png"))
-    writePreview(a.output, result.image, a.exposure);
-  else
-    writeLayers(a.output, result.image, scene->film(), layers, statsMetadata(stats));
-  if (!a.png.empty()) writePreview(a.png, result.image, a.exposure);
-  if (!a.recordsFile.empty()) writeRecords(a.recordsFile, result.records);
-  stats.secondsWrite = secondsSince(writeStart);
-  if (!a.tev.empty()) sendToTev(a, result.image);
-  if (!a.statsFile.empty()) writeText(a.statsFile, statsJson(stats));
-  if (a.stats) fmt::print("{}", statsTable(stats));
+  writeOutputs(a, result, scene->film(), layers, stats);
   if (!result.stats.interrupted) removeSaved(a);
-  if (a.verbose) say(fmt::format("{}: written\n", a.output));
+  if (failure) throw *failure;
   return InterruptScope::exitCode();
 }
 

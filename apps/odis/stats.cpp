@@ -33,6 +33,8 @@ std::string statsTable(const RunStats& stats) {
   if (r.secondsPilot > 0) row("pilot", durationText(r.secondsPilot));
   if (r.secondsBuild > 0) row("build", durationText(r.secondsBuild));
   row("render", durationText(r.secondsGuided));
+  if (!stats.denoising.denoiser.empty())
+    row("denoise", fmt::format("{}, {}", durationText(stats.denoising.seconds), stats.denoising.denoiser));
   row("write", durationText(stats.secondsWrite));
   row("samples per pixel", fmt::format("{:.4g}", r.spp));
   row("samples", fmt::format("{:.3f} M, {:.3f} M/s", double(r.samples) * 1e-6,
@@ -58,48 +60,55 @@ std::string statsTable(const RunStats& stats) {
 
 std::string statsJson(const RunStats& stats) {
   const render::RenderStats& r = stats.render;
-  const nlohmann::ordered_json json = {{"version", ODIS_VERSION_STRING},
-                                       {"commandLine", stats.commandLine},
-                                       {"scene", stats.scene},
-                                       {"integrator", stats.integrator},
-                                       {"seed", stats.seed},
-                                       {"spp", r.spp},
-                                       {"interrupted", r.interrupted},
-                                       {"seconds",
-                                        {{"load", stats.secondsLoad},
-                                         {"pilot", r.secondsPilot},
-                                         {"build", r.secondsBuild},
-                                         {"guided", r.secondsGuided},
-                                         {"write", stats.secondsWrite}}},
-                                       {"samples", r.samples},
-                                       {"rays", r.rays},
-                                       {"shadowRays", r.shadowRays},
-                                       {"pilotVertices", r.pilotVertices},
-                                       {"cells", r.cells},
-                                       {"pilotWeight", r.pilotWeight},
-                                       {"guidedCost", r.guidedCost()},
-                                       {"bytes",
-                                        {{"peak", stats.bytesPeak},
-                                         {"scene", stats.bytesScene},
-                                         {"build", r.bytesBuild},
-                                         {"lights", r.bytesLights},
-                                         {"maps", r.bytesMaps}}}};
+  nlohmann::ordered_json json = {{"version", ODIS_VERSION_STRING},
+                                 {"commandLine", stats.commandLine},
+                                 {"scene", stats.scene},
+                                 {"integrator", stats.integrator},
+                                 {"seed", stats.seed},
+                                 {"spp", r.spp},
+                                 {"interrupted", r.interrupted},
+                                 {"seconds",
+                                  {{"load", stats.secondsLoad},
+                                   {"pilot", r.secondsPilot},
+                                   {"build", r.secondsBuild},
+                                   {"guided", r.secondsGuided},
+                                   {"write", stats.secondsWrite}}},
+                                 {"samples", r.samples},
+                                 {"rays", r.rays},
+                                 {"shadowRays", r.shadowRays},
+                                 {"pilotVertices", r.pilotVertices},
+                                 {"cells", r.cells},
+                                 {"pilotWeight", r.pilotWeight},
+                                 {"guidedCost", r.guidedCost()},
+                                 {"bytes",
+                                  {{"peak", stats.bytesPeak},
+                                   {"scene", stats.bytesScene},
+                                   {"build", r.bytesBuild},
+                                   {"lights", r.bytesLights},
+                                   {"maps", r.bytesMaps}}},
+                                 {"denoising", nullptr}};
+  const Denoising& d = stats.denoising;
+  if (!d.denoiser.empty())
+    json["denoising"] = {{"denoiser", d.denoiser}, {"auxiliaries", d.auxiliaries}, {"seconds", d.seconds}};
   return json.dump(2) + "\n";
 }
 
 std::map<std::string, std::string> statsMetadata(const RunStats& stats) {
   const render::RenderStats& r = stats.render;
-  return {{"odis:version", ODIS_VERSION_STRING},
-          {"odis:commandLine", stats.commandLine},
-          {"odis:scene", stats.scene},
-          {"odis:integrator", stats.integrator},
-          {"odis:seed", std::to_string(stats.seed)},
-          {"odis:spp", fmt::format("{}", r.spp)},
-          {"odis:interrupted", r.interrupted ? "yes" : "no"},
-          {"odis:secondsLoad", fmt::format("{:.4f}", stats.secondsLoad)},
-          {"odis:secondsPilot", fmt::format("{:.4f}", r.secondsPilot)},
-          {"odis:secondsBuild", fmt::format("{:.4f}", r.secondsBuild)},
-          {"odis:secondsGuided", fmt::format("{:.4f}", r.secondsGuided)}};
+  std::map<std::string, std::string> metadata = {
+      {"odis:version", ODIS_VERSION_STRING},
+      {"odis:commandLine", stats.commandLine},
+      {"odis:scene", stats.scene},
+      {"odis:integrator", stats.integrator},
+      {"odis:seed", std::to_string(stats.seed)},
+      {"odis:spp", fmt::format("{}", r.spp)},
+      {"odis:interrupted", r.interrupted ? "yes" : "no"},
+      {"odis:secondsLoad", fmt::format("{:.4f}", stats.secondsLoad)},
+      {"odis:secondsPilot", fmt::format("{:.4f}", r.secondsPilot)},
+      {"odis:secondsBuild", fmt::format("{:.4f}", r.secondsBuild)},
+      {"odis:secondsGuided", fmt::format("{:.4f}", r.secondsGuided)}};
+  metadata.merge(denoisingMetadata(stats.denoising));
+  return metadata;
 }
 
 }  // namespace odis::app

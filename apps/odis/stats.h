@@ -4,12 +4,14 @@
 #include <map>
 #include <string>
 
+#include "denoising.h"
 #include "render/integrators/render.h"
 
 namespace odis::app {
 
 struct RunStats {
   render::RenderStats render;
+  Denoising denoising;
   double secondsLoad = 0, secondsWrite = 0;
   uint64_t bytesScene = 0, bytesPeak = 0;
   uint64_t seed = 0;

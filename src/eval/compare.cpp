@@ -39,7 +39,8 @@ std::vector<TimePoint> timesOf(const std::vector<Measurement>& measurements, con
                                const std::string& method) {
   std::map<int, std::vector<double>> bySpp;
   for (const Measurement& m : measurements)
-    if (m.scene == scene && m.method == method && !m.equalTime) bySpp[m.spp].push_back(m.seconds);
+    if (m.scene == scene && m.method == method && !m.equalTime && !m.denoised)
+      bySpp[m.spp].push_back(m.seconds);
   std::vector<TimePoint> points;
   for (const auto& [spp, seconds] : bySpp) points.push_back({double(spp), median(seconds)});
   return points;
@@ -51,9 +52,9 @@ bool compareAtEqualSamples(const CompareSettings& settings, SceneRun& run, const
   for (int seed = 0; seed < settings.seeds; ++seed)
     for (const int spp : settings.spp)
       for (const Method& method : settings.methods) {
-        Measurement measurement = run.measure(method, {spp, spp, false}, uint64_t(seed));
+        const std::vector<Measurement> measured = run.measure(method, {spp, spp, false}, uint64_t(seed));
         if (progress.cancelled()) return false;
-        results.push_back(std::move(measurement));
+        results.insert(results.end(), measured.begin(), measured.end());
       }
   return true;
 }
@@ -69,9 +70,10 @@ bool compareAtEqualTime(const CompareSettings& settings, SceneRun& run, const re
     for (size_t i = 0; i < settings.spp.size(); ++i)
       for (size_t method = 1; method < settings.methods.size(); ++method) {
         const Budget budget{settings.spp[i], samplesInTime(taken[method], allowed[i].seconds), true};
-        Measurement measurement = run.measure(settings.methods[method], budget, uint64_t(seed));
+        const std::vector<Measurement> measured =
+            run.measure(settings.methods[method], budget, uint64_t(seed));
         if (progress.cancelled()) return false;
-        results.push_back(std::move(measurement));
+        results.insert(results.end(), measured.begin(), measured.end());
       }
   return true;
 }

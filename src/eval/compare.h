@@ -3,11 +3,13 @@
 #pragma once
 
 #include <map>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "eval/measurement.h"
+#include "render/denoise/denoiser.h"
 #include "render/integrators/render.h"
 
 namespace odis::eval {
@@ -25,6 +27,9 @@ struct CompareSettings {
   int seeds = 8;                // 0 .. seeds - 1
   std::vector<int> spp{4};      // ascending
   bool equalTime = false;       // the other methods also with what fits in the first one's time
+  // Every image is measured denoised as well; null: none is. All methods share albedo and normals: those of
+  // plain path tracing with as many samples and the same seed.
+  std::shared_ptr<const render::Denoiser> denoiser;
   int referenceSpp = 1024;
   std::string reference;                 // an EXR file to use instead, "" for none; for one scene
   std::optional<int> maxDepth, rrDepth;  // replace the scene's
@@ -45,7 +50,7 @@ struct SceneRecord {
 
 struct Comparison {
   std::vector<SceneRecord> scenes;
-  // In the order scene, seed, samples, method; then, scene by scene, those at equal time.
+  // In the order scene, seed, samples, method, denoised; then, scene by scene, those at equal time.
   std::vector<Measurement> measurements;
 };
 

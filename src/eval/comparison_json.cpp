@@ -38,6 +38,7 @@ static Json toJson(const ComparisonRow& row) {
                {"method", row.method},
                {"spp", row.spp},
                {"equalTime", row.equalTime},
+               {"denoised", row.denoised},
                {"seeds", row.seeds},
                {"samples", row.samples},
                {"errorRatio", toJson(row.errorRatio)},
@@ -52,6 +53,7 @@ static Json toJson(const ComparisonRow& row) {
                {"smape", row.error.smape},
                {"mse", row.error.mse},
                {"flip", row.error.flip},
+               {"ssim", row.error.ssim},
                {"nonFinitePixels", row.error.nonFinitePixels},
                {"seconds", row.seconds},
                {"cpuSeconds", row.cpuSeconds},
@@ -83,6 +85,8 @@ Json comparisonJson(const Comparison& comparison, const std::vector<ComparisonRo
   json["version"] = ODIS_VERSION_STRING;
   json["command"] = provenance.command;
   json["machine"] = provenance.machine;
+  json["denoiser"] = nullptr;
+  if (provenance.denoiser) json["denoiser"] = *provenance.denoiser;
   json["error"] = "ratios: relMSE without the worst 0.1 % of the pixels, median over seeds";
   json["intervals"] = fmt::format("[value, low, high]: {:.0f} %, bootstrap over seeds, {} resamples",
                                   100 * kConfidence, kResamples);

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -12,8 +13,9 @@ namespace odis::eval {
 
 // How a comparison was made, in words.
 struct Provenance {
-  std::string command;  // the whole command line
-  std::string machine;  // what the times belong to
+  std::string command;                       // the whole command line
+  std::string machine;                       // what the times belong to
+  std::optional<std::string> denoiser = {};  // with its version, where images are denoised as well
 };
 
 // The processor's name and how many threads of it are there, as far as the system tells.

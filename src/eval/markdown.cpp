@@ -57,41 +57,60 @@ std::vector<std::string> rowCells(const ComparisonRow& row) {
       row.equalTime ? fmt::format("{:.3g} in time of {}", row.samples, row.spp) : fmt::format("{}", row.spp);
   std::vector<std::string> cells{row.scene, row.method, samples};
   if (row.isMean())
-    cells.insert(cells.end(), {"", "", "", ""});
+    cells.insert(cells.end(), {"", "", "", "", ""});
   else
-    cells.insert(cells.end(),
-                 {fmt::format("{:.3g}", row.error.trimmedRelMse), fmt::format("{:.3f}", row.error.flip),
-                  fmt::format("{:.2f}", row.seconds), fmt::format("{:.1f}", row.rays * 1e-6)});
+    cells.insert(cells.end(), {fmt::format("{:.3g}", row.error.trimmedRelMse),
+                               fmt::format("{:.3f}", row.error.flip), fmt::format("{:.3f}", row.error.ssim),
+                               fmt::format("{:.2f}", row.seconds), fmt::format("{:.1f}", row.rays * 1e-6)});
   cells.insert(cells.end(), {intervalText(row.errorRatio), intervalText(row.errorTimeRatio),
                              intervalText(row.errorRaysRatio), neededText(row.needed)});
   return cells;
 }
 
+// What of the smallest error of a scene is its reference's own, of images as rendered or denoised.
+std::string shareText(const SceneRecord& scene, const std::vector<ComparisonRow>& rows, bool denoised) {
+  double smallest = std::numeric_limits<double>::infinity();
+  for (const ComparisonRow& row : rows)
+    if (row.scene == scene.name && row.denoised == denoised)
+      smallest = std::min(smallest, row.error.trimmedRelMse);
+  if (!scene.referenceError || !(smallest > 0) || std::isinf(smallest)) return "";
+  return fmt::format("{:.1f} %", 100 * scene.referenceError->trimmedRelMse / smallest);
+}
+
+bool anyDenoised(const std::vector<ComparisonRow>& rows) {
+  return std::any_of(rows.begin(), rows.end(), [](const ComparisonRow& row) { return row.denoised; });
+}
+
 std::string referencesTable(const std::vector<ComparisonRow>& rows, const std::vector<SceneRecord>& scenes) {
+  const bool denoised = anyDenoised(rows);
   std::vector<std::vector<std::string>> cells{{"reference of", "its own error", "of the smallest error"}};
+  if (denoised) cells.front().push_back("of the smallest, denoised");
   for (const SceneRecord& scene : scenes) {
-    double smallest = std::numeric_limits<double>::infinity();
-    for (const ComparisonRow& row : rows)
-      if (row.scene == scene.name) smallest = std::min(smallest, row.error.trimmedRelMse);
-    if (!scene.referenceError)
-      cells.push_back({scene.name, "not known", ""});
-    else
-      cells.push_back({scene.name, fmt::format("{:.2g}", scene.referenceError->trimmedRelMse),
-                       smallest > 0
-                           ? fmt::format("{:.1f} %", 100 * scene.referenceError->trimmedRelMse / smallest)
-                           : ""});
+    const std::string own =
+        scene.referenceError ? fmt::format("{:.2g}", scene.referenceError->trimmedRelMse) : "not known";
+    cells.push_back({scene.name, own, shareText(scene, rows, false)});
+    if (denoised) cells.back().push_back(shareText(scene, rows, true));
   }
   return layOut(cells, 1);
+}
+
+// Of the images as rendered, or denoised.
+std::string rowsTable(const std::vector<ComparisonRow>& rows, bool denoised) {
+  const std::string needed = rows.empty() ? "first method needs" : rows.front().method + " needs";
+  std::vector<std::vector<std::string>> cells{{"scene", "method", "spp", "error", "FLIP", "SSIM", "seconds",
+                                               "Mrays", "error ratio", "error x time", "error x rays",
+                                               needed}};
+  for (const ComparisonRow& row : rows)
+    if (row.denoised == denoised) cells.push_back(rowCells(row));
+  return layOut(cells, 2);
 }
 
 }  // namespace
 
 std::string markdownTables(const std::vector<ComparisonRow>& rows, const std::vector<SceneRecord>& scenes) {
-  const std::string needed = rows.empty() ? "first method needs" : rows.front().method + " needs";
-  std::vector<std::vector<std::string>> cells{{"scene", "method", "spp", "error", "FLIP", "seconds", "Mrays",
-                                               "error ratio", "error x time", "error x rays", needed}};
-  for (const ComparisonRow& row : rows) cells.push_back(rowCells(row));
-  return layOut(cells, 2) + "\n" + referencesTable(rows, scenes);
+  std::string text = rowsTable(rows, false) + "\n";
+  if (anyDenoised(rows)) text += "The same images denoised:\n\n" + rowsTable(rows, true) + "\n";
+  return text + referencesTable(rows, scenes);
 }
 
 }  // namespace odis::eval

@@ -7,6 +7,7 @@
 
 #include "eval/exposure.h"
 #include "eval/flip.h"
+#include "eval/ssim.h"
 
 namespace odis::eval {
 
@@ -109,6 +110,9 @@ ErrorMetrics compareImages(const ColorImage& image, const ColorImage& reference)
   result.smape /= count;
   result.trimmedRelMse = trimmedMean(relative, kTrimmedShare);
   for (const float value : displayedFlip(image, reference)) result.flip += value / count;
+  const double exposure = autoExposure(reference);
+  for (const float value : ssimMap(displayed(image, exposure), displayed(reference, exposure)))
+    result.ssim += value / count;
   return result;
 }
 

@@ -12,6 +12,7 @@
 //   flip            mean of LDR-FLIP (flip.h) at 67 pixels per degree, of both images as `displayed` shows
 //                   them (exposure.h) at the exposure of the reference; in [0, 1], pixels that are not
 //                   finite count 1
+//   ssim            mean of SSIM (ssim.h) of the same two images; 1 for the reference itself
 #pragma once
 
 #include <cstdint>
@@ -26,7 +27,7 @@ inline constexpr double kSmapeEpsilon = 0.01;
 inline constexpr double kTrimmedShare = 0.001;
 
 struct ErrorMetrics {
-  double mse = 0, relMse = 0, trimmedRelMse = 0, smape = 0, flip = 0;
+  double mse = 0, relMse = 0, trimmedRelMse = 0, smape = 0, flip = 0, ssim = 0;
   uint64_t nonFinitePixels = 0;  // of the image
 };
 

@@ -51,6 +51,7 @@ Json addPicture(PictureStore& store, const ComparisonRow& row, const ColorImage&
   return {{"method", row.method},
           {"spp", row.spp},
           {"equalTime", row.equalTime},
+          {"denoised", row.denoised},
           {"id", store.add(encodePicture(image, view.exposure))},
           {"flip", store.add(encodeMap(displayedFlip(image, view.reference), image.width, image.height))}};
 }

@@ -21,6 +21,7 @@ static Measurement fromJson(const nlohmann::json& json) {
   m.method = json.at("method");
   m.spp = json.at("spp");
   m.equalTime = json.at("equalTime");
+  m.denoised = json.at("denoised");
   m.seed = json.at("seed");
   m.key = json.at("key");
   m.error.mse = numberOrInfinity(json.at("mse"));
@@ -28,6 +29,7 @@ static Measurement fromJson(const nlohmann::json& json) {
   m.error.trimmedRelMse = numberOrInfinity(json.at("trimmedRelMse"));
   m.error.smape = numberOrInfinity(json.at("smape"));
   m.error.flip = json.at("flip");
+  m.error.ssim = json.at("ssim");
   m.error.nonFinitePixels = json.at("nonFinitePixels");
   m.seconds = json.at("seconds");
   m.cpuSeconds = json.at("cpuSeconds");
@@ -42,6 +44,7 @@ nlohmann::ordered_json measurementJson(const Measurement& m) {
           {"method", m.method},
           {"spp", m.spp},
           {"equalTime", m.equalTime},
+          {"denoised", m.denoised},
           {"seed", m.seed},
           {"samples", m.samples},
           {"relMse", m.error.relMse},
@@ -49,6 +52,7 @@ nlohmann::ordered_json measurementJson(const Measurement& m) {
           {"smape", m.error.smape},
           {"mse", m.error.mse},
           {"flip", m.error.flip},
+          {"ssim", m.error.ssim},
           {"nonFinitePixels", m.error.nonFinitePixels},
           {"seconds", m.seconds},
           {"cpuSeconds", m.cpuSeconds},

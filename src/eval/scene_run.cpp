@@ -2,11 +2,13 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <ctime>
 #include <filesystem>
 
 #include "eval/scene_hash.h"
 #include "odis_version.h"
+#include "render/integrators/job.h"
 
 namespace odis::eval {
 
@@ -61,7 +63,69 @@ std::string SceneRun::keyOf(const Method& method, const RenderOptions& options, 
                                       budget.equalTime ? fmt::format("time of {}", budget.spp) : "")));
 }
 
-Measurement SceneRun::measure(const Method& method, const Budget& budget, uint64_t seed) {
+std::string SceneRun::denoisedKey(const std::string& key) const {
+  return hexText(hashText(key + " denoised by " + m_settings.denoiser->name()));
+}
+
+// Deeper than what is seen in a few mirrors there is nothing for the denoiser.
+static constexpr int kFeatureDepth = 9;
+
+void SceneRun::renderFeatures(const RenderOptions& options) {
+  const std::pair wanted(options.spp, options.seed);
+  if (m_featuresOf == wanted) return;
+  RenderOptions plain;
+  plain.integrator = IntegratorKind::path;
+  plain.spp = options.spp;
+  plain.seed = options.seed;
+  plain.threads = options.threads;
+  plain.maxDepth = options.maxDepth < 0 ? kFeatureDepth : std::min(options.maxDepth, kFeatureDepth);
+  plain.rrDepth = options.rrDepth;
+  plain.features = true;
+  m_features = render::render(*m_scene, plain, m_observer.progress()).image;
+  m_featuresOf = wanted;
+}
+
+// The measurement of the same image after the denoiser; nothing if that was cancelled.
+std::optional<Measurement> SceneRun::measureDenoised(Measurement m, const Method& method,
+                                                     const RenderedImage& noisy) {
+  const std::clock_t start = std::clock();
+  const Stopwatch watch;
+  const DenoiserInput input{noisy.width, noisy.height, noisy.color, m_features.albedo, m_features.normal};
+  auto colors = m_settings.denoiser->denoise(input, kDefaultAuxiliaries, m_observer.progress());
+  if (!colors) return {};
+  m.seconds += watch.seconds();
+  m.cpuSeconds += double(std::clock() - start) / CLOCKS_PER_SEC;
+  m.denoised = true;
+  m.key = denoisedKey(m.key);
+  RenderedImage image = noisy;
+  image.color = std::move(*colors);
+  return measureImage(m, method, image);
+}
+
+std::optional<std::vector<Measurement>> SceneRun::known(const Method& method, const std::string& key,
+                                                        uint64_t seed) const {
+  std::vector<std::string> keys{key};
+  if (m_settings.denoiser) keys.push_back(denoisedKey(key));
+  std::vector<Measurement> found;
+  for (const std::string& each : keys) {
+    const Measurement* known = m_log.find(each);
+    if (!known || (seed == 0 && !fs::exists(m_settings.folder + "/" + known->image))) return {};
+    found.push_back(*known);
+    found.back().method = method.name;  // the same options may go by another name today
+  }
+  return found;
+}
+
+Measurement SceneRun::measureImage(const Measurement& what, const Method& method,
+                                   const RenderedImage& image) {
+  Measurement m = what;
+  m.error = compareImages({image.width, image.height, image.color}, m_reference.image);
+  if (m.seed == 0) m.image = writeImage(m, method, image);
+  m_log.add(m);
+  return m;
+}
+
+std::vector<Measurement> SceneRun::measure(const Method& method, const Budget& budget, uint64_t seed) {
   RenderOptions options = method.options;
   options.spp = budget.samples;
   options.seed = seed;
@@ -70,12 +134,9 @@ Measurement SceneRun::measure(const Method& method, const Budget& budget, uint64
   const std::string key = keyOf(method, options, budget);
   // What takes a given time is planned as if it were the first method.
   const std::string& planned = budget.equalTime ? m_settings.methods.front().name : method.name;
-  const Measurement* known = m_log.find(key);
-  if (known && (seed != 0 || fs::exists(m_settings.folder + "/" + known->image))) {
-    m_schedule.finish(m_record.name, planned, budget.spp, known->seconds);
-    Measurement m = *known;
-    m.method = method.name;  // the same options may go by another name today
-    return m;
+  if (auto known = this->known(method, key, seed)) {
+    m_schedule.finish(m_record.name, planned, budget.spp, known->back().seconds);
+    return *known;
   }
 
   m_observer.start(fmt::format("{}: {}, {} spp, seed {}", m_record.name, method.name, budget.samples, seed),
@@ -83,6 +144,7 @@ Measurement SceneRun::measure(const Method& method, const Budget& budget, uint64
   Measurement m;
   const std::clock_t start = std::clock();  // of all threads
   const RenderResult result = render::render(*m_scene, options, m_observer.progress());
+  if (result.stats.interrupted) return {};
   m.cpuSeconds = double(std::clock() - start) / CLOCKS_PER_SEC;
   m.scene = m_record.name;
   m.method = method.name;
@@ -90,25 +152,31 @@ Measurement SceneRun::measure(const Method& method, const Budget& budget, uint64
   m.equalTime = budget.equalTime;
   m.seed = seed;
   m.key = key;
-  if (result.stats.interrupted) return m;
-  m.error = compareImages({result.image.width, result.image.height, result.image.color}, m_reference.image);
   m.seconds = result.stats.secondsPilot + result.stats.secondsBuild + result.stats.secondsGuided;
   m.samples = result.stats.spp;
   m.rays = result.stats.rays + result.stats.shadowRays;
-  if (seed == 0) m.image = writeImage(m, method, result.image);
-  m_log.add(m);
-  m_schedule.finish(m_record.name, planned, budget.spp, m.seconds);
-  return m;
+  std::vector<Measurement> measured{measureImage(m, method, result.image)};
+  if (m_settings.denoiser) {
+    renderFeatures(options);
+    const auto denoised = measureDenoised(m, method, result.image);
+    if (!denoised) return {};
+    measured.push_back(*denoised);
+  }
+  m_schedule.finish(m_record.name, planned, budget.spp, measured.back().seconds);
+  return measured;
 }
 
 std::string SceneRun::writeImage(const Measurement& m, const Method& method,
                                  const RenderedImage& frame) const {
   fs::create_directories(m_settings.folder + "/images");
   // The key keeps images of the same name but other settings apart.
-  const std::string name = fmt::format("images/{}-{}-{}{}-{}.exr", m.scene, m.method, m.spp,
-                                       m.equalTime ? "-time" : "", m.key.substr(0, 8));
-  writeColor(m_settings.folder + "/" + name, frame, m_scene->film().width, m_scene->film().height,
-             {{"odis:method", method.text}, {"odis:version", ODIS_VERSION_STRING}});
+  const std::string name =
+      fmt::format("images/{}-{}-{}{}{}-{}.exr", m.scene, m.method, m.spp, m.equalTime ? "-time" : "",
+                  m.denoised ? "-denoised" : "", m.key.substr(0, 8));
+  std::map<std::string, std::string> metadata{{"odis:method", method.text},
+                                              {"odis:version", ODIS_VERSION_STRING}};
+  if (m.denoised) metadata["odis:denoiser"] = m_settings.denoiser->name();
+  writeColor(m_settings.folder + "/" + name, frame, m_scene->film().width, m_scene->film().height, metadata);
   return name;
 }
 

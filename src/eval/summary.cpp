@@ -57,6 +57,7 @@ void fillRow(Entry& entry) {
   row.method = first.method;
   row.spp = first.spp;
   row.equalTime = first.equalTime;
+  row.denoised = first.denoised;
   row.seeds = int(entry.runs.size());
   const auto medianBy = [&](const Field& field) { return medianOf(entry.runs, field); };
   row.error.mse = medianBy([](const Measurement& m) { return m.error.mse; });
@@ -64,6 +65,7 @@ void fillRow(Entry& entry) {
   row.error.trimmedRelMse = medianBy(errorOf);
   row.error.smape = medianBy([](const Measurement& m) { return m.error.smape; });
   row.error.flip = medianBy([](const Measurement& m) { return m.error.flip; });
+  row.error.ssim = medianBy([](const Measurement& m) { return m.error.ssim; });
   for (const Measurement* run : entry.runs) row.error.nonFinitePixels += run->error.nonFinitePixels;
   row.seconds = medianBy([](const Measurement& m) { return m.seconds; });
   row.cpuSeconds = medianBy([](const Measurement& m) { return m.cpuSeconds; });
@@ -83,7 +85,7 @@ void fillRatios(Entry& entry, const Entry& base) {
 }
 
 bool sameKind(const ComparisonRow& a, const ComparisonRow& b) {
-  return a.method == b.method && a.spp == b.spp && a.equalTime == b.equalTime;
+  return a.method == b.method && a.spp == b.spp && a.equalTime == b.equalTime && a.denoised == b.denoised;
 }
 
 // Groups by scene, samples and method, in order of appearance.
@@ -93,7 +95,7 @@ std::vector<Entry> group(const std::vector<Measurement>& measurements) {
     auto entry = std::find_if(entries.begin(), entries.end(), [&](const Entry& known) {
       const Measurement& first = *known.runs.front();
       return first.scene == m.scene && first.method == m.method && first.spp == m.spp &&
-             first.equalTime == m.equalTime;
+             first.equalTime == m.equalTime && first.denoised == m.denoised;
     });
     if (entry == entries.end()) entry = entries.insert(entries.end(), Entry());
     entry->runs.push_back(&m);
@@ -122,6 +124,7 @@ ComparisonRow meanOf(const std::vector<const Entry*>& entries) {
   row.method = first.method;
   row.spp = first.spp;
   row.equalTime = first.equalTime;
+  row.denoised = first.denoised;
   row.seeds = first.seeds;
   row.errorRatio = geometricMean(entries, &ComparisonRow::errorRatio, &Entry::error);
   row.errorTimeRatio = geometricMean(entries, &ComparisonRow::errorTimeRatio, &Entry::errorTime);
@@ -155,7 +158,9 @@ std::vector<ComparisonRow> summarize(const std::vector<Measurement>& measurement
     std::vector<CurvePoint> curve;
     const Entry* base = nullptr;
     for (const Entry& other : entries) {
-      if (other.row.scene != entry.row.scene || other.row.method != first || other.row.equalTime) continue;
+      if (other.row.scene != entry.row.scene || other.row.method != first || other.row.equalTime ||
+          other.row.denoised != entry.row.denoised)
+        continue;
       curve.push_back({double(other.row.spp), other.row.error.trimmedRelMse});
       if (other.row.spp == entry.row.spp) base = &other;
     }

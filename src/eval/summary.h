@@ -11,11 +11,12 @@
 namespace odis::eval {
 
 // A method on a scene with a number of samples: medians over its seeds. Ratios are to the first method with
-// the same `spp` on the same scene; "error" there is the 0.1 %-trimmed relMSE.
+// the same `spp` on the same scene, denoised or not likewise; "error" there is the 0.1 %-trimmed relMSE.
 struct ComparisonRow {
   std::string scene, method;
   int spp = 0;
   bool equalTime = false;
+  bool denoised = false;
   int seeds = 0;
   ErrorMetrics error;
   double seconds = 0, cpuSeconds = 0, rays = 0, samples = 0;

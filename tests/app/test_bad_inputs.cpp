@@ -43,7 +43,8 @@ void makeFiles(const json& given, const TemporaryFolder& folder) {
   if (given.contains("files"))
     for (const auto& [name, content] : given.at("files").items()) write(name, contentOf(content));
   if (!given.contains("setup")) return;
-  const ProcessEnd end = runWithLimits(folder.path(""), given.at("setup"), {});
+  const ProcessEnd end =
+      runWithLimits(folder.path(""), "ODIS='" ODIS_COMMAND "'; " + given.at("setup").get<std::string>(), {});
   if (end.code != 0) throw std::runtime_error("the setup fails: " + end.text);
 }
 

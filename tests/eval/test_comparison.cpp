@@ -34,6 +34,8 @@ TEST(ResultsLog, RemembersAndSkipsBrokenLines) {
   m.key = "k";
   m.error.trimmedRelMse = 0.5;
   m.error.flip = 0.25;
+  m.error.ssim = 0.75;
+  m.denoised = true;
   m.error.relMse = INFINITY;
   ResultsLog(path, false).add(m);
   std::ofstream(path, std::ios::app) << "{\"scene\":\"a\",\"meth";
@@ -46,6 +48,8 @@ TEST(ResultsLog, RemembersAndSkipsBrokenLines) {
   EXPECT_EQ(log.find("k")->samples, 12);
   EXPECT_EQ(log.find("k")->cpuSeconds, 3);
   EXPECT_EQ(log.find("k")->error.flip, 0.25);
+  EXPECT_EQ(log.find("k")->error.ssim, 0.75);
+  EXPECT_TRUE(log.find("k")->denoised);
   EXPECT_EQ(log.find("k")->error.trimmedRelMse, 0.5);
   EXPECT_TRUE(std::isinf(log.find("k")->error.relMse));
   EXPECT_EQ(log.find("other"), nullptr);

@@ -96,6 +96,32 @@ TEST(SamplesNeeded, FollowsTheCurveInLogarithms) {
   EXPECT_EQ(samplesNeeded(curve, 1 / 3.0).samples, 4);
 }
 
+// Denoised images are compared with denoised ones of the first method only, and have a curve of their own.
+TEST(Summary, KeepsDenoisedApart) {
+  std::vector<Measurement> measurements;
+  for (const bool denoised : {false, true})
+    for (const int spp : {4, 16})
+      for (const char* method : {"path", "odis"}) {
+        const double error = (denoised ? 0.1 : 1.0) * 4 / spp * (method[0] == 'o' ? 0.5 : 1);
+        measurements.push_back(run("a", method, spp, 0, denoised ? std::sqrt(error) : error));
+        measurements.back().denoised = denoised;
+      }
+  const std::vector<ComparisonRow> rows = summarize(measurements);
+  ASSERT_EQ(rows.size(), 8u);
+  EXPECT_FALSE(rows[1].denoised);
+  EXPECT_NEAR(rows[1].errorRatio.value, 0.5, 1e-12);
+  EXPECT_NEAR(rows[1].needed.samples, 8, 1e-9);
+  EXPECT_TRUE(rows[5].denoised);
+  EXPECT_NEAR(rows[5].errorRatio.value, std::sqrt(0.5), 1e-12);
+  EXPECT_EQ(rows[5].needed.where, SamplesNeeded::within);
+  EXPECT_NEAR(rows[5].needed.samples, 8, 1e-9);
+  SceneRecord scene;
+  scene.name = "a";
+  const std::string text = markdownTables(rows, {scene});
+  EXPECT_LT(text.find("0.500"), text.find("The same images denoised:"));
+  EXPECT_NE(text.find("0.707", text.find("The same images denoised:")), std::string::npos) << text;
+}
+
 // Where noise lets the curve rise again, its first way down counts.
 TEST(SamplesNeeded, TakesTheLeastOfSeveral) {
   const std::vector<CurvePoint> curve{{1, 1}, {4, 0.25}, {16, 0.5}, {64, 0.1}};

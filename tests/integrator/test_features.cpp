@@ -102,6 +102,32 @@ TEST(GuideFeatures, DifferWhereLightDoes) {
   EXPECT_LT(*std::min_element(frame.guideBsdfFraction.begin(), frame.guideBsdfFraction.end()), 0.9f);
 }
 
+// A white ball before the sky: albedo and normal fade at its edge as colours do.
+TEST(Features, FadeWhereSomeSamplesMeetNothing) {
+  const auto scene =
+      test::loadScene(R"(<sensor type="perspective"><film type="hdrfilm"><integer name="width" value="24"/>
+      <integer name="height" value="24"/><rfilter type="box"/></film></sensor>
+    <shape type="sphere"><point name="center" x="0" y="0" z="4"/>
+      <bsdf type="diffuse"><rgb name="reflectance" value="0.8"/></bsdf></shape>
+    <emitter type="constant"/>)");
+  RenderOptions options;
+  options.integrator = IntegratorKind::path;
+  options.spp = 16;
+  options.features = true;
+  const RenderedImage image = test::renderScene(*scene, options).image;
+  int edges = 0;
+  for (size_t i = 0; i < image.albedo.size(); ++i) {
+    const float covered = image.albedo[i].x / 0.8f;
+    EXPECT_NEAR(covered * 16, std::round(covered * 16), 1e-3f);
+    EXPECT_NEAR(length(image.normal[i]), covered, 1e-3f);
+    EXPECT_EQ(image.depth[i] > 3 - 1e-3f, covered > 0) << image.depth[i];
+    edges += covered > 0 && covered < 0.99f;
+  }
+  EXPECT_GT(edges, 10);
+  EXPECT_NEAR(image.albedo[12 * 24 + 12].x, 0.8f, 1e-5f);
+  EXPECT_EQ(image.albedo[0].x, 0);
+}
+
 // What is made only when asked for changes nothing else.
 TEST(GuideFeatures, AreMissingUnlessAskedFor) {
   const auto scene = test::loadScene(test::indirectRoom(16));

@@ -9,12 +9,15 @@ function colorOf(method) {
 }
 const labelOf = name => name === kReference ? 'reference' : name;
 const isMean = row => !('trimmedRelMse' in row);
-const rowsOf = scene => data.rows.filter(row => row.scene === scene.name && !isMean(row));
+// Of the images as rendered, or denoised, whichever the page shows.
+const rowsShown = () => data.rows.filter(row => row.denoised === state.denoised);
+const rowsOf = scene => rowsShown().filter(row => row.scene === scene.name && !isMean(row));
 
 // ---- What is looked at.
 
 const state = {
   scene: data.scenes[0],
+  denoised: false,
   samples: null,              // {spp, equalTime} of the pictures
   shown: null, before: null,  // methods: the one that is shown, and the one before it
   other: kReference,          // beyond the slider
@@ -28,7 +31,7 @@ const state = {
 function pictures() {
   const {spp, equalTime} = state.samples;
   return data.methods.flatMap((method, i) => {
-    const found = state.scene.pictures.find(p => p.method === method.name && p.spp === spp && p.equalTime === (equalTime && i > 0));
+    const found = state.scene.pictures.find(p => p.method === method.name && p.spp === spp && p.equalTime === (equalTime && i > 0) && p.denoised === state.denoised);
     return found ? [found] : [];
   });
 }
@@ -131,7 +134,7 @@ function choosePicture(name) {
 function refreshControls() {
   const sets = [];
   for (const p of state.scene.pictures)
-    if (!sets.some(s => s.spp === p.spp && s.equalTime === p.equalTime)) sets.push({spp: p.spp, equalTime: p.equalTime});
+    if (p.denoised === state.denoised && !sets.some(s => s.spp === p.spp && s.equalTime === p.equalTime)) sets.push({spp: p.spp, equalTime: p.equalTime});
   sets.sort((a, b) => a.equalTime - b.equalTime || a.spp - b.spp);
   const same = set => state.samples && set.spp === state.samples.spp && set.equalTime === state.samples.equalTime;
   state.samples = sets.find(same) || sets[0];
@@ -171,6 +174,7 @@ function onKey(event) {
   else if (event.key === ' ' && event.target.tagName !== 'BUTTON') choosePicture(state.before);
   else if (event.key === 's' || event.key === 'S') next('mode', ['flip', 'slider']);
   else if (event.key === 'e' || event.key === 'E') next('view', ['image', 'error', 'flip']);
+  else if ((event.key === 'd' || event.key === 'D') && data.denoiser) chooseDenoised(!state.denoised);
   else if (event.key === '+' || event.key === '=') setExposure(state.stops + 0.5);
   else if (event.key === '-') setExposure(state.stops - 0.5);
   else if (event.key === '0') { viewer.fit(); setExposure(0); }
@@ -188,7 +192,7 @@ function refreshCharts() {
   const seriesBy = x => data.methods.map(method => ({
     name: method.name, color: colorOf(method.name),
     points: rows.filter(r => r.method === method.name).map(r => {
-      const errors = data.runs.filter(run => run.scene === r.scene && run.method === r.method && run.spp === r.spp && run.equalTime === r.equalTime).map(run => run[metric]);
+      const errors = data.runs.filter(run => run.scene === r.scene && run.method === r.method && run.spp === r.spp && run.equalTime === r.equalTime && run.denoised === r.denoised).map(run => run[metric]);
       return {x: x(r), y: r[metric], low: Math.min(...errors), high: Math.max(...errors), hollow: r.equalTime,
         title: `${r.method}, ${samplesText(r)} spp: ${label} ${number(r[metric])} (${number(Math.min(...errors))} to ${number(Math.max(...errors))} over ${r.seeds} seeds), ${number(r.seconds)} s`};
     })}));
@@ -212,6 +216,23 @@ function chooseScene(scene) {
   refreshPicture();
   refreshCharts();
   drawTable(byId('scene-table'), columnsOf({figures: true}), rowsOf(scene));
+}
+
+function drawFigures() {
+  drawTable(byId('all-table'), columnsOf({scene: true, figures: true}), rowsShown().filter(r => !isMean(r)));
+}
+
+// Shows everything of the images as rendered, or denoised.
+function chooseDenoised(denoised) {
+  state.denoised = denoised;
+  byId('denoised-choice').hidden = !data.denoiser;
+  drawButtons(byId('denoised'), [{value: false, text: 'as rendered'}, {value: true, text: 'denoised', title: `key D; ${data.denoiser}`}], denoised, chooseDenoised);
+  drawOverview();
+  drawFigures();
+  refreshControls();
+  refreshPicture();
+  refreshCharts();
+  drawTable(byId('scene-table'), columnsOf({figures: true}), rowsOf(state.scene));
 }
 
 function drawScenes() {
@@ -239,10 +260,9 @@ function start() {
   byId('exposure').oninput = event => setExposure(Number(event.target.value));
   byId('exposure').ondblclick = () => setExposure(0);
   document.addEventListener('keydown', onKey);
-  drawOverview();
   drawProvenance();
-  drawTable(byId('all-table'), columnsOf({scene: true, figures: true}), data.rows.filter(r => !isMean(r)));
   drawScenes();
   chooseScene(data.scenes[0]);
+  chooseDenoised(false);
 }
 start();

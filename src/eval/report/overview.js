@@ -8,10 +8,10 @@ function markOf(row, key) {
 }
 
 function drawOverview() {
-  const means = data.rows.filter(isMean), several = means.length > 0;
+  const means = rowsShown().filter(isMean), several = means.length > 0;
   const base = several ? means : rowsOf(data.scenes[0]);
   const sets = [];
-  for (const row of data.rows)
+  for (const row of rowsShown())
     if (!sets.some(s => s.spp === row.spp && s.equalTime === row.equalTime)) sets.push({spp: row.spp, equalTime: row.equalTime});
   sets.sort((a, b) => a.equalTime - b.equalTime || a.spp - b.spp);
   const set = sets[overview.samples] || sets[0];
@@ -37,9 +37,9 @@ function drawOverview() {
 }
 
 function drawProvenance() {
-  const smallest = scene => Math.min(...rowsOf(scene).map(r => r.trimmedRelMse).filter(Number.isFinite));
+  const smallest = scene => Math.min(...data.rows.filter(r => r.scene === scene.name && !r.denoised).map(r => r.trimmedRelMse).filter(Number.isFinite));
   byId('provenance').innerHTML =
-    `<p>odis ${escapeHtml(data.version)}; times of ${escapeHtml(data.machine)}</p><pre>${escapeHtml(data.command)}</pre>` +
+    `<p>odis ${escapeHtml(data.version)}${data.denoiser ? `, ${escapeHtml(data.denoiser)}` : ''}; times of ${escapeHtml(data.machine)}</p><pre>${escapeHtml(data.command)}</pre>` +
     `<dl>${data.methods.map(m => `<dt>${methodHtml(m.name)}</dt><dd><code>odis render ${escapeHtml(m.options)}</code></dd>`).join('')}</dl>` +
     (data.leftOut.length ? `<p class="note">To keep the page small, pictures at ${data.leftOut.map(n => `${n} spp`).join(', ')} are not in it; they lie beside it as EXR.</p>` : '');
   drawTable(byId('reference-table'), [

@@ -68,7 +68,7 @@ function columnsOf({scene, figures}) {
     {title: 'samples', help: 'per pixel', value: r => r.spp + (r.equalTime ? 0.5 : 0), html: r => escapeHtml(samplesText(r))},
     ...(figures ? [
       column('error', 'trimmedRelMse', 'relMSE without the worst 0.1 % of the pixels'), column('relMSE', 'relMse'),
-      column('SMAPE', 'smape'), column('FLIP', 'flip'), column('seconds', 'seconds', 'wall clock'),
+      column('SMAPE', 'smape'), column('FLIP', 'flip'), column('SSIM', 'ssim'), column('seconds', 'seconds', 'wall clock'),
       column('CPU s', 'cpuSeconds', 'of the process on all cores'),
       {title: 'Mrays', help: 'shadow rays included', value: r => r.rays * 1e-6}] : []),
     ratio('error ratio', 'errorRatio', `to ${first} with as many samples`),

@@ -37,8 +37,9 @@ void writeFeatures(const std::vector<FeatureSums>& sums, bool guide, RenderedIma
   const auto unit = [](const Vec3& v) { return lengthSquared(v) > 0 ? normalize(v) : Vec3(0, 0, 0); };
   for (const FeatureSums& s : sums) {
     const float scale = s.hits > 0 ? 1.0f / float(s.hits) : 0.0f;
-    image.albedo.push_back(s.albedo * scale);
-    image.normal.push_back(unit(s.normal));
+    const float coverage = s.samples > 0 ? float(s.hits) / float(s.samples) : 0.0f;
+    image.albedo.push_back(s.albedo * (scale * coverage));
+    image.normal.push_back(unit(s.normal) * coverage);
     image.geometricNormal.push_back(unit(s.geometricNormal));
     image.position.push_back(s.position * scale);
     image.depth.push_back(s.depth * scale);

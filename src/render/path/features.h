@@ -29,12 +29,11 @@ struct FeatureSums {
   Rgb albedo{0, 0, 0};
   Vec3 normal{0, 0, 0}, geometricNormal{0, 0, 0}, position{0, 0, 0};
   float depth = 0, roughness = 0;
-  uint32_t hits = 0;  // number of samples that met a surface
+  uint32_t samples = 0, hits = 0;  // number of samples, and of those that met a surface
   float bsdfFraction = 0, entropy = 0, survival = 0;
   uint32_t guided = 0;      // number of samples that found a cell
   uint32_t cell = kNoCell;  // that the last of them found
   float alpha = 0;          // filter weights of the samples that saw anything, over their survival
-  uint32_t samples = 0;     // number of all samples
 
   // Adds a sample, and its alpha times its filter weight.
   void add(const FirstHit& first, float sampleAlpha);
@@ -43,7 +42,9 @@ struct FeatureSums {
 // The entropy of a map's texels in bits: 8 for an even map, 0 if all light comes through one texel.
 float entropy(const uint16_t* texels);
 
-// Fills the image's features and its alpha with their means. Where no sample found a cell the BSDF sampling
+// Fills the image's features and its alpha with their means, features over the samples that met a surface,
+// normals made as long as 1. Albedo and normal are then scaled by the share of these samples, so that an edge
+// against the sky is as smooth as that of the colours. Where no sample found a cell the BSDF sampling
 // fraction and the survival are 1, the map has the entropy of an even one, and the cell's index is -1.
 void writeFeatures(const std::vector<FeatureSums>& sums, bool guide, RenderedImage& image);
 

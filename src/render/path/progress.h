@@ -11,9 +11,10 @@ namespace odis::render {
 class Progress {
  public:
   virtual ~Progress() = default;
-  // `done` of the stage's samples were taken by an earlier run.
-  virtual void begin(const std::string& /*stage*/, uint64_t /*totalSamples*/, uint64_t /*done*/ = 0) {}
-  virtual void advance(uint64_t /*samples*/) {}
+  // `done` of the stage's samples, or whatever `unit` names, were taken by an earlier run.
+  virtual void begin(const std::string& /*stage*/, uint64_t /*total*/, uint64_t /*done*/ = 0,
+                     const char* /*unit*/ = "samples") {}
+  virtual void advance(uint64_t /*more*/) {}
   virtual void end() {}
   // Something that was asked for can't be done, but the work goes on.
   virtual void warn(const std::string& /*message*/) {}

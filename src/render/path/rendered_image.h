@@ -11,6 +11,7 @@ namespace odis::render {
 struct RenderedImage {
   int x = 0, y = 0, width = 0, height = 0;  // the crop, in pixels of the full image
   std::vector<Rgb> color;
+  std::vector<Rgb> noisy;     // the colour before it was denoised; empty unless it was
   std::vector<Rgb> variance;  // of the pixel's mean; empty unless asked for
   std::vector<Rgb> albedo;    // features at the first non-delta vertex; empty unless asked for
   std::vector<Vec3> normal, geometricNormal, position;

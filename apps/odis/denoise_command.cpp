@@ -1,0 +1,164 @@
+// odis denoise
+#include <fmt/format.h>
+#include <CLI/CLI.hpp>
+
+#include <map>
+#include <memory>
+
+#include "command.h"
+#include "console.h"
+#include "denoising.h"
+#include "eval/denoiser_layers.h"
+#include "output.h"
+#include "validators.h"
+
+namespace odis::app {
+
+namespace {
+
+using eval::LayeredImage;
+
+struct DenoiseArguments {
+  std::string image, output, png, layer, albedo, normal, albedoLayer, normalLayer;
+  std::string auxiliaries = "prefiltered";
+  float exposure = 0;
+  int threads = 0;
+  bool quiet = false;
+};
+
+// What the denoiser takes of the files.
+struct DenoiserImages {
+  std::vector<render::Rgb> color, albedo;
+  std::vector<render::Vec3> normal;
+};
+
+using FindLayer = std::optional<std::string> (*)(const LayeredImage&);
+
+void rejectDisplayed(const std::string& path) {
+  for (const char* ending : {".png", ".jpg", ".jpeg", ".tga", ".bmp"})
+    if (endsWith(path, ending))
+      throw eval::ImageError(path +
+                             ": found an image of 8 bits, as a screen shows it; expected linear colours as "
+                             "they were rendered, in an .exr or .hdr file");
+}
+
+std::vector<render::Rgb> pixelsOf(const std::string& file, const LayeredImage& image,
+                                  const std::string& layer) {
+  try {
+    return eval::layerColor(image, layer).pixels;
+  } catch (const eval::ImageError& error) {
+    throw eval::ImageError(file + ": " + error.what());
+  }
+}
+
+void requireSameWindow(const std::string& file, const LayeredImage& image, const std::string& otherFile,
+                       const LayeredImage& other) {
+  const auto text = [](const render::ImageWindow& w) {
+    return fmt::format("{} x {} pixels at {},{}", w.width, w.height, w.x, w.y);
+  };
+  const std::string expected = text(image.window), found = text(other.window);
+  if (found != expected)
+    throw eval::ImageError(
+        fmt::format("{}: has {}, expected {} as {} has", otherFile, found, expected, file));
+}
+
+// Albedo or normals: the chosen layer, else the one that is found by its name, of a file of their own if one
+// is named. Empty if the image has none.
+std::vector<render::Rgb> auxiliary(const std::string& imageFile, const LayeredImage& image,
+                                   const std::string& file, const std::string& layer, FindLayer find) {
+  if (file.empty()) {
+    const std::optional<std::string> found = layer.empty() ? find(image) : layer;
+    return found ? pixelsOf(imageFile, image, *found) : std::vector<render::Rgb>();
+  }
+  const LayeredImage other = eval::readChannels(file);
+  requireSameWindow(imageFile, image, file, other);
+  return pixelsOf(file, other, layer.empty() ? find(other).value_or("") : layer);
+}
+
+DenoiserImages imagesOf(const DenoiseArguments& a, const LayeredImage& image) {
+  DenoiserImages images;
+  const std::string layer = a.layer.empty() ? eval::findColorLayer(image).value_or("") : a.layer;
+  images.color = pixelsOf(a.image, image, layer);
+  if (a.auxiliaries == "none") return images;
+  images.albedo = auxiliary(a.image, image, a.albedo, a.albedoLayer, eval::findAlbedoLayer);
+  for (const render::Rgb& n : auxiliary(a.image, image, a.normal, a.normalLayer, eval::findNormalLayer))
+    images.normal.emplace_back(n.x, n.y, n.z);
+  return images;
+}
+
+void setLayer(LayeredImage& image, const std::string& prefix, const std::vector<render::Rgb>& pixels) {
+  for (int c = 0; c < 3; ++c) {
+    std::vector<float>& plane = image.channels[prefix + "RGB"[c]];
+    plane.clear();
+    for (const render::Rgb& pixel : pixels) plane.push_back(pixel[c]);
+  }
+}
+
+int runDenoise(const DenoiseArguments& a) {
+  rejectDisplayed(a.image);
+  Outputs outputs;
+  outputs.add(a.output, {".exr", ".png"});
+  if (!a.png.empty()) outputs.add(a.png, {".png"});
+  outputs.rejectInputs({a.image, a.albedo, a.normal});
+  LayeredImage image = eval::readChannels(a.image);
+  DenoiserImages images = imagesOf(a, image);
+  const render::Denoiser denoiser(a.threads);
+  if (images.albedo.empty() && a.auxiliaries != "none" && !a.quiet)
+    say(fmt::format("warning: {}: found no albedo: denoised by its colours alone\n", a.image));
+  if (images.albedo.empty()) images.normal.clear();
+
+  static const std::map<std::string, render::Auxiliaries> kAuxiliaries{
+      {"prefiltered", render::Auxiliaries::prefiltered},
+      {"noisy", render::Auxiliaries::noisy},
+      {"none", render::Auxiliaries::none}};
+  const InterruptScope interruptible;
+  ConsoleProgress progress(a.quiet);
+  Denoising denoising;
+  const int width = image.window.width, height = image.window.height;
+  const auto colors = denoiseColors(denoiser, {width, height, images.color, images.albedo, images.normal},
+                                    kAuxiliaries.at(a.auxiliaries), progress, denoising);
+  if (!colors) return InterruptScope::exitCode();
+  if (endsWith(a.output, ".png"))
+    render::writePng(a.output, width, height, colors->data(), a.exposure);
+  else {
+    setLayer(image, "noisy.", images.color);
+    setLayer(image, "", *colors);
+    for (const auto& [key, text] : denoisingMetadata(denoising)) image.metadata[key] = text;
+    eval::writeLayered(a.output, image);
+  }
+  if (!a.png.empty()) render::writePng(a.png, width, height, colors->data(), a.exposure);
+  return InterruptScope::exitCode();
+}
+
+}  // namespace
+
+Command addDenoiseCommand(CLI::App& parent) {
+  CLI::App* app = parent.add_subcommand("denoise", "Denoise a rendered image with Open Image Denoise");
+  app->footer(
+      "Layers of `odis render --denoise` or `--aov albedo,normal` are found by their names, so are those of\n"
+      "Cycles, Mitsuba and pbrt. OUTPUT has all channels of IMAGE, R, G and B being denoised, and the\n"
+      "colours before that as the layer noisy. More: docs/denoising.md.");
+  const auto a = std::make_shared<DenoiseArguments>();
+  app->add_option("IMAGE", a->image, "EXR or HDR file")->required();
+  app->add_option("-o,--output", a->output, "Image to write, .exr or .png")->required();
+  app->add_option("--png", a->png, "Write a PNG for a look as well");
+  app->add_option("--exposure", a->exposure, "Of the PNG, in stops")
+      ->check(within(kStops))
+      ->capture_default_str();
+  app->add_option("--aux", a->auxiliaries,
+                  "Albedo and normals: denoised first, taken as they are, or not taken at all")
+      ->check(CLI::IsMember({"prefiltered", "noisy", "none"}))
+      ->capture_default_str();
+  app->add_option("--albedo", a->albedo, "File that has the albedo; default: a layer of IMAGE");
+  app->add_option("--normal", a->normal, "File that has the normals; default: a layer of IMAGE");
+  app->add_option("--layer", a->layer, "Which layer holds the colours, as in noisy of noisy.R");
+  app->add_option("--albedo-layer", a->albedoLayer, "Which layer holds the albedo");
+  app->add_option("--normal-layer", a->normalLayer, "Which layer holds the normals");
+  app->add_option("--threads", a->threads, "0: one a core")
+      ->check(within(kThreadCount))
+      ->capture_default_str();
+  app->add_flag("-q,--quiet", a->quiet, "Print errors only");
+  return {app, [a] { return runDenoise(*a); }};
+}
+
+}  // namespace odis::app

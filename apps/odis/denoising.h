@@ -1,0 +1,29 @@
+// Denoising for `odis render` and `odis denoise`.
+#pragma once
+
+#include <map>
+#include <optional>
+#include <string>
+
+#include "render/denoise/denoiser.h"
+
+namespace odis::app {
+
+// How an image was denoised, if it was.
+struct Denoising {
+  std::string denoiser;     // with its version
+  std::string auxiliaries;  // "albedo and normal, prefiltered"
+  double seconds = 0;
+};
+
+// Denoised colours; nothing, and words about it, where Ctrl-C came first. Throws DenoiserError, also where
+// there is not enough memory.
+std::optional<std::vector<render::Rgb>> denoiseColors(const render::Denoiser& denoiser,
+                                                      const render::DenoiserInput& input,
+                                                      render::Auxiliaries auxiliaries,
+                                                      render::Progress& progress, Denoising& denoising);
+
+// For the header of an EXR file: odis:denoiser, odis:denoiserAuxiliaries, odis:secondsDenoise.
+std::map<std::string, std::string> denoisingMetadata(const Denoising& denoising);
+
+}  // namespace odis::app

@@ -1,0 +1,22 @@
+// Which layers of an image file are the colours, albedo and normals that a denoiser takes: renderers name
+// them differently.
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "eval/layers.h"
+
+namespace odis::eval {
+
+// Found by their names, whatever their case and whatever view layer stands before them. The first of a list
+// that is there is taken; nothing if none is.
+
+// noisy (ODIS), Noisy Image (Cycles), the one without a name, Combined (Blender).
+std::optional<std::string> findColorLayer(const LayeredImage& image);
+// Denoising Albedo (Cycles), albedo (ODIS, Mitsuba's `aov`, pbrt).
+std::optional<std::string> findAlbedoLayer(const LayeredImage& image);
+// Denoising Normal (Cycles), Ns (pbrt), sh_normal, nn (Mitsuba's manual), normal (Blender), N (ODIS).
+std::optional<std::string> findNormalLayer(const LayeredImage& image);
+
+}  // namespace odis::eval
