@@ -120,7 +120,7 @@ TEST(Features, FadeWhereSomeSamplesMeetNothing) {
     const float covered = image.albedo[i].x / 0.8f;
     EXPECT_NEAR(covered * 16, std::round(covered * 16), 1e-3f);
     EXPECT_NEAR(length(image.normal[i]), covered, 1e-3f);
-    EXPECT_EQ(image.depth[i] > 3 - 1e-3f, covered > 0) << image.depth[i];
+    EXPECT_EQ(image.depth[i] > 2.9f, covered > 0);  // a mean over those that met the ball
     edges += covered > 0 && covered < 0.99f;
   }
   EXPECT_GT(edges, 10);
