@@ -227,7 +227,7 @@ TEST_F(Odis, RenderHasFewOptions) {
                (line[first + 1] == '-' || std::isalpha(static_cast<unsigned char>(line[first + 1])));
   }
   EXPECT_GT(options, 10);
-  EXPECT_LE(options, 29) << help.text;
+  EXPECT_LE(options, 30) << help.text;
 }
 
 }  // namespace
