@@ -32,7 +32,7 @@ TEST_F(Odis, WrongUsageIsTwo) {
   expectFailure("render room.xml --resolution 640", 2, "expected WIDTHxHEIGHT");
   expectFailure("render room.xml --crop 0,0,5", 2, "expected x,y,width,height");
   expectFailure("render room.xml -D radiance", 2, "expected key=value");
-  expectFailure("render room.xml --aov normals", 2, "expected albedo");
+  expectFailure("render room.xml --aov normals", 2, "expected alpha, albedo");
   expectFailure("render room.xml -o image.jpg", 2, "expected a name that ends in .exr or .png");
   expectFailure("render room.xml --replay 1,2", 2, "expected x,y,sample");
   expectFailure("render room.xml --replay 99,2,0", 2, "outside");
