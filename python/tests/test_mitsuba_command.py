@@ -187,8 +187,10 @@ class Command(InFolder):
         self.assertTrue(shown.read_bytes().startswith(b"before\x76\x2f\x31\x01"))  # OpenEXR's first bytes
         self.assertTrue(all(command.is_special(path) for path in ("/dev/stdout", "/dev/fd/1", "/dev/null", link)))
         self.assertFalse(any(command.is_special(path) for path in (self.scene, shown, self.folder / "new")))
+        # What a shell runs in the background ignores interrupts, and so would what it starts.
+        heed = lambda: signal.signal(signal.SIGINT, signal.SIG_DFL)
         long = subprocess.Popen([*words, "--spp", "1000000", "-o", str(self.folder / "b.exr")], env=environment,
-                                stderr=subprocess.PIPE, text=True)
+                                stderr=subprocess.PIPE, text=True, preexec_fn=heed)
         self.assertIn("0 %", long.stderr.readline())
         long.send_signal(signal.SIGINT)
         self.assertIn("interrupted", long.communicate(timeout=50)[1])

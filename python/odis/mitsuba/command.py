@@ -5,13 +5,10 @@ import json
 import os
 import re
 import shlex
-import signal
 import sys
 import tempfile
-import threading
 import time
 from collections import defaultdict
-from contextlib import contextmanager
 
 import drjit as dr
 import mitsuba as mi
@@ -186,31 +183,6 @@ def cause_of(error):
     return error
 
 
-@contextmanager
-def told_of_interrupts():
-    """Yields a function that raises KeyboardInterrupt once Ctrl-C was pressed: an exception that Python raises in a
-    destructor or a callback at that moment is lost."""
-    pressed = threading.Event()
-
-    def handle(number, frame):
-        pressed.set()
-        raise KeyboardInterrupt
-
-    def check():
-        if pressed.is_set():
-            raise KeyboardInterrupt
-
-    before = signal.getsignal(signal.SIGINT)
-    if before is not signal.default_int_handler:  # ignored, or another program's
-        yield check
-        return
-    signal.signal(signal.SIGINT, handle)
-    try:
-        yield check
-    finally:
-        signal.signal(signal.SIGINT, before)
-
-
 class Rendering:
     """A rendering by the command, stage by stage; `seconds` has their times."""
 
@@ -266,15 +238,13 @@ class Rendering:
         integrator, sensor = self.make_integrator(scene), scene.sensors()[0]
         odis_renders = self.args.integrator == "odis"
         spp = self.args.spp or sensor.sampler().sample_count()
+        if odis_renders:
+            integrator.progress, integrator.separate_compile = self.line, True
+        else:
+            self.line(0)
         begin = time.perf_counter()
-        with told_of_interrupts() as check:
-            if odis_renders:
-                integrator.progress = lambda fraction: (check(), self.line(fraction))
-                integrator.separate_compile = True
-            else:
-                self.line(0)
-            integrator.render(scene, sensor, self.args.seed, spp, develop=False)
-            dr.sync_thread()
+        integrator.render(scene, sensor, self.args.seed, spp, develop=False)
+        dr.sync_thread()
         if integrator.should_stop():  # Mitsuba's own integrators end early then, and return what they have.
             raise KeyboardInterrupt
         bitmap = sensor.film().bitmap()
