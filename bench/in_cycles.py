@@ -19,6 +19,7 @@ import tempfile
 
 import mitsuba as mi
 import numpy as np
+from relative_error import trimmed_relative_error
 
 mi.set_variant("scalar_rgb")
 REFERENCE_SEED = 1 << 20
@@ -28,15 +29,6 @@ def read(file):
     return np.array(mi.Bitmap(str(file)).convert(mi.Bitmap.PixelFormat.RGB, mi.Struct.Type.Float32), np.float64)
 
 
-def trimmed_relative_error(image, reference):
-    """0.1 %-trimmed relMSE, as src/eval/metrics.h defines it."""
-    scale = 1 / (reference @ np.array([0.212671, 0.715160, 0.072169])).mean()
-    errors = ((scale * (image - reference)) ** 2 / ((scale * reference) ** 2 + 0.01)).mean(axis=2).ravel()
-    errors[~np.isfinite(errors)] = np.inf
-    kept = errors.size - int(0.001 * errors.size)
-    return np.partition(errors, kept - 1)[:kept].mean()
-
-
 class Program:
     def __init__(self, cycles, threads, any_library):
         """any_library: the folder of a libopenpgl, which the program does not start without."""
@@ -44,10 +36,10 @@ class Program:
 
     def render(self, scene, spp, seed, library=None, output=None, size=None):
         """Renders with the guide of a folder, None for unguided paths; returns processor seconds."""
-        guiding = f'seed="{seed}" use_guiding="{"true" if library else "false"}"'
+        guiding = f'use_guiding="{"true" if library else "false"}" seed="{seed}"'
         file = scene / f".scene-{os.getpid()}.xml"
         text = (scene / "scene.xml").read_text()
-        file.write_text(text.replace("@guiding@", guiding))
+        file.write_text(re.sub(r'use_guiding="\w+" seed="\d+"', guiding, text))
         environment = {**os.environ, "LD_LIBRARY_PATH": str(library or self.any_library)}
         command = [self.cycles, "--background", "--quiet", "--samples", str(spp), "--threads", str(self.threads)]
         # The program has a size of its own unless it is told one.

@@ -21,21 +21,12 @@ import mitsuba as mi
 import numpy as np
 from odis.mitsuba.kernel_history import compile_seconds
 from odis.mitsuba.scene_files import load_file
+from relative_error import trimmed_relative_error
 
 SETTINGS = {"max_depth": 13, "rr_depth": 5}
 REFERENCE_SEED, REFERENCE_PART = 1 << 20, 32
 COLUMNS = ("scene", "samples", "time of `path`, s", "time ratio", "processor time ratio", "error ratio",
            "rays a sample of `odis`", "error × time")
-
-
-def trimmed_relative_error(image, reference):
-    """0.1 %-trimmed relMSE, as src/eval/metrics.h defines it."""
-    luminance = (reference @ np.array([0.212671, 0.715160, 0.072169])).mean()
-    scale = 1 / luminance if luminance > 0 else 1.0
-    errors = ((scale * (image - reference)) ** 2 / ((scale * reference) ** 2 + 0.01)).mean(axis=2).ravel()
-    errors[~np.isfinite(errors)] = np.inf
-    kept = errors.size - int(0.001 * errors.size)
-    return np.partition(errors, kept - 1)[:kept].mean()
 
 
 def processor_seconds():

@@ -246,7 +246,8 @@ def main():
     (args.folder / "scene.xml").write_text("\n".join([
         "<cycles>", camera(scene.sensors()[0], args.pixels), '<film exposure="1" filter_type="box" filter_width="1"/>',
         f'<integrator {bounces} sample_clamp_indirect="0" sample_clamp_direct="0" filter_glossy="0" '
-        'use_adaptive_sampling="false" caustics_reflective="true" caustics_refractive="true" @guiding@/>',
+        'use_adaptive_sampling="false" caustics_reflective="true" caustics_refractive="true" '
+        'use_guiding="true" seed="0"/>',
         converted.background(scene.environment()), shaders, *converted.shapes, "</cycles>", ""]))
 
 

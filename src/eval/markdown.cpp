@@ -94,7 +94,7 @@ std::string referencesTable(const std::vector<ComparisonRow>& rows, const std::v
   return layOut(cells, 1);
 }
 
-// Of the images as rendered, or denoised.
+// One table, of the images as they were rendered or of the denoised ones.
 std::string rowsTable(const std::vector<ComparisonRow>& rows, bool denoised) {
   const std::string needed = rows.empty() ? "first method needs" : rows.front().method + " needs";
   std::vector<std::vector<std::string>> cells{{"scene", "method", "spp", "error", "FLIP", "SSIM", "seconds",

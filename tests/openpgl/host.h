@@ -6,7 +6,7 @@
 
 #include <optional>
 
-#include "frame/toy_room.h"
+#include "frame/toy_host.h"
 
 namespace odis::test {
 
@@ -19,20 +19,10 @@ inline Float3 fromPgl(const pgl_vec3f& v) {
   return {v.x, v.y, v.z};
 }
 
-// Independent random numbers (SplitMix64).
-class Numbers {
- public:
-  explicit Numbers(uint64_t seed) : m_state(mix(seed)) {}
-  float next() { return float(mix(m_state += 0x9e3779b97f4a7c15ull) >> 40) * 0x1p-24f; }
-
- private:
-  static uint64_t mix(uint64_t x) {
-    x = (x ^ (x >> 30)) * 0xbf58476d1ce4e5b9ull;
-    x = (x ^ (x >> 27)) * 0x94d049bb133111ebull;
-    return x ^ (x >> 31);
-  }
-  uint64_t m_state;
-};
+// Those of the path with this seed.
+inline ToyNumbers numbersOf(uint64_t seed) {
+  return ToyNumbers(seed, 0, 0);
+}
 
 class PglHost {
  public:
@@ -43,7 +33,7 @@ class PglHost {
 
   // Traces a path from the camera and records it; returns what it brought. Without a field, or before that
   // knows anything, directions are those of the BSDF.
-  float trace(const pgl::Field* field, pgl::PathSegmentStorage& path, Numbers numbers) const {
+  float trace(const pgl::Field* field, pgl::PathSegmentStorage& path, ToyNumbers numbers) const {
     path.Clear();
     float radiance = 0, throughput = 1;
     Float3 origin{0.5f, 0.01f, 0.5f}, direction{numbers.next() - 0.5f, 0.6f, 0.5f - numbers.next()};
@@ -86,7 +76,7 @@ class PglHost {
     pgl::PathSegmentStorage path;
     double sum = 0;
     for (uint64_t seed = first; seed < first + count; ++seed) {
-      sum += trace(field, path, Numbers(seed));
+      sum += trace(field, path, numbersOf(seed));
       path.PrepareSamples();
       size_t size = 0;
       const pgl::SampleData* data = path.GetSamples(size);
@@ -96,7 +86,7 @@ class PglHost {
   }
 
  private:
-  Float3 sampleDirection(const pgl::Field* field, const ToyRoom::Hit& hit, Numbers& numbers,
+  Float3 sampleDirection(const pgl::Field* field, const ToyRoom::Hit& hit, ToyNumbers& numbers,
                          float& pdf) const {
     const float choice = numbers.next(), u = numbers.next(), v = numbers.next();
     float unused = 0;
@@ -113,20 +103,11 @@ class PglHost {
       distribution->SamplePDF({u, v}, sampled);
       wi = fromPgl(sampled);
     } else {
-      wi = cosineDirection(hit.normal, u, v);
+      wi = ToyBsdf{hit.normal, m_room.albedo}.sampleBsdf(u, v).wi;
     }
     const float ofBsdf = std::max(dot(wi, hit.normal), 0.0f) / kPi;
     pdf = guided ? kGuidedShare * distribution->PDF(toPgl(wi)) + (1 - kGuidedShare) * ofBsdf : ofBsdf;
     return wi;
-  }
-
-  static Float3 cosineDirection(const Float3& n, float u, float v) {
-    const Float3 tangent = std::abs(n.x) > 0.5f ? Float3{0, 1, 0} : Float3{1, 0, 0};
-    Float3 s = tangent - n * dot(tangent, n);
-    s = s / lengthOf(s);
-    const Float3 t{n.y * s.z - n.z * s.y, n.z * s.x - n.x * s.z, n.x * s.y - n.y * s.x};
-    const float r = std::sqrt(u), phi = 2 * kPi * v;
-    return s * (r * std::cos(phi)) + t * (r * std::sin(phi)) + n * std::sqrt(std::max(1 - u, 1e-6f));
   }
 
   ToyRoom m_room;

@@ -92,7 +92,7 @@ TEST_F(PglFields, GuidedImagesAreRightAndLessNoisy) {
     double sum = 0, squares = 0;
     constexpr uint64_t kPaths = 100000;
     for (uint64_t i = 0; i < kPaths; ++i) {
-      const double value = host.trace(field, path, Numbers(first + i));
+      const double value = host.trace(field, path, numbersOf(first + i));
       sum += value;
       squares += value * value;
     }
@@ -158,7 +158,7 @@ TEST_F(PglFields, AreStoredAndLoaded) {
 TEST_F(PglFields, TakeSamplesWithoutPaths) {
   const auto field = newField();
   pgl::SampleStorage samples;
-  Numbers numbers(1);
+  ToyNumbers numbers = numbersOf(1);
   for (int i = 0; i < 20000; ++i) {
     const float phi = 2 * kPi * numbers.next(), r = std::sqrt(numbers.next());
     const Float3 wi{r * std::cos(phi), r * std::sin(phi), std::sqrt(1 - r * r)};

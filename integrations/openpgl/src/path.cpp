@@ -72,7 +72,7 @@ void PathSegmentStorage::clear() {
 
 // Whether a direction was sampled at a vertex.
 bool PathSegmentStorage::scatters(size_t segment) const {
-  return m_segments[segment].pdfDirectionIn > 0 || nextOf(segment);
+  return m_segments[segment].pdfDirectionIn > 0 || segment + 1 < m_count;
 }
 
 void PathSegmentStorage::record(uint32_t path, size_t i) {
@@ -119,13 +119,12 @@ void PathSegmentStorage::record(uint32_t path, size_t i) {
 }
 
 void PathSegmentStorage::addSampleOf(const odis::PathVertex& vertex) {
-  const odis::Float3 toPixel = vertex.radiance;
-  if (meanOf(toPixel) > 0)
-    m_samples.push_back({fromOdis(vertex.position), fromOdis(vertex.wi), meanOf(toPixel) / vertex.pdf,
-                         vertex.pdf, std::min(vertex.distance, maxDistance),
-                         vertex.discrete ? kVolumeFlags : 0});
+  const float radiance = meanOf(vertex.radiance);
+  if (radiance > 0)
+    m_samples.push_back({fromOdis(vertex.position), fromOdis(vertex.wi), radiance / vertex.pdf, vertex.pdf,
+                         std::min(vertex.distance, maxDistance), 0});
   else
-    m_zeroSamples.push_back({fromOdis(vertex.position), fromOdis(vertex.wi), vertex.discrete});
+    m_zeroSamples.push_back({fromOdis(vertex.position), fromOdis(vertex.wi), false});
 }
 
 size_t PathSegmentStorage::prepare() {

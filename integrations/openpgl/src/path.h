@@ -32,9 +32,6 @@ struct PathSegmentStorage {
   float maxDistance = 1e6f;
 
  private:
-  const PGLPathSegmentData* nextOf(size_t segment) const {
-    return segment + 1 < m_count ? &m_segments[segment + 1] : nullptr;
-  }
   bool scatters(size_t segment) const;
   void record(uint32_t path, size_t segment);
   void addSampleOf(const odis::PathVertex& vertex);

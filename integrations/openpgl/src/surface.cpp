@@ -35,7 +35,7 @@ struct SurfaceSamplingDistribution {
 
   float sample(const pgl_point2f& u, pgl_vec3f& direction) const;
   float pdf(const pgl_vec3f& direction) const;
-  // Of the map alone.
+  // The density of the cell's map alone, without the cosine at the vertex.
   float radiancePdf(const pgl_vec3f& direction) const;
   uint32_t cell() const { return m_cell; }
 

@@ -89,7 +89,7 @@ OidnLibrary load() {
     const char* const error = library ? nullptr : dlerror();
     const std::string reason = error ? error : name + ": is not Open Image Denoise 1.4 or later";
     if (chosen) throw DenoiserError("ODIS_OIDN: " + reason);
-    // That a system has no such library needs no words; that it can't be loaded does.
+    // A library that is not there is no reason to tell; one that is there and can't be loaded is.
     if (library || fs::exists(name)) reasons.push_back(reason);
   }
   throw DenoiserError(searchText(reasons));

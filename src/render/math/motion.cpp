@@ -74,7 +74,7 @@ std::vector<PreciseKey> keysWhileOpen(const Animation& animation, const Shutter&
   return keys;
 }
 
-// Whether all key frames lie on a grid of so many steps, no two in the same place.
+// Whether an even grid of so many steps has a point at each key frame, and a different one for each.
 bool fitGrid(const std::vector<PreciseKey>& keys, int steps) {
   double before = -1;
   for (const PreciseKey& key : keys) {

@@ -181,7 +181,7 @@ struct PathSegmentStorage {
   PathSegment* NextSegment() { return pglPathSegmentStorageNextSegment(handle); }
   void AddSegment(const PathSegment& segment) { pglPathSegmentStorageAddSegment(handle, segment); }
   void AddSample(SampleData sample) { pglPathSegmentStorageAddSample(handle, sample); }
-  // As in version 0.4 and as in later ones; what the arguments say is not read.
+  // The first form is that of version 0.4, the second that of later versions. The library reads no argument.
   size_t PrepareSamples(bool, Sampler*, bool = false, bool = false, bool = true) {
     return pglPathSegmentStoragePrepareSamples(handle);
   }
