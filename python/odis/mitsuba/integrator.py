@@ -31,8 +31,11 @@ PIXELS_PER_RECORDED = 4
 GUIDED_COST = 1.4
 # Other paths are traced by so many at once at most.
 PATHS = 1 << 22
-# A lane traces this many samples one after the other, and there are at least so many lanes a thread.
+# A lane traces this many samples one after the other, and there are at least so many lanes a thread: SIMD packets stay
+# full, whatever the lengths of their paths. Where a sample has fewer rays than that on average, a lane traces one: most
+# paths are about as long then, and packets of neighbours are coherent.
 SAMPLES_PER_LANE, LEAST_LANES = 32, 4096
+MANY_RAYS = 5
 FILTER_STEPS = 256
 # Side of the tiles that odis.Frame takes samples by, in pixels: it is fastest if all of a tile come at once.
 TILE = 16
@@ -88,9 +91,9 @@ class Camera:
         return rng, ray, weight * filter_weight
 
 
-def trace_samples(scene, camera, settings, known, tables, records, samples):
-    """Traces samples; where it records them returns the recorder, with what only complete paths know filled in."""
-    recorder = recording.make_recorder(ROWS) if records else None
+def trace_samples(scene, camera, settings, known, tables, samples):
+    """Traces samples; where some are recorded returns the recorder, with what only complete paths know filled in."""
+    recorder = recording.make_recorder(ROWS) if samples.last_row is not None else None
     path.trace(scene, camera, settings, known, tables, recorder, samples)
     dr.eval(samples.result, samples.last_row, recorder)
     if recorder is not None:
@@ -100,13 +103,14 @@ def trace_samples(scene, camera, settings, known, tables, records, samples):
     return recorder
 
 
-def choose_samples(samples, chosen, recorded):
-    """Those of path.Samples that a kernel is to trace: `chosen` are their places (numpy's uint32)."""
-    count = chosen.size
-    lanes = min(count, max(LEAST_LANES * dr.thread_count(), count // SAMPLES_PER_LANE))
+def choose_samples(samples, places, recorded, samples_per_lane):
+    """Those of path.Samples that a kernel is to trace, and which of them it records (arrays of numpy)."""
+    count = places.size
+    chosen = places.astype(np.uint32) | np.where(recorded, np.uint32(path.RECORDED), np.uint32(0))
+    lanes = min(count, max(LEAST_LANES * dr.thread_count(), count // samples_per_lane))
     samples = replace(samples, chosen=array_of(mi.UInt32, chosen), count=mi.UInt32(count),
                       lane=dr.arange(mi.UInt32, lanes), lanes=mi.UInt32(lanes),
-                      last_row=dr.zeros(mi.UInt32, count) if recorded else None)
+                      last_row=dr.zeros(mi.UInt32, count) if recorded.any() else None)
     dr.make_opaque(samples)
     return samples
 
@@ -180,7 +184,7 @@ def make_integrator():
         # Dr.Jit traverses __dict__, also of an integrator that a scene holds, and would compile kernels anew whenever
         # something in there changes: all is kept out of it.
         __slots__ = ("settings", "scene", "known", "pixel_filter", "frame", "rays", "seconds",
-                     "progress", "separate_compile", "aovs", "unguided", "said_unguided")
+                     "progress", "separate_compile", "aovs", "unguided", "said_unguided", "samples_per_lane")
 
         def __init__(self, props):
             check_variant()
@@ -258,7 +262,7 @@ def make_integrator():
             valid = np.zeros(width * height) if has_alpha else None  # samples of each pixel
             progress, traced, self.rays = self.progress or default_progress(), 0, 0
             progress(0)
-            tables, values, rebuilt = None, None, False
+            tables, values, rebuilt, self.samples_per_lane = None, None, False, SAMPLES_PER_LANE
             while (frame_pass := frame.begin_pass()) is not None:
                 with self._timed("tables"):
                     if not len(frame_pass.guide):  # not yet, or guiding does not pay
@@ -266,6 +270,8 @@ def make_integrator():
                     elif rebuilt:
                         tables = make_guide_tables(frame_pass.guide, self.known.materials.both_sides)
                         values = array_of(mi.Float, frame.pixel_values)
+                if traced:
+                    self.samples_per_lane = SAMPLES_PER_LANE if self.rays >= MANY_RAYS * traced else 1
                 rebuilt = frame_pass.wants_vertices
                 for part in parts_of_pass(frame, frame_pass):
                     self._trace_part(sensor, frame_pass, tables, values, part, valid)
@@ -301,18 +307,18 @@ def make_integrator():
             """Traces samples; returns the vertices of those that are recorded, None without any. Should these be too
             many at once, it hands all but the last ones to the frame."""
             vertices = None
-            pending = [(np.flatnonzero(recorded), True), (np.flatnonzero(~recorded), False)]
+            pending = [np.arange(recorded.size)]
             while pending:
-                places, records = pending.pop()
+                places = pending.pop()
                 if not places.size:
                     continue
-                chosen = choose_samples(samples, places.astype(np.uint32), records)
-                recorder = trace_samples(self.scene, camera, self.settings, self.known, tables, records, chosen)
-                if not records:
+                chosen = choose_samples(samples, places, recorded[places], self.samples_per_lane)
+                recorder = trace_samples(self.scene, camera, self.settings, self.known, tables, chosen)
+                if recorder is None:
                     continue
                 count = int(recorder.count[0])
                 if count > ROWS and places.size > 1:
-                    pending += [(half, True) for half in np.array_split(places, 2)]
+                    pending += np.array_split(places, 2)
                     continue
                 if vertices is not None:
                     none = np.zeros(0, np.uint32)

@@ -12,6 +12,7 @@ from .materials import BOTH_SIDES, GUIDABLE, HAS_DELTA, SMOOTH, material_at
 from .random_numbers import RandomNumbers
 
 VALID = 1 << 31  # marks samples in Samples.result, beside their number of rays
+RECORDED = 1 << 31  # marks samples in Samples.chosen whose vertices are recorded
 
 
 @dataclass
@@ -41,17 +42,17 @@ class Samples:
     # Float [sample][4]: what the sample adds to its pixel, in linear sRGB; and, as a UInt32, its number of rays, shadow
     # rays included, with the highest bit set where something opaque or an environment was met, for alpha.
     result: object
-    chosen: object = None  # UInt32 [count]: the samples of the kernel
+    chosen: object = None  # UInt32 [count]: the samples of the kernel, with RECORDED where they are to be
     count: object = None  # UInt32
     lane: object = None  # UInt32 [lanes]: 0, 1, ...: as many samples are under way at once
     lanes: object = None  # UInt32
-    last_row: object = None  # UInt32 [count]: of the path's last recorded vertex; None without a recorder
+    last_row: object = None  # UInt32 [count]: of the path's last recorded vertex, or NO_ROW; None without a recorder
 
 
 def ray_counts(samples):
     """The number of rays of each sample of the kernel, UInt32."""
     tags = dr.reinterpret_array(mi.UInt32, samples.result)
-    return dr.gather(mi.UInt32, tags, samples.chosen * 4 + 3) & (VALID - 1)
+    return dr.gather(mi.UInt32, tags, (samples.chosen & (RECORDED - 1)) * 4 + 3) & (VALID - 1)
 
 
 def power_heuristic(pdf, other):
@@ -121,12 +122,13 @@ def trace(scene, camera, settings, known, tables, recorder, samples):
     previous_p, previous_n = mi.Point3f(0), mi.Normal3f(0)
     previous_pdf, previous_delta = mi.Float(1), mi.Bool(True)
     previous_cell, previous_fraction = mi.UInt32(odis.NO_CELL), mi.Float(0)
-    row = mi.UInt32(recording.NO_ROW)
+    row, recorded = mi.UInt32(recording.NO_ROW), mi.Bool(False)
 
     while dr.hint(more, label="odis: paths", exclude=[known, tables, recorder, lights, samples, camera]):
         # The next sample, where none is under way.
         begins = more & ~under_way
-        sample = dr.select(begins, dr.gather(mi.UInt32, samples.chosen, index, begins), sample)
+        chosen = dr.gather(mi.UInt32, samples.chosen, index, begins)
+        sample = dr.select(begins, chosen & (RECORDED - 1), sample)
         pixel = dr.select(begins, dr.gather(mi.UInt32, samples.pixel, sample, begins), pixel)
         number = dr.select(begins, dr.gather(mi.UInt32, samples.number, sample, begins), number)
         new_rng, new_ray, ray_weight = camera(pixel, number)
@@ -137,6 +139,7 @@ def trace(scene, camera, settings, known, tables, recorder, samples):
         previous_delta = previous_delta | begins
         if dr.hint(recorder is not None, mode="scalar"):
             row = dr.select(begins, recording.NO_ROW, row)
+            recorded = dr.select(begins, chosen >= RECORDED, recorded)
         if dr.hint(tables is not None, mode="scalar"):
             pixel_value = dr.select(begins, dr.gather(mi.Float, samples.pixel_values, pixel, begins), pixel_value)
 
@@ -261,7 +264,7 @@ def trace(scene, camera, settings, known, tables, recorder, samples):
 
         if dr.hint(recorder is not None, mode="scalar"):
             previous_row = row
-            row = recording.new_row(recorder, active)
+            row = recording.new_row(recorder, active & recorded)
             has_row = row != recording.NO_ROW
             c, w = to_rgb(dr.select(seen, direct, 0), ray.wavelengths), to_rgb(weight, ray.wavelengths)
             t = to_rgb(throughput, ray.wavelengths)

@@ -15,7 +15,8 @@ constexpr size_t kManyPixels = 200000;
 constexpr uint32_t kManySamples = 32;
 // The least number of samples per pixel that are spread by what the first ones say.
 constexpr uint32_t kFewestToSpread = 4;
-// The greatest number of samples per pixel in a pass, so that there is progress and an end in sight.
+// The greatest number of samples per pixel in a pass, so that there is progress and an end in sight; on average
+// in the last one, as few pixels would be left for further ones.
 constexpr uint32_t kSamplesPerPass = 8;
 
 uint64_t mixBits(uint64_t x) {
@@ -78,7 +79,17 @@ SampleRange Schedule::remaining(uint32_t pixel, uint32_t begin, uint32_t end) co
 
 uint32_t Schedule::passEnd(uint32_t done) const {
   const uint32_t count = done < m_lastRefinement ? 1 : done < m_spreadAfter ? m_spreadAfter : kSamplesPerPass;
+  if (count == kSamplesPerPass && !m_counts.empty() &&
+      samplesAfter(done) <= kSamplesPerPass * m_counts.size())
+    return m_mostRemaining;
   return std::min(m_mostRemaining, done + count);
+}
+
+uint64_t Schedule::samplesAfter(uint32_t done) const {
+  uint64_t samples = 0;
+  for (uint32_t pixel = 0; pixel < m_counts.size(); ++pixel)
+    samples += remaining(pixel, done, m_mostRemaining).count;
+  return samples;
 }
 
 void Schedule::spread(std::vector<uint32_t> counts) {
