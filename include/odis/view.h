@@ -69,8 +69,8 @@ typedef struct OdisCellDecisions {
 // paths saw it (odis::pathHalf). 16 bytes.
 typedef struct OdisCachedRadiance {
   OdisFloat3 radiance;  // their mean, or the guide's best guess of it
-  // Its standard error, as luminance, as the other half of the paths makes it out; infinity: nothing is known.
-  // Were it the same half's, the darkest estimates would be trusted most and images lose energy.
+  // Its standard error, as luminance, as the other half of the paths makes it out; infinity: unknown. Were it
+  // the same half's, the darkest estimates would be trusted most, and images would lose energy.
   float error ODIS_DEFAULT(INFINITY);
 } OdisCachedRadiance;
 

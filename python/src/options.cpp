@@ -45,8 +45,8 @@ clamp: float > 0 (20): a sample counts at most this many times its neighbourhood
 fixed_bsdf_fraction: float in [0, 1] (0): above 0 this BSDF sampling fraction everywhere, in place of the one
     by variance and cost
 control_variate: bool (True): whether the mean outgoing radiance stands in for paths that roulette ends
-cached_error: float >= 0 (0): above 0 paths may end with a cell's cached radiance, if they are off by less than
-    this fraction of the pixel's value for it: images are biased then
+cached_error: float >= 0 (0): above 0 paths may end with a cell's cached radiance, if they are off by less
+    than this fraction of the pixel's value for it: images are biased then
 light_groups: int <= 32 (0): groups of lights that the vertices tell apart; 0: learn nothing about lights
 light_parts: list of (first, count) ([]): groups that are equal parts of one light
 

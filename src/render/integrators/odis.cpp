@@ -9,7 +9,8 @@ namespace odis::render {
 
 namespace {
 
-// A pixel's noise falls with the root of its number of samples, and so does what cached radiance may be off by.
+// A pixel's noise falls with the root of its number of samples, and so does how far off cached radiance may
+// be.
 float cachedError(const RenderOptions& options) {
   if (!options.cached) return 0;
   if (options.guideOptions.cachedError > 0) return options.guideOptions.cachedError;
