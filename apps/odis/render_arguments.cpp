@@ -27,6 +27,10 @@ void MethodArguments::addTo(CLI::App& app) {
   app.add_option("--weights", weights, "File of weights for the networks, in place of those built in")
       ->check(CLI::ExistingFile)
       ->group(group);
+  app.add_flag(
+         "--cached", cached,
+         "End paths with the mean radiance of where they arrive: less noise, but biased: docs/cached.md")
+      ->group(group);
   app.add_option("--set", settings,
                  "Changes a part of the method: --set key=value; --help-settings lists the keys")
       ->allow_extra_args(false)
@@ -49,6 +53,9 @@ void MethodArguments::apply(RenderOptions& options) const {
                                                  : IntegratorKind::odis;
   options.sampler = sampler == "sobol" ? SamplerKind::sobol : SamplerKind::independent;
   if (!weights.empty()) options.model = Model::load(weights);
+  options.cached = cached;
+  if (cached && options.integrator != IntegratorKind::odis)
+    throw UsageError("--cached: only --integrator odis has a cache");
   applySettings(options, settings);
 }
 

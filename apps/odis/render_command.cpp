@@ -173,6 +173,7 @@ static int runRender(RenderArguments& a) {
   stats.bytesScene = scene->bytes();
   stats.bytesPeak = peakMemory();
   stats.seed = a.seed;
+  stats.cached = a.method.cached;
   stats.scene = a.scene;
   stats.integrator = a.method.integrator;
   stats.commandLine = a.commandLine;

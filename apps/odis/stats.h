@@ -15,6 +15,7 @@ struct RunStats {
   double secondsLoad = 0, secondsWrite = 0;
   uint64_t bytesScene = 0, bytesPeak = 0;
   uint64_t seed = 0;
+  bool cached = false;
   std::string scene, integrator, commandLine;
 };
 

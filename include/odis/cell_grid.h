@@ -51,7 +51,7 @@ class CellGrid {
     return pack(unpacked(key, 0) >> 1, unpacked(key, kBits) >> 1, unpacked(key, 2 * kBits) >> 1, axisOf(key),
                 levelOf(key) + 1);
   }
-  static int levelOf(uint64_t key) { return int(key >> 60); }
+  ODIS_HOST_DEVICE static int levelOf(uint64_t key) { return int(key >> 60); }
 
  private:
   static constexpr int kBits = 19, kMiddle = 1 << (kBits - 1);

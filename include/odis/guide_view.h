@@ -7,6 +7,7 @@
 //     ... direction: odis::VertexMap<float> with odis::bsdfFraction(view, cell, roughness),
 //         mixed as odis/mixture.h shows
 //     ... light: odis::learnedLights(view, cell)
+//     ... an end, if the image may be biased: odis::cachedRadiance(view, place, cell, throughput, footprint)
 //   }
 #pragma once
 
@@ -17,6 +18,7 @@ namespace odis {
 
 using Place = OdisPlace;
 using CellDecisions = OdisCellDecisions;
+using CachedRadiance = OdisCachedRadiance;
 using GuideRules = OdisGuideRules;
 using GuideView = OdisGuideView;
 
@@ -123,6 +125,38 @@ ODIS_HOST_DEVICE inline LearnedLights learnedLights(const GuideView& view, uint3
   const float fraction = view.decisions[cell].learnedLightFraction;
   if (!(fraction > 0)) return {};
   return {view.lightTables + size_t(cell) * (view.lightGroups + 1), fraction};
+}
+
+// The half of the paths that a path belongs to, 0 or 1: the same for all its vertices.
+ODIS_HOST_DEVICE inline uint32_t pathHalf(uint32_t pixel, uint32_t sample) {
+  // The finalizer of MurmurHash3.
+  uint64_t bits = uint64_t(pixel) << 32 | sample;
+  bits = (bits ^ bits >> 33) * 0xff51afd7ed558ccdull;
+  bits = (bits ^ bits >> 33) * 0xc4ceb9fe1a85ec53ull;
+  return uint32_t(bits >> 63);
+}
+
+// What a segment adds to the footprint of its path: the edge of the square over which directions of density
+// `pdf` spread at this distance, on a surface that they meet at an angle of this cosine (Bekaert et al. 2003;
+// Mueller et al. 2021). Segments of discrete directions add nothing.
+template <class Real>
+ODIS_HOST_DEVICE inline Real segmentFootprint(Real distance, Real pdf, Real cosine) {
+  return distance / sqrt(max(pdf * cosine, Real(1e-20f)));
+}
+
+// The cached radiance that a path which arrives in a cell may end with in place of what it would find; null
+// where it has to go on. `throughput` as for survivalProbability; `footprint`: the sum over its segments.
+// Only vertices whose lobes are all guidable, diffuse or rough should end paths: what they scatter differs
+// little from direction to direction.
+ODIS_HOST_DEVICE inline const CachedRadiance* cachedRadiance(const GuideView& view, const Place& place,
+                                                             uint32_t cell, float throughput,
+                                                             float footprint) {
+  if (!view.cached) return nullptr;
+  const CachedRadiance& cached = view.cached[2 * size_t(cell) + pathHalf(place.pixel, place.sample)];
+  const float edge = float(1 << CellGrid::levelOf(view.keys[cell])) / view.grid.inverseEdge;
+  const bool ends = throughput * cached.error < view.rules.cachedError &&
+                    footprint >= view.rules.leastCachedFootprint * edge;
+  return ends ? &cached : nullptr;
 }
 
 }  // namespace odis

@@ -95,6 +95,7 @@ ODIS_API void odisReleaseModel(OdisModel model);
 //   for each ray of the path:
 //     odisRecordSurface or odisRecordEscape
 //     odisRecordEmission           for each emitter that the ray met
+//     odisRecordCachedRadiance     if the path ended with cached radiance: it is complete then
 //     odisRecordSurvival           if roulette was played on arrival
 //     odisRecordLight              if a shadow ray was traced; odisRecordLightHidden if it was blocked
 //     odisRecordBounce             if the path was scattered, even if it ends then
@@ -112,6 +113,8 @@ ODIS_API bool odisRecordSurface(OdisRecorder recorder, uint32_t path, const Odis
 ODIS_API bool odisRecordEscape(OdisRecorder recorder, uint32_t path);
 ODIS_API void odisInitEmissionEvent(OdisEmissionEvent* event, size_t size);
 ODIS_API bool odisRecordEmission(OdisRecorder recorder, uint32_t path, const OdisEmissionEvent* event);
+// The path ended at its last surface, with this radiance of the cell in place of what it would have found.
+ODIS_API bool odisRecordCachedRadiance(OdisRecorder recorder, uint32_t path, const OdisFloat3* radiance);
 // Roulette on arrival let the path go on with this probability, in (0, 1].
 ODIS_API bool odisRecordSurvival(OdisRecorder recorder, uint32_t path, float probability);
 ODIS_API void odisInitLightEvent(OdisLightEvent* event, size_t size);
@@ -273,6 +276,12 @@ ODIS_API float odisGetShadowRayProbability(const OdisGuideView* view, float cont
 // The fraction of the choices of a light that follow the cell's table, in [0, 1), and the table: cumulative
 // probabilities of the groups, from 0 to 1. 0 and NULL where nothing is known.
 ODIS_API float odisGetLearnedLights(const OdisGuideView* view, uint32_t cell, const float** cdf);
+
+// Whether a path that arrives in a cell may end there (OdisGuideOptions.cachedError), and with what radiance
+// in place of what it would find. `throughput` as for odisGetSurvivalProbability; `footprint`: the sum over
+// its segments of distance / sqrt(density of the direction * cosine at its end), nothing for discrete ones.
+ODIS_API bool odisGetCachedRadiance(const OdisGuideView* view, const OdisPlace* place, uint32_t cell,
+                                    float throughput, float footprint, OdisFloat3* radiance);
 
 #ifdef __cplusplus
 }

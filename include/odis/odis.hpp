@@ -143,6 +143,9 @@ class PathRecorder : public Handle<OdisRecorder, odisRetainRecorder, odisRelease
   void surface(uint32_t path, const SurfaceEvent& e) { require(odisRecordSurface(get(), path, &e)); }
   void escape(uint32_t path) { require(odisRecordEscape(get(), path)); }
   void emission(uint32_t path, const EmissionEvent& e) { require(odisRecordEmission(get(), path, &e)); }
+  void cached(uint32_t path, const Float3& radiance) {
+    require(odisRecordCachedRadiance(get(), path, &radiance));
+  }
   void survived(uint32_t path, float probability) { require(odisRecordSurvival(get(), path, probability)); }
   void light(uint32_t path, const LightEvent& e) { require(odisRecordLight(get(), path, &e)); }
   void lightHidden(uint32_t path) { require(odisRecordLightHidden(get(), path)); }

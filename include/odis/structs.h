@@ -124,6 +124,10 @@ typedef struct OdisGuideOptions {
   // Told of progress while guides are built; may cancel. NULL: nobody is told.
   OdisProgressFunction progressFunction ODIS_DEFAULT(NULL);
   void* progressUser ODIS_DEFAULT(NULL);
+  // >= 0. 0: paths bring what they find, and images are unbiased. Otherwise a path may end with the cached
+  // radiance of a cell (OdisCachedRadiance) whose standard error, times the path's throughput, is below this
+  // fraction of the pixel's value: less noise and fewer rays, and images that are biased.
+  float cachedError ODIS_DEFAULT(0);
 } OdisGuideOptions;
 
 typedef struct OdisFrameOptions {

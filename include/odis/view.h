@@ -65,6 +65,15 @@ typedef struct OdisCellDecisions {
   float learnedLightFraction ODIS_DEFAULT(0);
 } OdisCellDecisions;
 
+// What vertices of a cell scatter back along their paths, next-event estimation included, as one half of the
+// paths saw it (odis::pathHalf). 16 bytes.
+typedef struct OdisCachedRadiance {
+  OdisFloat3 radiance;  // their mean, or the guide's best guess of it
+  // Its standard error, as luminance, as the other half of the paths makes it out; infinity: unknown. Were it
+  // the same half's, the darkest estimates would be trusted most, and images would lose energy.
+  float error ODIS_DEFAULT(INFINITY);
+} OdisCachedRadiance;
+
 // The constants of the rules, so that a host that was compiled earlier follows the library's.
 typedef struct OdisGuideRules {
   // Lower bounds of the roughness (alpha of a microfacet distribution, 1 for diffuse) of the classes:
@@ -75,6 +84,9 @@ typedef struct OdisGuideRules {
   // Light that adds less than this fraction of the pixel's value is worth a shadow ray only sometimes, and at
   // least with this probability.
   float fullShadowRayContribution ODIS_DEFAULT(0.05f), leastShadowRayProbability ODIS_DEFAULT(0.2f);
+  // A path may end with cached radiance if the standard error of what it adds is below this fraction of its
+  // pixel's value (0: never), and if its footprint is as wide as so many edges of the cell.
+  float cachedError ODIS_DEFAULT(0), leastCachedFootprint ODIS_DEFAULT(5);
 } OdisGuideRules;
 
 // Arrays that a guide does not have are NULL.
@@ -92,6 +104,7 @@ typedef struct OdisGuideView {
   const float* lightTables
       ODIS_DEFAULT(NULL);  // [cell][lightGroups + 1]: cumulative probabilities from 0 to 1
   OdisGuideRules rules;
+  const OdisCachedRadiance* cached ODIS_DEFAULT(NULL);  // [cell][half]; NULL without cachedError
 } OdisGuideView;
 
 // What a frame asks the host to trace.

@@ -45,6 +45,8 @@ clamp: float > 0 (20): a sample counts at most this many times its neighbourhood
 fixed_bsdf_fraction: float in [0, 1] (0): above 0 this BSDF sampling fraction everywhere, in place of the one
     by variance and cost
 control_variate: bool (True): whether the mean outgoing radiance stands in for paths that roulette ends
+cached_error: float >= 0 (0): above 0 paths may end with a cell's cached radiance, if they are off by less
+    than this fraction of the pixel's value for it: images are biased then
 light_groups: int <= 32 (0): groups of lights that the vertices tell apart; 0: learn nothing about lights
 light_parts: list of (first, count) ([]): groups that are equal parts of one light
 
@@ -78,7 +80,7 @@ void bindGuideOptions(nb::module_& module) {
           "__init__",
           [](GuideOptions* self, std::optional<Model> model, int32_t cellsPerDiagonal,
              const PriorSamples& samples, float floor, float clamp, float fixedBsdfFraction,
-             bool controlVariate, uint32_t lightGroups, const Ranges& parts) {
+             bool controlVariate, float cachedError, uint32_t lightGroups, const Ranges& parts) {
             new (self) GuideOptions{{}, model ? *model : Model(), {}};
             self->cellsPerDiagonal = cellsPerDiagonal;
             setPriorSamples(*self, samples);
@@ -86,14 +88,15 @@ void bindGuideOptions(nb::module_& module) {
             self->clamp = clamp;
             self->fixedBsdfFraction = fixedBsdfFraction;
             self->controlVariate = controlVariate;
+            self->cachedError = cachedError;
             self->lightGroups = lightGroups;
             setLightParts(*self, parts);
           },
           nb::kw_only(), "model"_a = nb::none(), "cells_per_diagonal"_a = defaults.cellsPerDiagonal,
           "prior_samples"_a = std::to_array(defaults.priorSamples), "floor"_a = defaults.floor,
           "clamp"_a = defaults.clamp, "fixed_bsdf_fraction"_a = defaults.fixedBsdfFraction,
-          "control_variate"_a = defaults.controlVariate, "light_groups"_a = defaults.lightGroups,
-          "light_parts"_a = Ranges())
+          "control_variate"_a = defaults.controlVariate, "cached_error"_a = defaults.cachedError,
+          "light_groups"_a = defaults.lightGroups, "light_parts"_a = Ranges())
       .def_rw("model", &GuideOptions::model)
       .def_rw("cells_per_diagonal", &GuideOptions::cellsPerDiagonal)
       .def_prop_rw("prior_samples", priorSamples, setPriorSamples)
@@ -101,6 +104,7 @@ void bindGuideOptions(nb::module_& module) {
       .def_rw("clamp", &GuideOptions::clamp)
       .def_rw("fixed_bsdf_fraction", &GuideOptions::fixedBsdfFraction)
       .def_rw("control_variate", &GuideOptions::controlVariate)
+      .def_rw("cached_error", &GuideOptions::cachedError)
       .def_rw("light_groups", &GuideOptions::lightGroups)
       .def_prop_rw("light_parts", lightParts, setLightParts);
 }

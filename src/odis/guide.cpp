@@ -9,6 +9,7 @@
 #include "odis/maps/pack.h"
 #include "odis/maps/texel_directions.h"
 #include "odis/models/bsdf_fraction.h"
+#include "odis/models/cached_radiance.h"
 #include "odis/models/direction_formula.h"
 #include "odis/models/lights.h"
 #include "odis/models/model.h"
@@ -33,6 +34,8 @@ void check(const GuideOptions& options) {
   require(options.clamp > 0, "clamp: expected a positive number");
   require(options.fixedBsdfFraction >= 0 && options.fixedBsdfFraction <= 1,
           "fixedBsdfFraction: expected a number from 0 to 1");
+  require(options.cachedError >= 0 && std::isfinite(options.cachedError),
+          "cachedError: expected a finite number from 0 on");
 }
 
 }  // namespace
@@ -58,6 +61,8 @@ GuideView Guide::view() const {
   view.maps = m_data->maps();
   view.decisions = m_data->decisions.data();
   view.lightTables = m_data->lightTables.data();
+  view.cached = m_data->cached.empty() ? nullptr : m_data->cached.data();
+  view.rules.cachedError = m_data->cachedError;
   return view;
 }
 
@@ -181,6 +186,8 @@ Guide GuideBuilder::Data::buildMaps(const std::vector<CellStatistics>& cells,
 void GuideBuilder::Data::addRouletteAndLights(Guide::Data& guide,
                                               const std::vector<CellStatistics>& cells) const {
   fillRoulette(store.tasks(), guide.decisions, cells, guide.prediction.image, options.controlVariate);
+  guide.cachedError = options.cachedError;
+  if (guide.cachedError > 0) guide.cached = cacheRadiance(store.tasks(), cells);
   guide.lightGroups = options.lightGroups;
   if (guide.lightGroups > 0)
     guide.lightTables =

@@ -44,6 +44,8 @@ struct Guide::Data {
   LineArray<float> sums;
   LineArray<uint16_t> texels;
   std::vector<CellDecisions> decisions;
+  std::vector<CachedRadiance> cached;  // [cell][half]; empty without GuideOptions::cachedError
+  float cachedError = 0;
   std::vector<float> lightTables;
   uint32_t lightGroups = 0;
   GuidingPrediction prediction;

@@ -44,6 +44,8 @@ void Guide::save(ArchiveWriter& file) const {
   file.add("guide.decisions", m_data->decisions);
   file.addValue("guide.lightGroups", m_data->lightGroups);
   file.add("guide.lightTables", m_data->lightTables);
+  file.add("guide.cached", m_data->cached);
+  file.addValue("guide.cachedError", m_data->cachedError);
   file.addValue("guide.prediction", m_data->prediction);
 }
 
@@ -77,6 +79,14 @@ Guide Guide::load(const Archive& file) {
       file.require(isSound(std::span<const float>(&data.lightTables[c * columns], columns),
                            data.decisions[c].learnedLightFraction > 0),
                    "guide.lightTables: are damaged");
+  }
+  if (file.contains("guide.cached")) {
+    data.cached = file.get<CachedRadiance>("guide.cached");
+    data.cachedError = file.value<float>("guide.cachedError");
+    file.require(data.cached.empty() || data.cached.size() == 2 * keys.size(), "guide.cached: is damaged");
+    for (const CachedRadiance& c : data.cached)
+      file.require(std::isfinite(c.radiance.x + c.radiance.y + c.radiance.z) && c.error >= 0,
+                   "guide.cached: is damaged");
   }
   data.prediction = file.value<GuidingPrediction>("guide.prediction");
   return guide;

@@ -34,7 +34,9 @@ inline ::testing::AssertionResult sameView(const GuideView& a, const GuideView& 
   if (!sameBits(a.decisions, b.decisions, cells)) return differ("decisions");
   if (a.lightGroups > 0 && !sameBits(a.lightTables, b.lightTables, cells * (a.lightGroups + 1)))
     return differ("light tables");
-  static_assert(sizeof(GuideRules) == 24);
+  if (!a.cached != !b.cached || (a.cached && !sameBits(a.cached, b.cached, 2 * cells)))
+    return differ("cached radiance");
+  static_assert(sizeof(GuideRules) == 32);
   if (!sameBits(&a.rules, &b.rules, 1)) return differ("rules");
   return ::testing::AssertionSuccess();
 }

@@ -42,6 +42,7 @@ std::vector<ChosenOption> chosenOptions(const core::SavedOptions& saved) {
   ofGuide("clamp", &core::GuideOptions::clamp);
   ofGuide("fixedBsdfFraction", &core::GuideOptions::fixedBsdfFraction);
   ofGuide("controlVariate", &core::GuideOptions::controlVariate);
+  ofGuide("cachedError", &core::GuideOptions::cachedError);
   ofGuide("lightGroups", &core::GuideOptions::lightGroups);
   ofGuide("lightPartCount", &core::GuideOptions::lightPartCount);
   return chosen;

@@ -71,3 +71,11 @@ float odisGetLearnedLights(const OdisGuideView* view, uint32_t cell, const float
   if (cdf) *cdf = lights.cdf;
   return lights.fraction;
 }
+
+bool odisGetCachedRadiance(const OdisGuideView* view, const OdisPlace* place, uint32_t cell, float throughput,
+                           float footprint, OdisFloat3* radiance) {
+  if (!hasCell(view, cell) || !place || !radiance) return false;
+  const odis::CachedRadiance* cached = odis::cachedRadiance(*view, *place, cell, throughput, footprint);
+  if (cached) *radiance = cached->radiance;
+  return cached;
+}

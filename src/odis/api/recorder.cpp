@@ -65,6 +65,12 @@ bool odisRecordEmission(OdisRecorder recorder, uint32_t path, const OdisEmission
   return recordEvent(recorder, event, "odisRecordEmission",
                      [&](PathRecorder& to, const OdisEmissionEvent& e) { to.emission(path, e); });
 }
+bool odisRecordCachedRadiance(OdisRecorder recorder, uint32_t path, const OdisFloat3* radiance) {
+  return guardedFor(recorder, "odisRecordCachedRadiance", false, [&] {
+    odis::core::requireArgument(radiance, "odisRecordCachedRadiance: radiance");
+    return recorder->recorder.cached(path, *radiance), true;
+  });
+}
 bool odisRecordSurvival(OdisRecorder recorder, uint32_t path, float probability) {
   return guardedFor(recorder, "odisRecordSurvival", false,
                     [&] { return recorder->recorder.survived(path, probability), true; });

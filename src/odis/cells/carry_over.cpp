@@ -14,6 +14,8 @@ CellStatistics weighted(CellStatistics cell, double weight) {
        {&cell.count, &cell.lightCount, &cell.sum, &cell.sumSquares, &cell.outgoingSquares, &cell.rays})
     *sum *= weight;
   for (double& sum : cell.outgoing) sum *= weight;
+  for (double* sum : {&cell.secondHalf.count, &cell.secondHalf.squares}) *sum *= weight;
+  for (double& sum : cell.secondHalf.outgoing) sum *= weight;
   for (double& sum : cell.lightSquares) sum *= weight;
   for (float& texel : cell.histogram) texel *= float(weight);
   cell.normal = cell.normal * float(weight);

@@ -52,7 +52,7 @@ BatchSamples takeSamples(const VertexBatch& batch, const CellGrid& grid) {
       result.cellOf.push_back(cell);
       const float rays = 1 + (std::isnan(v.raysAfter) ? 0 : v.raysAfter);
       result.samples.push_back({v.position, v.normal, v.wi, v.distance, value, returnedRadiance(v), rays,
-                                lightSquare(v), v.lightGroup});
+                                lightSquare(v), v.lightGroup, pathHalf(v.pixel, v.sample)});
     }
   return result;
 }

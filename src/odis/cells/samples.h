@@ -16,7 +16,7 @@ float sampleValue(const PathVertex& vertex);
 // What the vertex scatters back along the path, next-event estimation included: not negative, finite.
 Float3 returnedRadiance(const PathVertex& vertex);
 
-// A usable vertex. 68 bytes.
+// A usable vertex. 72 bytes.
 struct CellSample {
   Float3 position, normal, wi;
   float distance;
@@ -26,11 +26,12 @@ struct CellSample {
   // Estimate of the squared next-event estimate from one group of lights; kNoLights: not to be counted.
   float lightSquare;
   uint32_t lightGroup;
+  uint32_t half;  // of the paths (pathHalf) that it belongs to
 };
 inline constexpr float kNoLights = -1;
 
 // The usable vertices of a batch, and the cells of the finest level that they fall into, numbered as they are
-// met. 72 bytes a sample and 24 a cell.
+// met. 76 bytes a sample and 24 a cell.
 struct BatchSamples {
   struct Cell {
     uint64_t key = 0;

@@ -17,6 +17,7 @@ void forEachColumn(const Body& body) {
   body("outgoing", &CellStatistics::outgoing);
   body("outgoingSquares", &CellStatistics::outgoingSquares);
   body("rays", &CellStatistics::rays);
+  body("secondHalf", &CellStatistics::secondHalf);
   body("centroid", &CellStatistics::centroid);
   body("normal", &CellStatistics::normal);
   body("lightSquares", &CellStatistics::lightSquares);

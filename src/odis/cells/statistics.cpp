@@ -126,6 +126,8 @@ void accumulate(CellStatistics& cell, LightField* field, const Float3& middle, f
     const double brightness = luminance(outgoing);
     cell.outgoingSquares += brightness * brightness;
     cell.rays += sample.rays;
+    if (sample.half == 1)
+      addTo(cell.secondHalf, {1, {outgoing.x, outgoing.y, outgoing.z}, brightness * brightness});
     if (sample.lightSquare != kNoLights) cell.lightCount += 1;
     if (sample.lightSquare > 0) cell.lightSquares[sample.lightGroup] += sample.lightSquare;
     cell.normal = cell.normal + sample.normal;
@@ -216,6 +218,12 @@ void CellStore::add(std::span<const BatchSamples* const> batches) {
   });
 }
 
+void addTo(ReturnedSums& sum, const ReturnedSums& more) {
+  sum.count += more.count;
+  for (size_t i = 0; i < 3; ++i) sum.outgoing[i] += more.outgoing[i];
+  sum.squares += more.squares;
+}
+
 void addTo(CellStatistics& sum, const CellStatistics& cell) {
   sum.count += cell.count;
   if (sum.count > 0)
@@ -225,6 +233,7 @@ void addTo(CellStatistics& sum, const CellStatistics& cell) {
   for (size_t i = 0; i < 3; ++i) sum.outgoing[i] += cell.outgoing[i];
   sum.outgoingSquares += cell.outgoingSquares;
   sum.rays += cell.rays;
+  addTo(sum.secondHalf, cell.secondHalf);
   sum.lightCount += cell.lightCount;
   for (size_t g = 0; g < sum.lightSquares.size(); ++g) sum.lightSquares[g] += cell.lightSquares[g];
   sum.normal = sum.normal + cell.normal;

@@ -24,6 +24,14 @@ class ArchiveWriter;
 class LightPoints;
 struct LightField;
 
+// Sums over vertices of what they scatter back along their paths.
+struct ReturnedSums {
+  double count = 0;                  // number of vertices
+  std::array<double, 3> outgoing{};  // red, green, blue
+  double squares = 0;                // of its luminance
+};
+void addTo(ReturnedSums& sum, const ReturnedSums& more);
+
 struct CellStatistics {
   uint32_t parent = kNoCell;
   int level = 0;
@@ -34,6 +42,7 @@ struct CellStatistics {
   std::array<double, 3> outgoing{};  // sum of what the vertices scatter back, in red, green and blue
   double outgoingSquares = 0;        // sum of the squares of its luminance
   double rays = 0;                   // sum of the rays traced at the vertices and beyond
+  ReturnedSums secondHalf;           // the part of the above that paths of half 1 (pathHalf) brought
   // Mean position of the first batch's samples, or of a coarser cell's children; directions are re-aimed
   // from here.
   Float3 centroid;

@@ -69,6 +69,12 @@ void PathRecorder::emission(uint32_t index, const EmissionEvent& event) {
   p.emission = p.emission + event.radiance;
 }
 
+void PathRecorder::cached(uint32_t index, const Float3& radiance) {
+  OpenPath& path = open(index);
+  requireOrder(path.current != kNone, "cached radiance needs a surface before it");
+  path.cached = radiance;
+}
+
 void PathRecorder::survived(uint32_t index, float probability) {
   OpenPath& path = open(index);
   path.survivalOnArrival = probability;
@@ -127,7 +133,7 @@ void PathRecorder::bounce(uint32_t index, const BounceEvent& event) {
 
 // Writes the vertices of a path, from the last one back to the first.
 void PathRecorder::complete(const OpenPath& path, PathVertex* vertices) const {
-  Float3 beyond;  // scattered towards this vertex by the next one
+  Float3 beyond = path.cached;  // scattered towards this vertex by the next one
   uint32_t from = path.last;
   for (uint32_t i = path.count; i-- > 0;) {
     const Pending& p = m_pending[from];

@@ -5,6 +5,7 @@
 //   for each ray of the path:
 //     recorder.surface(path, ...) or recorder.escape(path)
 //     recorder.emission(path, ...)                     // for each emitter that the ray met
+//     recorder.cached(path, radiance)                  // if the path ended with cached radiance
 //     recorder.survived(path, probability)             // if roulette was played on arrival
 //     recorder.light(path, ...), lightHidden(path)     // if a shadow ray was traced; if it was blocked
 //     recorder.bounce(path, ...)                       // if the path was scattered, even if it ends then
@@ -37,6 +38,8 @@ class PathRecorder {
   // The ray left the scene. Emission of the environment follows as an event of its own.
   void escape(uint32_t path);
   void emission(uint32_t path, const EmissionEvent& event);
+  // The path ended at its last surface, with this radiance in place of what it would have found.
+  void cached(uint32_t path, const Float3& radiance);
   // Roulette on arrival let the path go on with this probability.
   void survived(uint32_t path, float probability);
   void light(uint32_t path, const LightEvent& event);
@@ -66,6 +69,7 @@ class PathRecorder {
     PathIdentity identity;
     Float3 throughput{1, 1, 1};
     float survivalOnArrival = 1;
+    Float3 cached;  // radiance that it ended with
     // Vertices: the last complete one, the one under way, that of the last light event.
     uint32_t last = kNone, current = kNone, lit = kNone;
     uint32_t count = 0;  // of complete vertices

@@ -1,11 +1,22 @@
 // odis: path tracing guided by what a pilot saw (docs/guiding.md). The library decides what is traced and
 // what samples weigh; here it is told of the scene's lights and of the options.
+#include <cmath>
+
 #include "render/integrators/frame_integrator.h"
 #include "render/integrators/pilot_pass.h"
 
 namespace odis::render {
 
 namespace {
+
+// A pixel's noise falls with the root of its number of samples, and so does how far off cached radiance may
+// be.
+float cachedError(const RenderOptions& options) {
+  if (!options.cached) return 0;
+  if (options.guideOptions.cachedError > 0) return options.guideOptions.cachedError;
+  constexpr float kOfOneSample = 0.6f;
+  return kOfOneSample / std::sqrt(float(options.spp));
+}
 
 // What guides are built with: the scene's lights, and the networks where they are asked for.
 GuideOptions guideOptions(const RenderJob& job) {
@@ -15,6 +26,7 @@ GuideOptions guideOptions(const RenderJob& job) {
     guide.lightGroups = job.lights().groupCount();
     guide.lightParts = job.lights().dividedLights();
   }
+  guide.cachedError = cachedError(options);
   guide.model = options.model;
   if (options.guide != GuideKind::network) guide.model = guide.model.withDirectionFormula();
   if (options.lights != LightChoiceKind::network) guide.model = guide.model.withLightFormula();

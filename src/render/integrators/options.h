@@ -62,7 +62,10 @@ struct RenderOptions {
   GuideOptions guideOptions;
   float guidedCost = 1;      // of a guided ray relative to an unguided one; 0: guides whether it pays or not
   double pilotWeight = 0.6;  // of a pilot sample relative to a guided one
-  bool records = false;      // keep the pilot's vertices in the result, for those who want to learn from them
+  // Whether paths may end with the cached radiance of cells, which biases the image. The error that they may
+  // make is guideOptions.cachedError, or, where that is 0, one that falls with the number of samples.
+  bool cached = false;
+  bool records = false;  // keep the pilot's vertices in the result, for those who want to learn from them
   bool guideFeatures = false;  // with `features`, also what the guide decided
 };
 

@@ -72,6 +72,8 @@ using Bounces = std::span<Bounce>;
 // Adds the emission that rays met, weighted against next-event estimation where that could have found it
 // too. Paths go on where they met a surface and are not too deep.
 void meetEmission(const PathSettings& settings, Batch& batch, Bounces bounces);
+// Ends paths with the cached radiance of where they arrive, if the guide may (odis::cachedRadiance).
+void endInCache(const PathSettings& settings, Batch& batch, Bounces bounces);
 // Lets paths go on by what is known to come back from here. Paths that end add the cell's mean outgoing
 // radiance instead of what they would have found.
 void playRouletteOnArrival(const PathSettings& settings, Batch& batch, Bounces bounces);

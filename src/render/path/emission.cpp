@@ -67,6 +67,44 @@ void meetEmission(const PathSettings& settings, Batch& batch, Bounces bounces) {
   }
 }
 
+namespace {
+
+// What varies more with the direction than this roughness does is not cached.
+constexpr float kLeastCachedRoughness = 0.2f;
+// Cached radiance knows no limit of depth: it holds what comes back from vertices of any depth. With fewer
+// bounces than these that would show.
+constexpr int kLeastCachedMaxDepth = 8;
+
+bool scattersEvenly(const Vertex& vertex) {
+  const Bsdf& bsdf = vertex.at.shape->bsdf();
+  return bsdf.guidableProbability(vertex.at, vertex.wo) >= 1 &&
+         bsdf.roughness(vertex.at, vertex.wo) >= kLeastCachedRoughness;
+}
+
+}  // namespace
+
+void endInCache(const PathSettings& settings, Batch& batch, Bounces bounces) {
+  if (!settings.guide || !settings.guide->cached) return;
+  if (settings.maxDepth >= 0 && settings.maxDepth < kLeastCachedMaxDepth) return;
+  for (Bounce& bounce : bounces) {
+    if (!bounce.scatters || bounce.depth == 1) continue;
+    Path& path = *bounce.path;
+    const Vertex& vertex = *bounce.vertex;
+    if (path.bySampling)
+      path.footprint += segmentFootprint(length(vertex.at.p - path.ray.origin), path.directionPdf,
+                                         std::abs(dot(vertex.at.shading.n, path.ray.direction)));
+    if (bounce.cell == kNoCell) continue;
+    const CachedRadiance* cached =
+        cachedRadiance(*settings.guide, {{}, {}, path.identity.pixel, path.identity.sample}, bounce.cell,
+                       luminance(path.throughput) / path.pixelValue, path.footprint);
+    if (!cached || !scattersEvenly(vertex)) continue;
+    const Float3& radiance = cached->radiance;
+    path.radiance += path.throughput * Rgb(radiance.x, radiance.y, radiance.z);
+    bounce.scatters = false;
+    if (batch.recording) batch.recorder.cached(path.handle, radiance);
+  }
+}
+
 void playRouletteOnArrival(const PathSettings& settings, Batch& batch, Bounces bounces) {
   if (!settings.learnedRoulette) return;
   for (Bounce& bounce : bounces) {

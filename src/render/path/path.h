@@ -70,6 +70,7 @@ struct Path {
   float uSurvival = 0;      // random number that decides, where the ray arrives, whether the path goes on
   LightReference previous;  // where the ray started
   float distance = 0;       // length of the path from the camera to there
+  float footprint = 0;      // of the path so far (odis::segmentFootprint)
   uint32_t handle = 0;      // of the recorder
 };
 

@@ -43,6 +43,7 @@ void findGuidingCells(const PathSettings& settings, std::span<const Path> paths,
 // Takes some paths through all steps of a bounce; returns those that were scattered.
 Bounces takeSteps(const PathSettings& settings, Batch& batch, Bounces bounces) {
   meetEmission(settings, batch, bounces);
+  endInCache(settings, batch, bounces);
   playRouletteOnArrival(settings, batch, bounces);
   bounces = keepScattered(bounces);
   prepareDirections(settings, bounces);

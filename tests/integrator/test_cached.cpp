@@ -1,0 +1,106 @@
+// Paths that end with cached radiance: how far the image may be off, and where it may not be at all.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "integrator/test_scenes.h"
+#include "support/sanitizers.h"
+
+namespace odis::render {
+namespace {
+
+double meanOf(const RenderedImage& image) {
+  double sum = 0;
+  for (const Rgb& color : image.color) sum += average(color);
+  return sum / double(image.color.size());
+}
+
+RenderOptions cachedOptions(int spp, uint64_t seed = 0) {
+  RenderOptions options;
+  options.cached = true;
+  options.spp = spp;
+  options.seed = seed;
+  return options;
+}
+
+bool sameBits(const RenderedImage& a, const RenderedImage& b) {
+  for (size_t i = 0; i < a.color.size(); ++i)
+    if (a.color[i].x != b.color[i].x || a.color[i].y != b.color[i].y || a.color[i].z != b.color[i].z)
+      return false;
+  return true;
+}
+
+// The mean of random numbers, and its standard error.
+struct Average {
+  double sum = 0, squares = 0;
+  int count = 0;
+
+  void add(double value) {
+    sum += value;
+    squares += value * value;
+    ++count;
+  }
+  double mean() const { return sum / count; }
+  double standardError() const { return std::sqrt((squares / count - mean() * mean()) / count); }
+};
+
+// Paths of an image end with the same few numbers, so that only many images tell of their mean.
+TEST(Cached, FurnaceIsAsBright) {
+  const auto scene = test::loadScene(
+      test::furnace("<bsdf type=\"diffuse\"><rgb name=\"reflectance\" value=\"0.5\"/></bsdf>"));
+  const int images = test::imagesToCompare(400);
+  Average brightness;
+  for (int seed = 0; seed < images; ++seed)
+    brightness.add(meanOf(test::renderScene(*scene, cachedOptions(8, uint64_t(seed))).image));
+  if (images < 10) return;
+  EXPECT_LT(brightness.standardError(), 0.005);
+  EXPECT_NEAR(brightness.mean(), 2, 4 * brightness.standardError());
+}
+
+// Many images of few samples, whose guides know little: light that estimates lost would be missing here.
+TEST(Cached, KeepsTheEnergyOfARoom) {
+  const auto scene = test::loadScene(test::indirectRoom(32));
+  constexpr double kTolerance = 0.01;
+  const int images = test::imagesToCompare(100);
+  Average difference;
+  uint64_t cachedRays = 0, rays = 0;
+  for (int seed = 0; seed < images; ++seed) {
+    const RenderResult cached = test::renderScene(*scene, cachedOptions(4, uint64_t(seed)));
+    RenderOptions options = cachedOptions(16, uint64_t(seed));
+    options.integrator = IntegratorKind::path;
+    const double path = meanOf(test::renderScene(*scene, options).image);
+    difference.add(meanOf(cached.image) / path - 1);
+    cachedRays += cached.stats.rays + cached.stats.shadowRays;
+    options.integrator = IntegratorKind::odis;
+    options.cached = false;
+    options.spp = 4;
+    const RenderResult unbiased = test::renderScene(*scene, options);
+    rays += unbiased.stats.rays + unbiased.stats.shadowRays;
+  }
+  if (images < 10) return;
+  EXPECT_LT(difference.standardError(), kTolerance / 4) << "too few images to tell";
+  EXPECT_LT(std::abs(difference.mean()), kTolerance + 4 * difference.standardError());
+  EXPECT_LT(double(cachedRays), 0.9 * double(rays));  // otherwise hardly a path ended
+}
+
+TEST(Cached, SameBitsForAnyNumberOfThreads) {
+  const auto scene = test::loadScene(test::indirectRoom());
+  RenderOptions options = cachedOptions(8);
+  options.threads = 1;
+  const RenderResult one = test::renderScene(*scene, options);
+  options.threads = 4;
+  EXPECT_TRUE(sameBits(one.image, test::renderScene(*scene, options).image));
+}
+
+// Where few bounces are asked for, nothing is cached.
+TEST(Cached, LeavesShallowPathsAsTheyAre) {
+  const auto scene = test::loadScene(test::indirectRoom());
+  RenderOptions options = cachedOptions(8);
+  options.maxDepth = 3;
+  const RenderResult cached = test::renderScene(*scene, options);
+  options.cached = false;
+  EXPECT_TRUE(sameBits(cached.image, test::renderScene(*scene, options).image));
+}
+
+}  // namespace
+}  // namespace odis::render

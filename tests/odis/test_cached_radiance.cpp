@@ -1,0 +1,161 @@
+// The radiance cache: which means are trusted, and which paths may end with them.
+#include <gtest/gtest.h>
+
+#include <random>
+
+#include "odis/guide.h"
+#include "odis/models/cached_radiance.h"
+#include "odis/record/recorder.h"
+#include "support/events.h"
+
+namespace odis::core {
+namespace {
+
+// Adds vertices of one half of the paths that scatter back this much grey light.
+void addVertex(CellStatistics& cell, uint32_t half, double light) {
+  cell.count += 1;
+  for (double& sum : cell.outgoing) sum += light;
+  cell.outgoingSquares += light * light;
+  if (half == 1) addTo(cell.secondHalf, {1, {light, light, light}, light * light});
+}
+
+// One vertex in ten finds light: 10, where the mean is 1.
+std::vector<CellStatistics> cellsOfRareLight(size_t count, int perHalf) {
+  std::mt19937 engine(7);
+  std::bernoulli_distribution finds(0.1);
+  std::vector<CellStatistics> cells(count);
+  for (CellStatistics& cell : cells) {
+    cell.level = kCellLevels - 1;
+    for (int i = 0; i < 2 * perHalf; ++i) addVertex(cell, uint32_t(i % 2), finds(engine) ? 10 : 0);
+  }
+  return cells;
+}
+
+struct Mean {
+  double sum = 0, squares = 0, count = 0;
+
+  void add(double value) {
+    sum += value;
+    squares += value * value;
+    count += 1;
+  }
+  double mean() const { return sum / count; }
+  double standardError() const { return std::sqrt((squares / count - mean() * mean()) / count); }
+};
+
+TEST(CachedRadiance, IsRightOnAverageWhereItIsTrusted) {
+  const std::vector<CellStatistics> cells = cellsOfRareLight(20000, 20);
+  const std::vector<CachedRadiance> cached = cacheRadiance(*libraryTasks(), cells);
+  constexpr float kTrusted = 0.5f;
+  Mean trusted, judgedByItself;
+  for (size_t i = 0; i < cached.size(); ++i) {
+    if (cached[i].error < kTrusted) trusted.add(cached[i].radiance.x);
+    if (cached[i ^ 1].error < kTrusted) judgedByItself.add(cached[i].radiance.x);
+  }
+  EXPECT_GT(trusted.count, 1000);
+  EXPECT_LT(trusted.count, 0.9 * double(cached.size()));
+  EXPECT_LT(std::abs(trusted.mean() - 1), 4 * trusted.standardError());
+  // What the other half judges by is this half's own spread: by that, light is lost.
+  EXPECT_LT(judgedByItself.mean(), 0.9);
+}
+
+TEST(CachedRadiance, IsShrunkTowardsTheParentAndTrustsTheLargestSpread) {
+  std::vector<CellStatistics> cells(2);
+  cells[0].level = kCellLevels - 1;
+  cells[1].level = kCellLevels - 2;
+  cells[1].parent = 0;
+  for (int i = 0; i < 400; ++i) addVertex(cells[0], uint32_t(i % 2), i % 4 < 2 ? 0 : 4);
+  for (int i = 0; i < 8; ++i) addVertex(cells[1], uint32_t(i % 2), 1);
+  const std::vector<CachedRadiance> cached = cacheRadiance(*libraryTasks(), cells);
+  EXPECT_FLOAT_EQ(cached[0].radiance.x, 2);
+  EXPECT_FLOAT_EQ(cached[0].error, std::sqrt(4.0f / 200));
+  EXPECT_GT(cached[2].radiance.x, 1);
+  EXPECT_LT(cached[2].radiance.x, 2);
+  EXPECT_FLOAT_EQ(cached[2].error, std::sqrt(4.0f / 4));  // its own vertices know of no spread
+}
+
+TEST(CachedRadiance, OfCellsWithoutVerticesIsNotTrusted) {
+  std::vector<CellStatistics> cells(2);
+  cells[0].level = kCellLevels - 1;
+  cells[1].level = kCellLevels - 2;
+  cells[1].parent = 0;
+  for (int i = 0; i < 4; ++i) addVertex(cells[0], 0, 1);
+  const std::vector<CachedRadiance> cached = cacheRadiance(*libraryTasks(), cells);
+  EXPECT_LT(cached[0].error, INFINITY);
+  for (size_t i = 1; i < cached.size(); ++i) EXPECT_EQ(cached[i].error, INFINITY) << i;
+}
+
+TEST(CachedRadiance, HalvesArePathsAndAboutAsMany) {
+  int second = 0;
+  for (uint32_t pixel = 0; pixel < 1000; ++pixel)
+    for (uint32_t sample = 0; sample < 10; ++sample) second += int(pathHalf(pixel, sample));
+  EXPECT_NEAR(second, 5000, 4 * 50);
+}
+
+// A guide of one cell of the finest level, with an edge of 2.
+class CacheOfOneCell : public testing::Test {
+ protected:
+  CacheOfOneCell() {
+    m_view.cellCount = 1;
+    m_view.grid.inverseEdge = 0.5f;
+    m_view.keys = &m_key;
+    m_view.cached = m_cached;
+    m_view.rules.cachedError = 0.1f;
+  }
+  bool ends(float throughput, float footprint) const {
+    return cachedRadiance(m_view, {{}, {}, 0, 0}, 0, throughput, footprint) != nullptr;
+  }
+
+  CachedRadiance m_cached[2] = {{{1, 2, 3}, 1}, {{1, 2, 3}, 1}};
+  uint64_t m_key = CellGrid({}, 2).key({0.5f, 0.5f, 0.5f}, {0, 0, 1}, 0);
+  GuideView m_view;
+};
+
+TEST_F(CacheOfOneCell, EndsPathsByErrorAndFootprint) {
+  const float wide = 2 * m_view.rules.leastCachedFootprint;
+  EXPECT_TRUE(ends(0.09f, wide));
+  EXPECT_FALSE(ends(0.11f, wide));
+  EXPECT_FALSE(ends(0.09f, 0.99f * wide));
+  EXPECT_FALSE(ends(NAN, wide));
+  EXPECT_FALSE(ends(0.09f, NAN));
+  m_cached[0].error = m_cached[1].error = INFINITY;
+  EXPECT_FALSE(ends(0, wide));
+}
+
+TEST_F(CacheOfOneCell, NeverEndsPathsWhereImagesAreToBeUnbiased) {
+  m_view.rules.cachedError = 0;
+  m_cached[0].error = m_cached[1].error = 0;
+  EXPECT_FALSE(ends(0, 1e10f));
+  m_view.rules.cachedError = 0.1f;
+  EXPECT_TRUE(ends(0, 1e10f));
+  m_view.cached = nullptr;
+  EXPECT_FALSE(ends(0, 1e10f));
+}
+
+TEST(CachedRadiance, ArrivesAtTheVertexBefore) {
+  PathRecorder recorder;
+  const uint32_t path = recorder.begin({7, 3, 1});
+  recorder.surface(path, test::surfaceEvent({1, 2, 3}, {0, 0, 1}, {0, 1, 0}, 9));
+  BounceEvent bounce;
+  bounce.wi = {0, 0, 1};
+  bounce.weight = {0.5f, 0.5f, 0.5f};
+  bounce.pdf = 1;
+  recorder.bounce(path, bounce);
+  recorder.surface(path, test::surfaceEvent({1, 2, 4}, {0, 0, -1}, {0, 0, -1}, 1));
+  recorder.emission(path, test::emissionEvent({2, 2, 2}, 0.5f, 1));
+  recorder.cached(path, {4, 4, 4});
+  const ArrayView<const PathVertex> vertices = recorder.finish();
+  ASSERT_EQ(vertices.size(), 1u);
+  EXPECT_FLOAT_EQ(vertices[0].radiance.x, 4 + 2 * 0.5f);
+  EXPECT_FLOAT_EQ(vertices[0].indirect, 4 * 0.5f);
+  EXPECT_EQ(vertices[0].distance, 1);
+}
+
+TEST(CachedRadiance, NeedsASurface) {
+  PathRecorder recorder;
+  const uint32_t path = recorder.begin({});
+  EXPECT_THROW(recorder.cached(path, {}), std::logic_error);
+}
+
+}  // namespace
+}  // namespace odis::core
