@@ -39,17 +39,23 @@ TEST(Settings, LaterOnesWin) {
 
 TEST(Settings, ReachTheOptions) {
   RenderOptions o;
-  applySettings(o, {"samples=even", "guide=oracle", "oracle-spp=8", "lights=formula", "roulette=throughput",
-                    "ended-paths=nothing", "shadow-rays=all", "pilot-spp=0.25", "refine=0",
-                    "pilot-weight=0.5", "guided-cost=1.5", "bsdf-fraction=0.3", "prior-samples=1:2:3.5:0",
-                    "map-floor=0.1", "ppg-threshold=500", "ppg-flux=0.5", "ppg-directional=nearest",
-                    "ppg-combine=last", "restir-neighbours=7"});
+  applySettings(o, {"samples=even",        "guide=oracle",
+                    "oracle-spp=8",        "lights=formula",
+                    "roulette=throughput", "ended-paths=nothing",
+                    "cached-error=0.2",    "shadow-rays=all",
+                    "pilot-spp=0.25",      "refine=0",
+                    "pilot-weight=0.5",    "guided-cost=1.5",
+                    "bsdf-fraction=0.3",   "prior-samples=1:2:3.5:0",
+                    "map-floor=0.1",       "ppg-threshold=500",
+                    "ppg-flux=0.5",        "ppg-directional=nearest",
+                    "ppg-combine=last",    "restir-neighbours=7"});
   EXPECT_EQ(o.samples, odis::render::SampleSpread::even);
   EXPECT_EQ(o.guide, odis::render::GuideKind::oracle);
   EXPECT_EQ(o.oracleSpp, 8);
   EXPECT_EQ(o.lights, odis::render::LightChoiceKind::formula);
   EXPECT_EQ(o.roulette, odis::render::RouletteKind::throughput);
   EXPECT_FALSE(o.guideOptions.controlVariate);
+  EXPECT_EQ(o.guideOptions.cachedError, 0.2f);
   EXPECT_EQ(o.shadowRays, odis::render::ShadowRayKind::all);
   EXPECT_EQ(o.pilotSpp, 0.25);
   EXPECT_EQ(o.refineSpp, 0);
@@ -136,6 +142,7 @@ TEST(Settings, DefaultsAreThoseOfTheOptions) {
   EXPECT_EQ(o.lights, expected.lights);
   EXPECT_EQ(o.roulette, expected.roulette);
   EXPECT_EQ(o.guideOptions.controlVariate, expected.guideOptions.controlVariate);
+  EXPECT_EQ(o.guideOptions.cachedError, expected.guideOptions.cachedError);
   EXPECT_EQ(o.shadowRays, expected.shadowRays);
   EXPECT_EQ(o.pilotSpp, expected.pilotSpp);
   EXPECT_EQ(o.refineSpp, expected.refineSpp);
@@ -227,7 +234,7 @@ TEST_F(Odis, RenderHasFewOptions) {
                (line[first + 1] == '-' || std::isalpha(static_cast<unsigned char>(line[first + 1])));
   }
   EXPECT_GT(options, 10);
-  EXPECT_LE(options, 30) << help.text;
+  EXPECT_LE(options, 31) << help.text;
 }
 
 }  // namespace
