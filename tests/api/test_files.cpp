@@ -26,6 +26,7 @@ TEST(ApiFiles, AGuideIsReadAsItWasWritten) {
   const std::string path = folder.path("a.guide");
   GuideOptions options;
   options.lightGroups = 2;
+  options.cachedError = 0.5f;
   GuideBuilder builder(options);
   std::vector<OdisPathVertex> vertices = apiVertices();
   for (size_t i = 0; i < vertices.size(); ++i) {
@@ -42,8 +43,17 @@ TEST(ApiFiles, AGuideIsReadAsItWasWritten) {
   EXPECT_EQ(std::memcmp(a.maps.sums, b.maps.sums, a.cellCount * kSumsPerMap * sizeof(float)), 0);
   EXPECT_EQ(std::memcmp(a.lightTables, b.lightTables, a.cellCount * 3 * sizeof(float)), 0);
   EXPECT_EQ(guide.predictedVarianceRatio(), read.predictedVarianceRatio());
-  for (const OdisPathVertex& v : vertices)
-    EXPECT_EQ(findCell(a, {v.position, v.normal}), findCell(b, {v.position, v.normal}));
+  EXPECT_EQ(std::memcmp(a.cached, b.cached, 2 * a.cellCount * sizeof(CachedRadiance)), 0);
+  EXPECT_EQ(b.rules.cachedError, 0.5f);
+  for (const OdisPathVertex& v : vertices) {
+    const OdisPlace place{v.position, v.normal};
+    const uint32_t cell = odisFindCell(&a, &place);
+    EXPECT_EQ(cell, odisFindCell(&b, &place));
+    OdisFloat3 radiance;
+    EXPECT_FALSE(odisGetCachedRadiance(&b, &place, cell, 1e-6f, 0, &radiance));
+    ASSERT_TRUE(odisGetCachedRadiance(&b, &place, cell, 1e-6f, 1e6f, &radiance));
+    EXPECT_GT(luminance(radiance), 0);
+  }
 }
 
 TEST(ApiFiles, VerticesAreReadAsTheyWereWritten) {

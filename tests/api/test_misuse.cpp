@@ -31,6 +31,7 @@ TEST(ApiMisuse, NullIsAnError) {
   const OdisEmissionEvent emission;
   const OdisLightEvent light;
   const OdisBounceEvent bounce;
+  const OdisFloat3 grey{1, 1, 1};
   size_t count = 0;
   REFUSED(odisNewModel(nullptr));
   REFUSED(odisNewModelFromFile(nullptr, "x"));
@@ -42,6 +43,7 @@ TEST(ApiMisuse, NullIsAnError) {
   REFUSED(odisRecordEscape(nullptr, 0));
   REFUSED(odisRecordEmission(nullptr, 0, &emission));
   REFUSED(odisRecordSurvival(nullptr, 0, 1));
+  REFUSED(odisRecordCachedRadiance(nullptr, 0, &grey));
   REFUSED(odisRecordLight(nullptr, 0, &light));
   REFUSED(odisRecordLightHidden(nullptr, 0));
   REFUSED(odisRecordBounce(nullptr, 0, &bounce));
@@ -138,6 +140,7 @@ TEST(ApiMisuse, LookUpsWithoutAGuideAnswerThatThereIsNone) {
   const OdisFloat3 up{0, 0, 1};
   const float uv[2] = {0.5f, 0.5f};
   OdisMapSample sample;
+  OdisFloat3 radiance;
   const float* cdf = uv;
   const OdisGuideView empty;
   for (const OdisGuideView* view : {static_cast<const OdisGuideView*>(nullptr), &empty}) {
@@ -146,6 +149,7 @@ TEST(ApiMisuse, LookUpsWithoutAGuideAnswerThatThereIsNone) {
     EXPECT_FALSE(odisSampleMap(view, 0, &up, false, uv, &sample));
     EXPECT_EQ(odisGetMapPdf(view, 0, &up, false, &up), 0);
     EXPECT_EQ(odisGetSurvivalProbability(view, 0, 0.1f), 1);
+    EXPECT_FALSE(odisGetCachedRadiance(view, &place, 0, 0, INFINITY, &radiance));
     EXPECT_EQ(odisGetLearnedLights(view, 0, &cdf), 0);
     EXPECT_EQ(cdf, nullptr);
   }
@@ -157,7 +161,9 @@ TEST(ApiMisuse, TheOrderOfEventsIsChecked) {
   const OdisBounceEvent bounce;
   const OdisLightEvent light;
   const uint32_t path = recorder.begin({});
+  const OdisFloat3 radiance;
   OUT_OF_ORDER(odisRecordBounce(recorder.get(), path, &bounce));
+  OUT_OF_ORDER(odisRecordCachedRadiance(recorder.get(), path, &radiance));
   OUT_OF_ORDER(odisRecordLight(recorder.get(), path, &light));
   OUT_OF_ORDER(odisRecordLightHidden(recorder.get(), path));
   REFUSED(odisRecordEscape(recorder.get(), path + 1));
