@@ -15,8 +15,8 @@ constexpr size_t kManyPixels = 200000;
 constexpr uint32_t kManySamples = 32;
 // The least number of samples per pixel that are spread by what the first ones say.
 constexpr uint32_t kFewestToSpread = 4;
-// The greatest number of samples per pixel in a pass, so that there is progress and an end in sight; on average
-// in the last one, as few pixels would be left for further ones.
+// The greatest number of samples per pixel in a pass, so that there is progress and an end in sight. The last
+// pass may have more in some pixels, but not on average.
 constexpr uint32_t kSamplesPerPass = 8;
 
 uint64_t mixBits(uint64_t x) {
