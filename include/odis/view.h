@@ -68,7 +68,7 @@ typedef struct OdisCellDecisions {
 // What vertices of a cell scatter back along their paths, next-event estimation included, as one half of the
 // paths saw it (odis::pathHalf). 16 bytes.
 typedef struct OdisCachedRadiance {
-  OdisFloat3 radiance;  // their mean, or the guide's best guess of it
+  OdisFloat3 radiance;  // their mean, shrunk towards that of the next coarser cell
   // Its standard error, as luminance, as the other half of the paths makes it out; infinity: unknown. Were it
   // the same half's, the darkest estimates would be trusted most, and images would lose energy.
   float error ODIS_DEFAULT(INFINITY);
@@ -84,8 +84,8 @@ typedef struct OdisGuideRules {
   // Light that adds less than this fraction of the pixel's value is worth a shadow ray only sometimes, and at
   // least with this probability.
   float fullShadowRayContribution ODIS_DEFAULT(0.05f), leastShadowRayProbability ODIS_DEFAULT(0.2f);
-  // A path may end with cached radiance if the standard error of what it adds is below this fraction of its
-  // pixel's value (0: never), and if its footprint is as wide as so many edges of the cell.
+  // A path may end with cached radiance if the standard error of what it adds is below cachedError times the
+  // pixel's value (0: never), and if its footprint is at least leastCachedFootprint times the cell's edge.
   float cachedError ODIS_DEFAULT(0), leastCachedFootprint ODIS_DEFAULT(5);
 } OdisGuideRules;
 

@@ -18,6 +18,10 @@ bool isSound(const CellDecisions& d) {
          d.learnedLightFraction >= 0 && d.learnedLightFraction < 1;
 }
 
+bool isSound(const CachedRadiance& c) {
+  return std::isfinite(c.radiance.x + c.radiance.y + c.radiance.z) && c.error >= 0;
+}
+
 // Whether a table rises from 0 to 1, or to anything less where nothing is known.
 bool isSound(std::span<const float> table, bool known) {
   if (known && (table.front() != 0 || table.back() != 1)) return false;
@@ -81,12 +85,10 @@ Guide Guide::load(const Archive& file) {
                    "guide.lightTables: are damaged");
   }
   if (file.contains("guide.cached")) {
-    data.cached = file.get<CachedRadiance>("guide.cached");
     data.cachedError = file.value<float>("guide.cachedError");
-    file.require(data.cached.empty() || data.cached.size() == 2 * keys.size(), "guide.cached: is damaged");
-    for (const CachedRadiance& c : data.cached)
-      file.require(std::isfinite(c.radiance.x + c.radiance.y + c.radiance.z) && c.error >= 0,
-                   "guide.cached: is damaged");
+    data.cached = file.get<CachedRadiance>("guide.cached", data.cachedError > 0 ? 2 * keys.size() : 0);
+    for (const CachedRadiance& cached : data.cached)
+      file.require(isSound(cached), "guide.cached: is damaged");
   }
   data.prediction = file.value<GuidingPrediction>("guide.prediction");
   return guide;

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "integrator/test_scenes.h"
+#include "support/average.h"
 #include "support/sanitizers.h"
 
 namespace odis::render {
@@ -23,33 +24,12 @@ RenderOptions cachedOptions(int spp, uint64_t seed = 0) {
   return options;
 }
 
-bool sameBits(const RenderedImage& a, const RenderedImage& b) {
-  for (size_t i = 0; i < a.color.size(); ++i)
-    if (a.color[i].x != b.color[i].x || a.color[i].y != b.color[i].y || a.color[i].z != b.color[i].z)
-      return false;
-  return true;
-}
-
-// The mean of random numbers, and its standard error.
-struct Average {
-  double sum = 0, squares = 0;
-  int count = 0;
-
-  void add(double value) {
-    sum += value;
-    squares += value * value;
-    ++count;
-  }
-  double mean() const { return sum / count; }
-  double standardError() const { return std::sqrt((squares / count - mean() * mean()) / count); }
-};
-
 // Paths of an image end with the same few numbers, so that only many images tell of their mean.
 TEST(Cached, FurnaceIsAsBright) {
   const auto scene = test::loadScene(
       test::furnace("<bsdf type=\"diffuse\"><rgb name=\"reflectance\" value=\"0.5\"/></bsdf>"));
   const int images = test::imagesToCompare(400);
-  Average brightness;
+  test::Average brightness;
   for (int seed = 0; seed < images; ++seed)
     brightness.add(meanOf(test::renderScene(*scene, cachedOptions(8, uint64_t(seed))).image));
   if (images < 10) return;
@@ -62,7 +42,7 @@ TEST(Cached, KeepsTheEnergyOfARoom) {
   const auto scene = test::loadScene(test::indirectRoom(32));
   constexpr double kTolerance = 0.01;
   const int images = test::imagesToCompare(100);
-  Average difference;
+  test::Average difference;
   uint64_t cachedRays = 0, rays = 0;
   for (int seed = 0; seed < images; ++seed) {
     const RenderResult cached = test::renderScene(*scene, cachedOptions(4, uint64_t(seed)));
@@ -89,7 +69,7 @@ TEST(Cached, SameBitsForAnyNumberOfThreads) {
   options.threads = 1;
   const RenderResult one = test::renderScene(*scene, options);
   options.threads = 4;
-  EXPECT_TRUE(sameBits(one.image, test::renderScene(*scene, options).image));
+  EXPECT_TRUE(test::sameBits(one.image.color, test::renderScene(*scene, options).image.color));
 }
 
 // Where few bounces are asked for, nothing is cached.
@@ -99,7 +79,7 @@ TEST(Cached, LeavesShallowPathsAsTheyAre) {
   options.maxDepth = 3;
   const RenderResult cached = test::renderScene(*scene, options);
   options.cached = false;
-  EXPECT_TRUE(sameBits(cached.image, test::renderScene(*scene, options).image));
+  EXPECT_TRUE(test::sameBits(cached.image.color, test::renderScene(*scene, options).image.color));
 }
 
 }  // namespace

@@ -2,16 +2,11 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <cstring>
 
 #include "integrator/test_scenes.h"
 
 namespace odis::render {
 namespace {
-
-bool sameBits(const std::vector<Rgb>& a, const std::vector<Rgb>& b) {
-  return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof(Rgb)) == 0;
-}
 
 TEST(Records, FirstVerticesAddUpToTheImage) {
   const auto scene = test::loadScene(test::indirectRoom());
@@ -64,12 +59,12 @@ TEST(Repeatable, SameBitsForAnyNumberOfThreads) {
       const RenderResult one = test::renderScene(*scene, options);
       options.threads = 3;
       const RenderResult three = test::renderScene(*scene, options);
-      EXPECT_TRUE(sameBits(one.image.color, three.image.color));
-      EXPECT_TRUE(sameBits(one.image.variance, three.image.variance));
-      EXPECT_TRUE(sameBits(one.image.albedo, three.image.albedo));
+      EXPECT_TRUE(test::sameBits(one.image.color, three.image.color));
+      EXPECT_TRUE(test::sameBits(one.image.variance, three.image.variance));
+      EXPECT_TRUE(test::sameBits(one.image.albedo, three.image.albedo));
       EXPECT_EQ(one.stats.rays, three.stats.rays);
       options.seed = 1;
-      EXPECT_FALSE(sameBits(one.image.color, test::renderScene(*scene, options).image.color));
+      EXPECT_FALSE(test::sameBits(one.image.color, test::renderScene(*scene, options).image.color));
     }
 }
 

@@ -3,10 +3,12 @@
 
 #include <unistd.h>
 
+#include <cstring>
 #include <filesystem>
 #include <fstream>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "render/integrators/render.h"
 #include "render/scene/scene.h"
@@ -71,6 +73,10 @@ inline std::string indirectRoom(int size = 24) {
 inline render::RenderResult renderScene(const render::Scene& scene, const render::RenderOptions& options) {
   render::Progress quiet;
   return render::render(scene, options, quiet);
+}
+
+inline bool sameBits(const std::vector<render::Rgb>& a, const std::vector<render::Rgb>& b) {
+  return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof(render::Rgb)) == 0;
 }
 
 }  // namespace odis::test

@@ -6,6 +6,7 @@
 #include "odis/guide.h"
 #include "odis/models/cached_radiance.h"
 #include "odis/record/recorder.h"
+#include "support/average.h"
 #include "support/events.h"
 
 namespace odis::core {
@@ -31,29 +32,17 @@ std::vector<CellStatistics> cellsOfRareLight(size_t count, int perHalf) {
   return cells;
 }
 
-struct Mean {
-  double sum = 0, squares = 0, count = 0;
-
-  void add(double value) {
-    sum += value;
-    squares += value * value;
-    count += 1;
-  }
-  double mean() const { return sum / count; }
-  double standardError() const { return std::sqrt((squares / count - mean() * mean()) / count); }
-};
-
 TEST(CachedRadiance, IsRightOnAverageWhereItIsTrusted) {
   const std::vector<CellStatistics> cells = cellsOfRareLight(20000, 20);
   const std::vector<CachedRadiance> cached = cacheRadiance(*libraryTasks(), cells);
   constexpr float kTrusted = 0.5f;
-  Mean trusted, judgedByItself;
+  test::Average trusted, judgedByItself;
   for (size_t i = 0; i < cached.size(); ++i) {
     if (cached[i].error < kTrusted) trusted.add(cached[i].radiance.x);
     if (cached[i ^ 1].error < kTrusted) judgedByItself.add(cached[i].radiance.x);
   }
-  EXPECT_GT(trusted.count, 1000);
-  EXPECT_LT(trusted.count, 0.9 * double(cached.size()));
+  EXPECT_GT(trusted.count(), 1000);
+  EXPECT_LT(trusted.count(), 0.9 * double(cached.size()));
   EXPECT_LT(std::abs(trusted.mean() - 1), 4 * trusted.standardError());
   // What the other half judges by is this half's own spread: by that, light is lost.
   EXPECT_LT(judgedByItself.mean(), 0.9);

@@ -262,7 +262,7 @@ def make_integrator():
             valid = np.zeros(width * height) if has_alpha else None  # samples of each pixel
             progress, traced, self.rays = self.progress or default_progress(), 0, 0
             progress(0)
-            tables, values, rebuilt, self.samples_per_lane = None, None, False, SAMPLES_PER_LANE
+            tables, values, rebuilt = None, None, False
             while (frame_pass := frame.begin_pass()) is not None:
                 with self._timed("tables"):
                     if not len(frame_pass.guide):  # not yet, or guiding does not pay
@@ -270,8 +270,7 @@ def make_integrator():
                     elif rebuilt:
                         tables = make_guide_tables(frame_pass.guide, self.known.materials.both_sides)
                         values = array_of(mi.Float, frame.pixel_values)
-                if traced:
-                    self.samples_per_lane = SAMPLES_PER_LANE if self.rays >= MANY_RAYS * traced else 1
+                self.samples_per_lane = SAMPLES_PER_LANE if self.rays >= MANY_RAYS * traced else 1
                 rebuilt = frame_pass.wants_vertices
                 for part in parts_of_pass(frame, frame_pass):
                     self._trace_part(sensor, frame_pass, tables, values, part, valid)

@@ -10,12 +10,12 @@ namespace {
 constexpr double kLeastSamples = 0.01;
 
 CellStatistics weighted(CellStatistics cell, double weight) {
-  for (double* sum :
-       {&cell.count, &cell.lightCount, &cell.sum, &cell.sumSquares, &cell.outgoingSquares, &cell.rays})
+  ReturnedSums& half = cell.secondHalf;
+  for (double* sum : {&cell.count, &cell.lightCount, &cell.sum, &cell.sumSquares, &cell.outgoingSquares,
+                      &cell.rays, &half.count, &half.squares})
     *sum *= weight;
   for (double& sum : cell.outgoing) sum *= weight;
-  for (double* sum : {&cell.secondHalf.count, &cell.secondHalf.squares}) *sum *= weight;
-  for (double& sum : cell.secondHalf.outgoing) sum *= weight;
+  for (double& sum : half.outgoing) sum *= weight;
   for (double& sum : cell.lightSquares) sum *= weight;
   for (float& texel : cell.histogram) texel *= float(weight);
   cell.normal = cell.normal * float(weight);

@@ -48,7 +48,8 @@ class Schedule {
   float remainingRatio(uint32_t pixel) const;
 
  private:
-  // How many samples all pixels have after so many of those that remain, if that is settled.
+  // How many samples are left in all pixels together when `done` of those that remain are taken in each. 0
+  // before it is settled how many each pixel has.
   uint64_t samplesAfter(uint32_t done) const;
   uint32_t sampleCount(uint32_t pixel) const { return m_counts.empty() ? m_spp : m_counts[pixel]; }
 

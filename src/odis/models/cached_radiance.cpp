@@ -12,13 +12,12 @@ namespace {
 // Weight of the coarser level beside a cell's own samples of one half, in samples.
 constexpr double kCachedPriorSamples = 25;
 
-// What the paths of one half have found in a cell.
-ReturnedSums halfOf(const CellStatistics& cell, size_t index) {
+// What the paths of each half have found in a cell.
+std::array<ReturnedSums, 2> halvesOf(const CellStatistics& cell) {
   const ReturnedSums& second = cell.secondHalf;
-  if (index == 1) return second;
   ReturnedSums first{cell.count - second.count, {}, cell.outgoingSquares - second.squares};
   for (size_t i = 0; i < 3; ++i) first.outgoing[i] = std::max(cell.outgoing[i] - second.outgoing[i], 0.0);
-  return first;
+  return {first, second};
 }
 
 // The variance of what a vertex scatters back, as luminance; 0 where less than two are known.
@@ -41,12 +40,13 @@ std::vector<CachedRadiance> cacheRadiance(const Tasks& tasks, std::span<const Ce
   forEachFromCoarse(tasks, cells, [&](size_t c) {
     const CellStatistics& cell = cells[c];
     const bool hasParent = cell.parent != kNoCell;
+    const std::array<ReturnedSums, 2> halves = halvesOf(cell);
     for (size_t half = 0; half < 2; ++half) {
-      const ReturnedSums own = halfOf(cell, half);
+      const ReturnedSums& own = halves[half];
       const Known parent = hasParent ? known[cell.parent][half] : Known();
       const double prior = hasParent ? kCachedPriorSamples : 0;
       Known& here = known[c][half];
-      here.variance = std::max(varianceOf(halfOf(cell, 1 - half)), parent.variance);
+      here.variance = std::max(varianceOf(halves[1 - half]), parent.variance);
       if (!(own.count + prior > 0)) continue;
       for (size_t i = 0; i < 3; ++i)
         here.mean[i] = shrunkMean(own.outgoing[i], own.count, parent.mean[i], prior);

@@ -69,10 +69,10 @@ void meetEmission(const PathSettings& settings, Batch& batch, Bounces bounces) {
 
 namespace {
 
-// What varies more with the direction than this roughness does is not cached.
+// Smoother surfaces end no paths: what they scatter depends too much on the direction.
 constexpr float kLeastCachedRoughness = 0.2f;
-// Cached radiance knows no limit of depth: it holds what comes back from vertices of any depth. With fewer
-// bounces than these that would show.
+// Cached radiance holds what comes back from vertices of any depth, so that paths that end with it may bring
+// light of more bounces than max_depth allows. Below this max_depth that light is too bright to be ignored.
 constexpr int kLeastCachedMaxDepth = 8;
 
 bool scattersEvenly(const Vertex& vertex) {
