@@ -1,0 +1,219 @@
+#include "odis/pixels/neighbourhood.h"
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "odis/maps/texel_directions.h"
+
+namespace odis::core {
+
+namespace {
+
+// A sample's radiance / pdf counts at most this many times the mean of all.
+constexpr float kClamp = 20;
+// How many samples the next wider neighbourhood is worth in the histogram.
+constexpr float kPriorSamples = 32;
+
+// A sample as it is seen from a place.
+struct Seen {
+  Splat texels;
+  float weight, energy, radiance, nearness;
+  bool near;
+};
+
+// Mean and standard deviation of a number over some samples.
+struct Spread {
+  float count = 0, sum = 0, squares = 0;
+  void add(float x) {
+    ++count;
+    sum += x;
+    squares += x * x;
+  }
+  float deviation() const {
+    if (count < 2) return 0;
+    const float mean = sum / count;
+    return std::sqrt(std::max(squares / count - mean * mean, 0.0f));
+  }
+};
+
+// The effective number of samples: many of which one holds all the light are worth one.
+struct EffectiveCount {
+  float sum = 0, squares = 0;
+  void add(float x) {
+    sum += x;
+    squares += x * x;
+  }
+  float value() const { return squares > 0 ? sum * sum / squares : 0; }
+};
+
+float length(const Float3& v) {
+  return std::sqrt(dot(v, v));
+}
+
+struct Window {
+  int x0, y0, x1, y1;
+  bool contains(int x, int y) const { return x >= x0 && x < x1 && y >= y0 && y < y1; }
+};
+
+Window around(const PixelPlace& place, int margin) {
+  return {place.x - margin, place.y - margin, place.x + place.size + margin, place.y + place.size + margin};
+}
+
+// Calls use(vertex, near) for the vertices of a neighbourhood: all that are near, and of the others those in
+// every second column of every second row.
+template <class Use>
+void forEachAround(const FirstVertices& vertices, const PixelPlace& place, const Use& use) {
+  const Window near = around(place, kNearMargin), far = around(place, kFarMargin);
+  for (int y = std::max(far.y0, 0); y < std::min(far.y1, vertices.height()); ++y)
+    for (int x = std::max(far.x0, 0); x < std::min(far.x1, vertices.width()); ++x) {
+      const bool isNear = near.contains(x, y);
+      if (!isNear && ((x | y) & 1)) continue;
+      const FirstVertex& v = vertices.at(x, y);
+      if (v.there) use(v, isNear);
+    }
+}
+
+// How far the near vertices lie from the place: the median, so that what is behind an edge does not count.
+float extentOf(const FirstVertices& vertices, const PixelPlace& place) {
+  thread_local std::vector<float> distances;
+  distances.clear();
+  forEachAround(vertices, place, [&](const FirstVertex& v, bool near) {
+    if (near) distances.push_back(length(v.position - place.position));
+  });
+  if (distances.empty()) return 0;
+  const auto middle = distances.begin() + std::ptrdiff_t(distances.size() / 2);
+  std::nth_element(distances.begin(), middle, distances.end());
+  return *middle;
+}
+
+void add(Histogram& histogram, const Splat& texels, float value) {
+  for (int i = 0; i < 4; ++i) histogram[size_t(texels.texel[i])] += texels.weight[i] * value;
+}
+
+// How much alike two surfaces are: 1 where they lie in one plane.
+float likeness(const Float3& offset, const Float3& normal, const Float3& other, float extent) {
+  const float cosine = std::max(dot(normal, other), 0.0f);
+  const float height = extent > 0 ? dot(offset, normal) / extent : 0;
+  return cosine * cosine * cosine * cosine / (1 + 4 * height * height);
+}
+
+// The direction from a place to where a vertex's light came from.
+Float3 aimed(const FirstVertex& v, const Float3& offset) {
+  if (!std::isfinite(v.distance)) return v.wi;
+  const Float3 to = offset + v.wi * v.distance;
+  const float distance = length(to);
+  return distance > 0 ? to / distance : v.wi;
+}
+
+void logOf(const Histogram& sums, float scale, Histogram& result) {
+  for (size_t t = 0; t < kMapTexels; ++t) result[t] = std::log1p(scale * sums[t]);
+}
+
+float sumOf(const Histogram& histogram) {
+  float sum = 0;
+  for (const float value : histogram) sum += value;
+  return sum;
+}
+
+}  // namespace
+
+void look(const FirstVertices& vertices, const PixelPlace& place, Neighbourhood& result) {
+  result = {};
+  const float extent = extentOf(vertices, place);
+  thread_local std::vector<Seen> all;
+  all.clear();
+  Spread albedo, roughness, heights;
+  Float3 normals;
+  float nearWeight = 0, farWeight = 0, energy = 0, nearSeen = 0;
+  forEachAround(vertices, place, [&](const FirstVertex& v, bool near) {
+    const Float3 offset = v.position - place.position;
+    if (near) {
+      albedo.add(v.albedo);
+      roughness.add(v.roughness);
+      heights.add(extent > 0 ? std::min(std::abs(dot(offset, place.normal)) / extent, 10.0f) : 0);
+      normals = normals + v.normal;
+    }
+    const float weight = likeness(offset, place.normal, v.normal, extent);
+    if (near) nearWeight += weight;
+    farWeight += weight;
+    if (!(v.pdf > 0) || weight < 0.01f) return;
+    const float distance = std::isfinite(v.distance) ? v.distance : INFINITY;
+    const Seen seen{splat(aimed(v, offset)), weight, v.radiance / v.pdf, v.radiance,
+                    extent > 0 ? extent / (extent + distance) : 0, near};
+    energy += seen.weight * seen.energy;
+    nearSeen += near;
+    all.push_back(seen);
+  });
+
+  // Fireflies count less.
+  const float most = farWeight > 0 ? kClamp * energy / farWeight : 0;
+  EffectiveCount nearEffective, farEffective;
+  Histogram distances{};
+  for (const Seen& s : all) {
+    const float clamped = s.weight * std::min(s.energy, most);
+    const float radiance = s.weight * s.radiance * (s.energy > most ? most / s.energy : 1);
+    add(result.farEnergy, s.texels, clamped);
+    add(result.farCount, s.texels, s.weight);
+    add(result.farRadiance, s.texels, radiance);
+    add(distances, s.texels, s.weight * s.nearness);
+    farEffective.add(clamped);
+    if (!s.near) continue;
+    add(result.nearEnergy, s.texels, clamped);
+    add(result.nearCount, s.texels, s.weight);
+    add(result.nearRadiance, s.texels, radiance);
+    nearEffective.add(clamped);
+  }
+  for (size_t t = 0; t < kMapTexels; ++t)
+    result.nearness[t] = result.farCount[t] > 0 ? distances[t] / result.farCount[t] : 0;
+
+  const float count = std::max(heights.count, 1.0f);
+  const float scalars[kPixelScalars] = {
+      std::log1p(nearEffective.value()), std::log1p(farEffective.value()), std::log1p(nearWeight),
+      std::log1p(farWeight),             place.roughness,                  place.albedo,
+      1 - length(normals) / count,       nearWeight / count,               heights.sum / count,
+      albedo.deviation(),                roughness.deviation(),            nearSeen / count};
+  std::copy_n(scalars, kPixelScalars, result.scalars);
+}
+
+void describe(const Neighbourhood& n, const Float3& normal, std::span<float> maps,
+              std::span<float> scalars) {
+  const float nearEnergy = sumOf(n.nearEnergy), farEnergy = sumOf(n.farEnergy);
+  const float farCount = sumOf(n.farCount), farRadiance = sumOf(n.farRadiance);
+  const float toMean = farRadiance > 0 ? farCount / farRadiance : 0;
+  const auto share = [](float sum) { return sum > 0 ? float(kMapTexels) / sum : 0; };
+  Histogram channels[kPixelChannels];
+  Histogram mean{};
+  const auto meanRadiance = [&](const Histogram& radiance, const Histogram& count) -> const Histogram& {
+    for (size_t t = 0; t < kMapTexels; ++t) mean[t] = count[t] > 0 ? radiance[t] / count[t] : 0;
+    return mean;
+  };
+  logOf(n.nearEnergy, share(nearEnergy), channels[0]);
+  logOf(n.nearCount, 1, channels[1]);
+  logOf(meanRadiance(n.nearRadiance, n.nearCount), toMean, channels[2]);
+  logOf(n.farEnergy, share(farEnergy), channels[3]);
+  logOf(n.farCount, 1, channels[4]);
+  logOf(meanRadiance(n.farRadiance, n.farCount), toMean, channels[5]);
+  channels[6] = cosinesTo(normal);
+  channels[7] = n.nearness;
+  for (int y = 0; y < kMapSize; ++y)
+    for (int x = 0; x < kMapSize; ++x)
+      for (int c = 0; c < kPixelChannels; ++c)
+        maps[size_t((y * kMapSize + x) * kPixelChannels + c)] = channels[c][size_t(texelAt(x, y))];
+  std::copy_n(n.scalars, kPixelScalars, scalars.begin());
+}
+
+Histogram histogramOf(const Neighbourhood& n) {
+  const float nearCount = std::expm1(n.scalars[0]), farCount = std::expm1(n.scalars[1]);
+  const float nearShare = nearCount / (nearCount + kPriorSamples);
+  const float farShare = (1 - nearShare) * farCount / (farCount + kPriorSamples);
+  const auto inverse = [](float sum) { return sum > 0 ? 1 / sum : 0; };
+  const float toNear = nearShare * inverse(sumOf(n.nearEnergy)), toFar = farShare * inverse(sumOf(n.farEnergy));
+  Histogram result;
+  for (size_t t = 0; t < kMapTexels; ++t)
+    result[t] = toNear * n.nearEnergy[t] + toFar * n.farEnergy[t] +
+                (1 - nearShare - farShare) / float(kMapTexels);
+  return result;
+}
+
+}  // namespace odis::core
