@@ -73,6 +73,20 @@ if(TARGET torch_learn AND NOT ODIS_TORCH)
   endif()
 endif()
 
+# Optional, for maps at pixels by a network.
+option(ODIS_ONEDNN "Build the network at pixels, where oneDNN is found" ON)
+if(ODIS_ONEDNN)
+  find_path(DNNL_INCLUDE_DIR dnnl.hpp)
+  find_library(DNNL_LIBRARY dnnl)
+  find_package(OpenMP QUIET COMPONENTS CXX)
+  mark_as_advanced(DNNL_INCLUDE_DIR DNNL_LIBRARY)
+  if(DNNL_INCLUDE_DIR AND DNNL_LIBRARY AND OpenMP_CXX_FOUND)
+    add_library(dnnl INTERFACE)
+    target_include_directories(dnnl SYSTEM INTERFACE ${DNNL_INCLUDE_DIR})
+    target_link_libraries(dnnl INTERFACE ${DNNL_LIBRARY} OpenMP::OpenMP_CXX)
+  endif()
+endif()
+
 # Optional, packaged by neither: docs/rivals.md.
 find_package(openpgl 0.6 QUIET)
 

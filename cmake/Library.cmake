@@ -36,3 +36,28 @@ foreach(library odis odis_static)
     $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}/include> $<INSTALL_INTERFACE:include>)
   target_link_libraries(${library} PRIVATE $<$<BOOL:${ODIS_TBB}>:TBB::tbb> Threads::Threads)
 endforeach()
+
+# The network at pixels on oneDNN: a library of its own, which the others load when they are asked for it.
+if(TARGET dnnl)
+  file(GLOB ONEDNN_SOURCES CONFIGURE_DEPENDS src/onednn/*.cpp)
+  add_library(odis_pixels MODULE ${ONEDNN_SOURCES})
+  target_include_directories(odis_pixels PRIVATE include src)
+  target_link_libraries(odis_pixels PRIVATE dnnl odis_compiler)
+  set_target_properties(odis_pixels PROPERTIES CXX_VISIBILITY_PRESET hidden VISIBILITY_INLINES_HIDDEN ON)
+  odis_embed_bytes(odis_pixels odis::core paperWeights ${PROJECT_SOURCE_DIR}/weights/paper.weights)
+  odis_embed_bytes(odis_pixels odis::core paperFastWeights ${PROJECT_SOURCE_DIR}/weights/paper-fast.weights)
+  odis_embed_bytes(odis_pixels odis::core paperAdversarialWeights
+    ${PROJECT_SOURCE_DIR}/weights/paper-adversarial.weights)
+  odis_embed_bytes(odis_pixels odis::core paperFastAdversarialWeights
+    ${PROJECT_SOURCE_DIR}/weights/paper-fast-adversarial.weights)
+endif()
+# Lets a program, or a library with the library inside, find what it may load from the build.
+function(odis_finds TARGET)
+  foreach(component IN LISTS ARGN)
+    if(TARGET ${component})
+      add_dependencies(${TARGET} ${component})
+      set_property(TARGET ${TARGET} APPEND PROPERTY BUILD_RPATH $<TARGET_FILE_DIR:${component}>)
+    endif()
+  endforeach()
+endfunction()
+odis_finds(odis odis_pixels)

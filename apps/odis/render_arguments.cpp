@@ -24,6 +24,11 @@ void MethodArguments::addTo(CLI::App& app) {
       ->check(CLI::IsMember({"sobol", "independent"}))
       ->capture_default_str()
       ->group(group);
+  app.add_option("--preset", preset,
+                 "Settings to start from; paper, paper-fast: the method of Bako et al. 2019, docs/paper.md")
+      ->check(CLI::IsMember({"default", "paper", "paper-fast"}))
+      ->capture_default_str()
+      ->group(group);
   app.add_option("--weights", weights, "File of weights for the networks, in place of those built in")
       ->check(CLI::ExistingFile)
       ->group(group);
@@ -45,6 +50,31 @@ void MethodArguments::addTo(CLI::App& app) {
       ->group(group);
 }
 
+namespace {
+
+// The method of the paper: maps at pixels, half and half with the BSDF, and nothing else that is learned.
+void applyPaperPreset(RenderOptions& options, bool fast) {
+  if (options.integrator != IntegratorKind::odis)
+    throw UsageError("--preset: expected --integrator odis, others have no presets");
+  options.guideOptions.pixelMaps = ODIS_PIXEL_MAPS_NETWORK;
+  options.pixelNetwork = fast ? "paper-fast" : "paper";
+  options.guideOptions.pixelTile = fast ? 4 : 1;
+  options.guideOptions.cosineProduct = false;
+  options.guideOptions.fixedBsdfFraction = 0.5f;
+  options.guideOptions.cellsPerDiagonal = 0;
+  options.guideBounces = 1;
+  options.roulette = RouletteKind::throughput;
+  options.lights = LightChoiceKind::hierarchy;
+  options.shadowRays = ShadowRayKind::all;
+  options.samples = SampleSpread::even;
+  options.refineSpp = 0;
+  options.pilotSpp = 1;
+  options.pilotWeight = 1;
+  options.guidedCost = 0;
+}
+
+}  // namespace
+
 void MethodArguments::apply(RenderOptions& options) const {
   options.integrator = integrator == "path"      ? IntegratorKind::path
                        : integrator == "ppg"     ? IntegratorKind::ppg
@@ -52,7 +82,11 @@ void MethodArguments::apply(RenderOptions& options) const {
                        : integrator == "restir"  ? IntegratorKind::restir
                                                  : IntegratorKind::odis;
   options.sampler = sampler == "sobol" ? SamplerKind::sobol : SamplerKind::independent;
-  if (!weights.empty()) options.model = Model::load(weights);
+  if (preset != "default") applyPaperPreset(options, preset == "paper-fast");
+  if (!weights.empty()) {
+    options.model = Model::load(weights);
+    options.pixelNetwork.clear();
+  }
   options.cached = cached;
   if (cached && options.integrator != IntegratorKind::odis)
     throw UsageError("--cached: only --integrator odis has a cache");

@@ -15,7 +15,7 @@ namespace odis::app {
 
 // How a method differs from another: everything but the scene, the number of samples and the outputs.
 struct MethodArguments {
-  std::string integrator = "odis", sampler = "sobol", weights;
+  std::string integrator = "odis", sampler = "sobol", preset = "default", weights;
   bool cached = false;
   std::vector<std::string> settings;  // "key=value" each
 

@@ -118,12 +118,45 @@ std::vector<Setting> settingsOfPilotAndCells() {
       number<float>("bsdf-fraction", 0, 1, "0",
                     "Probability that a guided draw stays with the BSDF. 0: by variance and cost.",
                     [](Options& o, float v) { o.guideOptions.fixedBsdfFraction = v; }),
-      number<int>("cells", 1, 1 << 16, "32", "Finest cells along the diagonal of what the pilot saw.",
+      number<int>("cells", 0, 1 << 16, "32; paper: 0",
+                  "Finest cells along the diagonal of what the pilot saw. 0: no cells.",
                   [](Options& o, int v) { o.guideOptions.cellsPerDiagonal = v; }),
       {"prior-samples", "four times " + kPriorSamples.text(), "250:250:120:30",
        "Samples a coarser level is worth, finest first.", setPriorSamples},
       number<float>("map-floor", 0, 1, "0.03", "Share of the uniform distribution in every map.",
                     [](Options& o, float v) { o.guideOptions.floor = v; }),
+  };
+}
+
+std::vector<Setting> settingsOfPixels() {
+  using Options = RenderOptions;
+  return {
+      choice<OdisPixelMaps>("pixel-maps",
+                            {{"none", ODIS_PIXEL_MAPS_NONE},
+                             {"histogram", ODIS_PIXEL_MAPS_HISTOGRAM},
+                             {"network", ODIS_PIXEL_MAPS_NETWORK},
+                             {"oracle", ODIS_PIXEL_MAPS_ORACLE}},
+                            "none; paper: network",
+                            "What makes maps at pixels, for a path's first vertex that may be guided.",
+                            [](Options& o, OdisPixelMaps v) { o.guideOptions.pixelMaps = v; }),
+      choice<std::string>("pixel-network",
+                          {{"paper", "paper"},
+                           {"paper-adversarial", "paper-adversarial"},
+                           {"paper-fast", "paper-fast"},
+                           {"paper-fast-adversarial", "paper-fast-adversarial"}},
+                          "none; paper: paper", "The network that makes them, of those that come with ODIS.",
+                          [](Options& o, const std::string& v) { o.pixelNetwork = v; }),
+      number<uint32_t>("pixel-tile", 1, 16, "1; paper-fast: 4",
+                       "A map for each square of so many pixels a side.",
+                       [](Options& o, uint32_t v) { o.guideOptions.pixelTile = v; }),
+      number<float>("pixel-share", 0, 1, "1", "Share of a pixel's map; the rest is the map of its cell.",
+                    [](Options& o, float v) { o.guideOptions.pixelShare = v; }),
+      choice<bool>("pixel-light", {{"all", true}, {"without-direct", false}}, "all",
+                   "Whether histogram and oracle at pixels hold what next-event estimation covers.",
+                   [](Options& o, bool v) { o.guideOptions.pixelDirectLight = v; }),
+      choice<bool>("map-cosine", {{"on", true}, {"off", false}}, "on; paper: off",
+                   "Whether maps are multiplied by the cosine at a vertex.",
+                   [](Options& o, bool v) { o.guideOptions.cosineProduct = v; }),
   };
 }
 
@@ -167,7 +200,7 @@ std::vector<Setting> settingsOfRivals() {
 const std::vector<Setting>& allSettings() {
   static const std::vector<Setting> all = [] {
     std::vector<Setting> result = settingsOfPaths();
-    for (const auto more : {settingsOfPilotAndCells, settingsOfRivals})
+    for (const auto more : {settingsOfPilotAndCells, settingsOfPixels, settingsOfRivals})
       for (Setting& setting : more()) result.push_back(std::move(setting));
     return result;
   }();

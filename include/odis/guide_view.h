@@ -1,7 +1,7 @@
 // What a host looks up at every vertex in a guide (odis/view.h), inline, on the CPU or in CUDA. Cells are
 // known by their index.
 //
-//   const uint32_t cell = odis::findCell(view, {position, normal, pixel, sample});
+//   const uint32_t cell = odis::findCell(view, {position, normal, pixel, sample, first});
 //   if (cell != odis::kNoCell) {
 //     ... roulette on arrival: odis::survivalProbability(view, cell, throughput / pixelValue)
 //     ... direction: odis::VertexMap<float> with odis::bsdfFraction(view, cell, roughness),
@@ -25,10 +25,15 @@ using GuideView = OdisGuideView;
 inline constexpr int kRoughnessClasses = ODIS_ROUGHNESS_CLASSES;
 inline constexpr uint32_t kMaxLightGroups = ODIS_MAX_LIGHT_GROUPS;
 
+// The cell of the pixel's own map, for the first vertices of paths; kNoCell where there is none.
+ODIS_HOST_DEVICE inline uint32_t pixelCell(const GuideView& view, const Place& place) {
+  return place.first && view.pixelCells ? view.pixelCells[place.pixel] : kNoCell;
+}
+
 // The finest cell that there is for a vertex; kNoCell where the guide has seen nothing at all.
 ODIS_HOST_DEVICE inline uint32_t findCell(const GuideView& view, const Place& place) {
   const CellGrid grid(view.grid);
-  uint32_t cell = kNoCell;
+  uint32_t cell = pixelCell(view, place);
   for (int level = 0; level < kCellLevels && cell == kNoCell; ++level)
     cell = findSlot(view.slots, view.slotMask, grid.key(place.position, place.normal, level));
   return cell;
@@ -47,9 +52,14 @@ inline void findCells(const GuideView& view, const Place* places, size_t count, 
       if (view.slots) __builtin_prefetch(&view.slots[cellHash(keys[i - begin]) & view.slotMask]);
     }
     for (size_t i = begin; i < end; ++i) {
+      if (view.pixelCells && places[i].first) {
+        cells[i] = findCell(view, places[i]);
+        continue;
+      }
       // Neighbours in the list are often neighbours in the scene; places with the same key share all
       // coarser cells, too.
-      const bool same = i > begin && keys[i - begin] == keys[i - begin - 1];
+      const bool same =
+          i > begin && keys[i - begin] == keys[i - begin - 1] && !(view.pixelCells && places[i - 1].first);
       cells[i] = same ? cells[i - 1] : findSlot(view.slots, view.slotMask, keys[i - begin]);
       if (cells[i] == kNoCell) cells[i] = findCell(view, places[i]);
     }

@@ -110,6 +110,10 @@ class Model : public Handle<OdisModel, odisRetainModel, odisReleaseModel> {
   // This model with a formula for directions, or for the choice of lights.
   Model withDirectionFormula() const { return Model(odisNewModelWithFormulas(get(), true, false)); }
   Model withLightFormula() const { return Model(odisNewModelWithFormulas(get(), false, true)); }
+  // This model with a network for maps at pixels, by name.
+  Model withPixelNetwork(const std::string& name) const {
+    return Model(odisNewModelWithPixelNetwork(get(), name.c_str()));
+  }
 };
 
 // `model` and `lightParts` take the place of the fields of the same names in C.

@@ -75,6 +75,14 @@ typedef void (*OdisMemoryFunction)(void* user, int64_t change);
 typedef void (*OdisTaskFunction)(void* user, size_t count, void (*task)(void* taskData, size_t index),
                                  void* taskData);
 
+// What makes maps at pixels (OdisGuideOptions).
+typedef enum OdisPixelMaps {
+  ODIS_PIXEL_MAPS_NONE = 0,
+  ODIS_PIXEL_MAPS_HISTOGRAM = 1,  // the pilot's samples around
+  ODIS_PIXEL_MAPS_NETWORK = 2,    // a network that sees these samples (Bako et al. 2019): the model's
+  ODIS_PIXEL_MAPS_ORACLE = 3      // each pixel's own samples of OdisFrameOptions.oracleSamples
+} OdisPixelMaps;
+
 // ---- options ----
 
 typedef struct OdisContextOptions {
@@ -106,7 +114,8 @@ typedef struct OdisLightParts {
 typedef struct OdisGuideOptions {
   size_t size ODIS_DEFAULT(sizeof(OdisGuideOptions));
   OdisModel model ODIS_DEFAULT(NULL);  // NULL: the networks that come with the library
-  // >= 1: the finest cells have an edge of (diagonal of what the first vertices span) / this.
+  // >= 1: the finest cells have an edge of (diagonal of what the first vertices span) / this. 0: there are no
+  // cells, and only maps at pixels guide.
   int32_t cellsPerDiagonal ODIS_DEFAULT(32);
   // >= 0. Weight of the coarser level when the formula blends its map with a finer one's, in samples, for
   // each level, finest first; the last one is for the uniform map.
@@ -128,6 +137,17 @@ typedef struct OdisGuideOptions {
   // radiance of a cell (OdisCachedRadiance) whose standard error, times the path's throughput, is below this
   // fraction of the pixel's value: less noise and fewer rays, and images that are biased.
   float cachedError ODIS_DEFAULT(0);
+  // An OdisPixelMaps: what guides the first vertex of each path whose lobes may be guided, in frames. Its other
+  // decisions are those of the cell that it lies in, a BSDF sampling fraction of .5 where there is none.
+  int32_t pixelMaps ODIS_DEFAULT(ODIS_PIXEL_MAPS_NONE);
+  uint32_t pixelTile ODIS_DEFAULT(1);  // in [1, 16]: a map for each square of so many pixels a side
+  // In [0, 1]: share of a pixel's map in what guides there; the rest is that of the cell's, if there is one.
+  float pixelShare ODIS_DEFAULT(1);
+  // Whether maps at pixels tell of all light that arrives, or without what next-event estimation covers. A
+  // network tells of what it has learned.
+  bool pixelDirectLight ODIS_DEFAULT(true);
+  // Whether maps are multiplied by the cosine at a vertex.
+  bool cosineProduct ODIS_DEFAULT(true);
 } OdisGuideOptions;
 
 typedef struct OdisFrameOptions {

@@ -8,11 +8,12 @@
 // Counts up when a field changes its meaning; what is added comes at the end.
 #define ODIS_GUIDE_VIEW_VERSION 1
 
-// Where a look-up is made, and for which sample of which pixel, counted as in the frame. The guides of today
-// answer all samples alike.
+// Where a look-up is made, and for which sample of which pixel, counted as in the frame.
 typedef struct OdisPlace {
   OdisFloat3 position, normal;  // unit shading normal, on the side of the outgoing direction
   uint32_t pixel ODIS_DEFAULT(0), sample ODIS_DEFAULT(0);
+  // Whether no vertex of the path before this one had lobes that may be guided: maps at pixels are for these.
+  bool first ODIS_DEFAULT(false);
 } OdisPlace;
 
 // A direction drawn from a map, and its density.
@@ -105,6 +106,9 @@ typedef struct OdisGuideView {
       ODIS_DEFAULT(NULL);  // [cell][lightGroups + 1]: cumulative probabilities from 0 to 1
   OdisGuideRules rules;
   const OdisCachedRadiance* cached ODIS_DEFAULT(NULL);  // [cell][half]; NULL without cachedError
+  // [pixel]: the cell that holds the pixel's own map (OdisGuideOptions.pixelMaps), or ODIS_NO_CELL; NULL
+  // without such maps. These cells come after those of the grid, and no key leads to them.
+  const uint32_t* pixelCells ODIS_DEFAULT(NULL);
 } OdisGuideView;
 
 // What a frame asks the host to trace.

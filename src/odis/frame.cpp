@@ -58,20 +58,21 @@ const FrameOptions& checkedOptions(const FrameOptions& o) {
   return o;
 }
 
-Frame::Data::Data(const FrameOptions& o, std::shared_ptr<const Tasks> tasks,
+Frame::Data::Data(const FrameOptions& o, std::shared_ptr<const Tasks> shared,
                   std::shared_ptr<GuideBuilder> given)
     : options(checkedOptions(o)),
       ownsBuilder(!given),
+      tasks(shared),
       builder(!o.guided ? nullptr
               : given   ? std::move(given)
-                        : std::make_shared<GuideBuilder>(o.guide ? *o.guide : GuideOptions(), tasks)),
+                        : std::make_shared<GuideBuilder>(o.guide ? *o.guide : GuideOptions(), shared)),
       guideOptions(builder ? builder->options() : GuideOptions()),
       lightParts(guideOptions.lightParts, guideOptions.lightParts + guideOptions.lightPartCount),
       modelId(builder ? builder->modelId() : 0),
       schedule(o),
       pilot(size_t(o.width) * o.height),
       later(pilot.size()),
-      tiles(o.width, o.height, std::move(tasks)),
+      tiles(o.width, o.height, std::move(shared)),
       next(o.guided ? ODIS_PASS_PILOT : ODIS_PASS_GUIDED) {}
 
 SampleRange Frame::Data::samples(uint32_t pixel) const {
@@ -125,9 +126,21 @@ void Frame::Data::take(uint32_t tile, ArrayView<const FrameSample> samples, Tile
   }
 }
 
+// Makes the maps at pixels that come from the pilot, or gets ready for those of the oracle.
+void Frame::Data::describePixels() {
+  if (!builder) return;
+  const auto width = int(options.width), height = int(options.height);
+  if (guideOptions.pixelMaps == ODIS_PIXEL_MAPS_ORACLE)
+    pixelOracle = std::make_unique<PixelOracle>(width, height, radianceOf(guideOptions));
+  else if (guideOptions.pixelMaps != ODIS_PIXEL_MAPS_NONE)
+    pixelMaps = builder->makePixelMaps(partsOf(passVertices), width, height);
+  keptBytes += pixelMaps.bytes();
+}
+
 // Pixel values come from the pilot's image, and the guide from its vertices.
 void Frame::Data::endPilot() {
   pixelValues = estimatePixelValues(pilot, options.width);
+  describePixels();
   pilotVertices = std::move(passVertices);
   pilotVertexCount = countVertices(partsOf(pilotVertices));
   buildingBytes = pilotVertexCount * sizeof(PathVertex);
@@ -136,6 +149,7 @@ void Frame::Data::endPilot() {
 
 void Frame::Data::endOraclePass() {
   builder->add(partsOf(passVertices));
+  if (pixelOracle) pixelOracle->add(partsOf(passVertices), *tasks);
   if (oraclePasses < kOracleFractionPasses)
     std::move(passVertices.begin(), passVertices.end(), std::back_inserter(oracleVertices));
   if (++oraclePasses == options.oracleSamples) next = ODIS_PASS_GUIDED;
@@ -145,12 +159,20 @@ void Frame::Data::endOraclePass() {
 // vertices `judged`.
 void Frame::Data::buildGuide(const VertexTiles& taught, const VertexTiles& judged) {
   builder->add(partsOf(taught));
-  guide = builder->build(partsOf(judged), pixelValues);
-  ++guidesBuilt;
+  cells = builder->build(partsOf(judged), pixelValues);
+  if (pixelOracle) pixelMaps = pixelOracle->maps(*tasks);
+  pixelOracle.reset();
+  useCells();
   takeStock(pilotVertexCount * sizeof(PathVertex));
   oracleVertices = {};
-  keptBytes = options.keepPilotVertices ? pilotVertexCount * sizeof(PathVertex) : 0;
+  keptBytes = pixelMaps.bytes() + (options.keepPilotVertices ? pilotVertexCount * sizeof(PathVertex) : 0);
   if (!options.keepPilotVertices) pilotVertices = {};
+}
+
+// Makes the guide of what the cells know, and of the maps at pixels.
+void Frame::Data::useCells() {
+  guide = pixelMaps.empty() ? cells : cells.withPixelMaps(pixelMaps, guideOptions, *tasks);
+  ++guidesBuilt;
 }
 
 // Notes what building needed, beside vertices of this many bytes, and lets go of the builder when the guide
@@ -158,7 +180,10 @@ void Frame::Data::buildGuide(const VertexTiles& taught, const VertexTiles& judge
 void Frame::Data::takeStock(uint64_t vertices) {
   buildingBytes = std::max(buildingBytes, builder->bytes() + vertices);
   vertexCounts = builder->vertexCounts();
-  if (!learns()) builder.reset();
+  if (learns()) return;
+  builder.reset();
+  cells = {};
+  pixelMaps = {};
 }
 
 // Settles how many samples each pixel has.
@@ -179,8 +204,8 @@ void Frame::Data::refineGuide() {
   for (const CellSamples& samples : cellSamples) keptBytes -= samples.bytes();
   cellSamples.clear();
   if (std::has_single_bit(end + 1)) {
-    guide = builder->rebuild(guide);
-    ++guidesBuilt;
+    cells = builder->rebuild(cells);
+    useCells();
   }
   done = end;
   takeStock(0);
@@ -211,7 +236,8 @@ bool Frame::Data::guidingDoesNotPay() const {
 void Frame::Data::giveUpGuiding() {
   for (const CellSamples& samples : cellSamples) keptBytes -= samples.bytes();
   cellSamples.clear();
-  guide = Guide();
+  guide = cells = Guide();
+  pixelMaps = {};
   ++guidesBuilt;
   schedule.endRefinement();
   done = end;

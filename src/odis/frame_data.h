@@ -35,6 +35,8 @@ struct Frame::Data {
   void take(uint32_t tile, ArrayView<const FrameSample> samples, TileVertices& vertices);
   void endPilot();
   void endOraclePass();
+  void describePixels();
+  void useCells();
   void buildGuide(const VertexTiles& taught, const VertexTiles& judged);
   void endGuidedPass();
   void spreadSamples();
@@ -52,6 +54,7 @@ struct Frame::Data {
 
   FrameOptions options;
   bool ownsBuilder;
+  std::shared_ptr<const Tasks> tasks;
   std::shared_ptr<GuideBuilder> builder;  // null once the guide is final
   GuideOptions guideOptions;
   std::vector<OdisLightParts> lightParts;
@@ -61,6 +64,9 @@ struct Frame::Data {
   TileCollector tiles;
   std::vector<float> pixelValues;
   Guide guide;
+  Guide cells;  // the guide without maps at pixels; like those, until the guide is final
+  PixelMaps pixelMaps;
+  std::unique_ptr<PixelOracle> pixelOracle;
   uint64_t guidesBuilt = 0;
 
   FramePass pass;

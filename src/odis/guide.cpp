@@ -25,7 +25,7 @@ void require(bool holds, const char* message) {
 }
 
 void check(const GuideOptions& options) {
-  require(options.cellsPerDiagonal >= 1, "cellsPerDiagonal: expected at least 1");
+  require(options.cellsPerDiagonal >= 0, "cellsPerDiagonal: expected a number from 0");
   for (const float samples : options.priorSamples)
     require(samples >= 0 && std::isfinite(samples), "priorSamples: expected finite numbers from 0 on");
   require(options.lightPartCount == 0 || options.lightParts, "lightParts: expected an array");
@@ -36,6 +36,10 @@ void check(const GuideOptions& options) {
           "fixedBsdfFraction: expected a number from 0 to 1");
   require(options.cachedError >= 0 && std::isfinite(options.cachedError),
           "cachedError: expected a finite number from 0 on");
+  require(options.pixelMaps >= ODIS_PIXEL_MAPS_NONE && options.pixelMaps <= ODIS_PIXEL_MAPS_ORACLE,
+          "pixelMaps: expected an OdisPixelMaps");
+  require(options.pixelTile >= 1 && options.pixelTile <= 16, "pixelTile: expected a number from 1 to 16");
+  require(options.pixelShare >= 0 && options.pixelShare <= 1, "pixelShare: expected a number from 0 to 1");
 }
 
 }  // namespace
@@ -63,6 +67,7 @@ GuideView Guide::view() const {
   view.lightTables = m_data->lightTables.data();
   view.cached = m_data->cached.empty() ? nullptr : m_data->cached.data();
   view.rules.cachedError = m_data->cachedError;
+  view.pixelCells = m_data->pixelCells.empty() ? nullptr : m_data->pixelCells.data();
   return view;
 }
 
@@ -70,7 +75,7 @@ uint64_t Guide::bytes() const {
   if (!m_data) return 0;
   return m_data->index.bytes() + m_data->keys.size() * sizeof(uint64_t) + m_data->sums.bytes() +
          m_data->texels.bytes() + m_data->decisions.size() * sizeof(CellDecisions) +
-         m_data->lightTables.size() * sizeof(float);
+         m_data->lightTables.size() * sizeof(float) + m_data->pixelCells.size() * sizeof(uint32_t);
 }
 float Guide::predictedVarianceRatio() const {
   return m_data ? m_data->prediction.varianceRatio : 1;
@@ -94,14 +99,17 @@ GuideBuilder::GuideBuilder(GuideBuilder&&) noexcept = default;
 GuideBuilder& GuideBuilder::operator=(GuideBuilder&&) noexcept = default;
 
 void GuideBuilder::add(VertexParts parts) {
+  if (m_data->options.cellsPerDiagonal == 0) return;
   m_data->store.add(parts, m_data->options.cellsPerDiagonal);
 }
 CellSamples GuideBuilder::take(ArrayView<const PathVertex> vertices) const {
+  if (m_data->options.cellsPerDiagonal == 0) return {};
   CellSamples result;
   result.m_data = std::make_unique<CellSamples::Data>(CellSamples::Data{m_data->store.take({vertices})});
   return result;
 }
 void GuideBuilder::add(ArrayView<const CellSamples> samples) {
+  if (m_data->options.cellsPerDiagonal == 0) return;
   std::vector<const BatchSamples*> batches;
   for (const CellSamples& batch : samples)
     if (batch.m_data) batches.push_back(&batch.m_data->samples);
@@ -172,6 +180,7 @@ Guide GuideBuilder::Data::buildMaps(const std::vector<CellStatistics>& cells,
   result.grid = store.grid();
   result.index = store.index();
   result.keys = store.keys();
+  result.setCosineProduct(options.cosineProduct);
   distributions.resize(cells.size());
   forEachFromCoarse(store.tasks(), cells, [&](size_t c) {
     const uint32_t parent = cells[c].parent;
@@ -195,6 +204,7 @@ void GuideBuilder::Data::addRouletteAndLights(Guide::Data& guide,
 }
 
 Guide GuideBuilder::build(VertexParts parts, ArrayView<const float> pixelValues) const {
+  if (m_data->options.cellsPerDiagonal == 0) return Guide();
   const Progress& progress = m_data->progress;
   progress.report(0);
   const std::vector<CellStatistics>& cells = m_data->store.rollUp();
@@ -215,6 +225,7 @@ Guide GuideBuilder::build(VertexParts parts, ArrayView<const float> pixelValues)
 }
 
 Guide GuideBuilder::rebuild(const Guide& previous) const {
+  if (m_data->options.cellsPerDiagonal == 0) return Guide();
   if (!previous.m_data || previous.m_data->builder != m_data.get() ||
       previous.m_data->numbering != m_data->store.numbering())
     throw std::invalid_argument(

@@ -13,11 +13,17 @@
 
 #include "odis/guide_view.h"
 #include "odis/path_vertex.h"
+#include "odis/pixels/pixel_maps.h"
 #include "odis/work/tasks.h"
 
 namespace odis::core {
 
 using GuideOptions = OdisGuideOptions;
+
+// Which light maps at pixels tell of that are no network's.
+inline IncidentRadiance radianceOf(const GuideOptions& options) {
+  return options.pixelDirectLight ? IncidentRadiance::full : IncidentRadiance::withoutDirect;
+}
 
 class Archive;
 class ArchiveWriter;
@@ -54,6 +60,12 @@ class Guide {
   uint64_t bytes() const;
   // The variance of a guided sample that the pilot predicts, as a ratio to an unguided one; 1 before build().
   float predictedVarianceRatio() const;
+
+  // This guide and a cell for each of the maps: with the decisions of the cell that the map's place lies in,
+  // and as much of its map as `options` say.
+  Guide withPixelMaps(const PixelMaps& maps, const GuideOptions& options, const Tasks& tasks) const;
+  // This guide without such cells.
+  Guide ofCellsAlone() const;
 
   // Writes the guide, and reads one. The latter throws FileError.
   void save(ArchiveWriter& file) const;
@@ -102,6 +114,9 @@ class GuideBuilder {
   // taken from `previous`, which must come from this builder (else std::invalid_argument is thrown); cells
   // that are new have their parents' fractions.
   Guide rebuild(const Guide& previous) const;
+
+  // The maps at pixels that the options ask for, from the pilot's vertices: path by path, from the camera on.
+  PixelMaps makePixelMaps(VertexParts pilot, int width, int height) const;
 
   // Keeps the memory of building from so many vertices, and of two guides, below a limit, as well as can be
   // foreseen: the cells become as much larger as it takes, or samples without a cell are left out.

@@ -34,7 +34,12 @@ class LineArray {
 struct Guide::Data {
   explicit Data(size_t cells) : sums(cells * kSumsPerMap), texels(cells * kMapTexels), decisions(cells) {}
 
-  MapArrays maps() const { return {texels.data(), sums.data(), texelDirections().x}; }
+  MapArrays maps() const { return {texels.data(), sums.data(), texelDirections().x, rim}; }
+  std::shared_ptr<Data> withRoom(size_t more) const;
+  void setCosineProduct(bool multiply) { rim = multiply ? MapArrays().rim : kRimWithoutProduct; }
+
+  // Beside this, cosines don't matter.
+  static constexpr float kRimWithoutProduct = 1e6f;
 
   const void* builder = nullptr;  // the one that it comes from
   uint64_t numbering = 0;         // that its cells had then
@@ -43,11 +48,13 @@ struct Guide::Data {
   std::vector<uint64_t> keys;
   LineArray<float> sums;
   LineArray<uint16_t> texels;
+  float rim = MapArrays().rim;
   std::vector<CellDecisions> decisions;
   std::vector<CachedRadiance> cached;  // [cell][half]; empty without GuideOptions::cachedError
   float cachedError = 0;
   std::vector<float> lightTables;
   uint32_t lightGroups = 0;
+  std::vector<uint32_t> pixelCells;  // [pixel]; empty without maps at pixels
   GuidingPrediction prediction;
 };
 
@@ -63,9 +70,13 @@ struct GuideBuilder::Data {
         modelId(idOf(model)),
         directions(std::move(model.directions)),
         lights(std::move(model.lights)),
+        pixels(std::move(model.pixels)),
         store(o.clamp, directions && directions->looksAround(), std::move(tasks)) {
     if (!directions) directions = std::make_shared<DirectionFormula>(o);
     if (!lights) lights = std::make_shared<LightFormula>();
+    if (options.pixelMaps == ODIS_PIXEL_MAPS_HISTOGRAM) pixels = pixelHistogram(radianceOf(options));
+    if (options.pixelMaps == ODIS_PIXEL_MAPS_NETWORK && !pixels)
+      throw std::invalid_argument("OdisGuideOptions.model: expected one with a network for maps at pixels");
     options.model = nullptr;
     options.lightParts = lightParts.data();
   }
@@ -80,6 +91,7 @@ struct GuideBuilder::Data {
   uint64_t modelId;
   std::shared_ptr<const DirectionModel> directions;
   std::shared_ptr<const LightModel> lights;
+  std::shared_ptr<const PixelModel> pixels;  // null: none is asked for
   CellStore store;
 };
 

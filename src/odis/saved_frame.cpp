@@ -146,13 +146,20 @@ void Frame::save(ArchiveWriter& file) const {
   }
   if (d.builder) d.builder->save(file);
   d.guide.save(file);
+  file.add("pixels.places", d.pixelMaps.places);
+  file.add("pixels.texels", d.pixelMaps.texels);
+  file.add("pixels.ofPixel", d.pixelMaps.ofPixel);
+  file.add("pixels.oracle", d.pixelOracle ? d.pixelOracle->pixels() : std::vector<PixelOracle::Pixel>());
 }
 
 SavedOptions::SavedOptions(const Archive& file)
     : frame(readChecked<FrameOptions>(file, "frame.options",
                                       {offsetof(FrameOptions, guided), offsetof(FrameOptions, adaptive),
                                        offsetof(FrameOptions, keepPilotVertices)})),
-      guide(readChecked<GuideOptions>(file, "frame.guideOptions", {offsetof(GuideOptions, controlVariate)})),
+      guide(readChecked<GuideOptions>(
+          file, "frame.guideOptions",
+          {offsetof(GuideOptions, controlVariate), offsetof(GuideOptions, pixelDirectLight),
+           offsetof(GuideOptions, cosineProduct)})),
       lightParts(file.get<OdisLightParts>("frame.lightParts")) {
   // Pointers of a file mean nothing.
   frame.guide = &guide;
@@ -178,6 +185,18 @@ std::vector<PixelSums> readPilot(const Archive& file, const FrameOptions& option
   return pilot;
 }
 
+PixelMaps readPixelMaps(const Archive& file, size_t pixels) {
+  PixelMaps maps;
+  maps.places = file.get<PixelMaps::Place>("pixels.places");
+  maps.texels = file.get<uint16_t>("pixels.texels", maps.size() * kMapTexels);
+  maps.ofPixel = file.get<uint32_t>("pixels.ofPixel", maps.empty() ? 0 : pixels);
+  for (const uint16_t texel : maps.texels)
+    file.require(texel > 0, "pixels.texels: a direction is impossible");
+  for (const uint32_t map : maps.ofPixel)
+    file.require(map == kNoMap || map < maps.size(), "pixels.ofPixel: are damaged");
+  return maps;
+}
+
 }  // namespace
 
 SavedFrame::SavedFrame(const Archive& file)
@@ -191,8 +210,14 @@ SavedFrame::SavedFrame(const Archive& file)
       vertexCounts(file.value<VertexCounts>("frame.vertexCounts")),
       pilotVertices(loadTiles(file, "frame.pilotVertices", pilot.size())),
       oracleVertices(loadTiles(file, "frame.oracleVertices", pilot.size())),
-      guide(Guide::load(file)) {
+      guide(Guide::load(file)),
+      pixelMaps(readPixelMaps(file, pilot.size())),
+      oraclePixels(file.get<PixelOracle::Pixel>("pixels.oracle")) {
   const auto isFull = [this](size_t size) { return size == 0 || size == pilot.size(); };
+  file.require(isFull(oraclePixels.size()), "pixels.oracle: are damaged");
+  if (guide.view().pixelCells)
+    file.require(file.get<uint32_t>("guide.pixelCells").size() == pilot.size(),
+                 "guide.pixelCells: are damaged");
   file.require(isFull(pixelValues.size()), "frame.pixelValues: are damaged");
   const std::vector<uint32_t> counts = file.get<uint32_t>("frame.counts");
   file.require(isFull(counts.size()) && schedule.restore(counts), "frame.counts: are damaged");
@@ -260,11 +285,18 @@ Frame Frame::load(const Archive& file, OdisModel model, std::shared_ptr<const Ta
   d.pilotVertices = std::move(saved.pilotVertices);
   d.oracleVertices = std::move(saved.oracleVertices);
   d.guide = std::move(saved.guide);
+  d.cells = d.guide.ofCellsAlone();
+  d.pixelMaps = std::move(saved.pixelMaps);
+  if (!saved.oraclePixels.empty()) {
+    d.pixelOracle = std::make_unique<PixelOracle>(int(d.options.width), int(d.options.height),
+                                                  radianceOf(d.guideOptions));
+    d.pixelOracle->restore(std::move(saved.oraclePixels));
+  }
   d.resumed = std::move(saved.pass);
   d.moveTo(saved.position);
   if (saved.position.builder) {
     d.builder->load(file);
-    d.builder->adopt(d.guide);
+    d.builder->adopt(d.cells);
   } else {
     d.builder.reset();
   }

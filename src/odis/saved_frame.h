@@ -36,6 +36,8 @@ struct SavedFrame {
   VertexCounts vertexCounts;
   VertexTiles pilotVertices, oracleVertices;
   Guide guide;
+  PixelMaps pixelMaps;
+  std::vector<PixelOracle::Pixel> oraclePixels;
   std::unique_ptr<ResumedPass> pass;  // null between passes
 
  private:

@@ -51,6 +51,9 @@ void Guide::save(ArchiveWriter& file) const {
   file.add("guide.cached", m_data->cached);
   file.addValue("guide.cachedError", m_data->cachedError);
   file.addValue("guide.prediction", m_data->prediction);
+  file.add("guide.pixelCells", m_data->pixelCells);
+  file.addValue("guide.rim", m_data->rim);
+  file.addValue("guide.gridCells", m_data->index.size());
 }
 
 Guide Guide::load(const Archive& file) {
@@ -66,9 +69,21 @@ Guide Guide::load(const Archive& file) {
   Data& data = *guide.m_data;
   data.grid = CellGrid(grid);
   data.keys = keys;
+  // Guides without maps at pixels may lack what belongs to these.
+  const bool pixels = file.contains("guide.pixelCells");
+  const uint32_t gridCells = pixels ? file.value<uint32_t>("guide.gridCells") : uint32_t(keys.size());
+  file.require(gridCells <= keys.size(), "guide.gridCells: is damaged");
   for (uint32_t c = 0; c < keys.size(); ++c)
-    file.require(CellGrid::levelOf(keys[c]) < kCellLevels && data.index.insert(keys[c]) == c,
-                 "guide.keys: are damaged");
+    file.require(
+        CellGrid::levelOf(keys[c]) < kCellLevels && (c >= gridCells || data.index.insert(keys[c]) == c),
+        "guide.keys: are damaged");
+  if (pixels) {
+    data.rim = file.value<float>("guide.rim");
+    file.require(data.rim > 0 && std::isfinite(data.rim), "guide.rim: is damaged");
+    data.pixelCells = file.get<uint32_t>("guide.pixelCells");
+    for (const uint32_t cell : data.pixelCells)
+      file.require(cell == kNoCell || cell < keys.size(), "guide.pixelCells: are damaged");
+  }
   std::copy(texels.begin(), texels.end(), data.texels.at(0));
   for (size_t c = 0; c < keys.size(); ++c)
     sumBlocks(data.texels.at(c * kMapTexels), data.sums.at(c * kSumsPerMap));

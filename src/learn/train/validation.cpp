@@ -50,7 +50,7 @@ double varianceOf(const ShardReader& shard, size_t view,
     pilots.push_back(readColumns(shard, pilotPrefix(view, i), frame));
   if (pilots.size() < 2) return 1;
   const std::vector<float> values = pixelValues(pilots, header.at("width"));
-  OdisModelImpl handle({model, nullptr});
+  OdisModelImpl handle({model, nullptr, nullptr});
   OdisGuideOptions options;
   options.model = &handle;
   core::GuideBuilder builder(options);

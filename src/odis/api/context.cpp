@@ -95,6 +95,12 @@ OdisModel odisNewModelWithFormulas(OdisModel model, bool directions, bool lights
     return new odis::core::ContextModel(odis::core::contextOf(model), std::move(changed));
   });
 }
+OdisModel odisNewModelWithPixelNetwork(OdisModel model, const char* name) {
+  return odis::core::guardedFor(model, "odisNewModelWithPixelNetwork", OdisModel(nullptr), [&] {
+    odis::core::requireArgument(name, "odisNewModelWithPixelNetwork: name");
+    return new odis::core::ContextModel(odis::core::contextOf(model), model->model.withPixelNetwork(name));
+  });
+}
 void odisRetainModel(OdisModel model) {
   if (model) model->retain();
 }

@@ -3,6 +3,7 @@
 #include "odis/files/crc32.h"
 #include "odis/models/direction_network.h"
 #include "odis/models/light_network.h"
+#include "odis/pixels/pixel_network.h"
 
 namespace odis::core {
 
@@ -14,6 +15,7 @@ Model fromWeights(const Weights& weights) {
   if (weights.contains("directions.blend.weight"))
     model.directions = std::make_shared<DirectionNetwork>(weights);
   if (weights.contains("lights.0.weight")) model.lights = std::make_shared<LightNetwork>(weights);
+  if (weights.contains("pixels.output.weight")) model.pixels = std::make_shared<PixelNetwork>(weights);
   model.checksum = crc32(weights.bytes());
   return model;
 }
@@ -31,6 +33,14 @@ Model Model::load(const std::string& path) {
 
 Model Model::parse(const std::string& path, std::string_view bytes) {
   return fromWeights(Weights::parse(path, bytes));
+}
+
+Model Model::withPixelNetwork(const std::string& name) const {
+  Model model = *this;
+  const Weights weights = Weights::parse(name, pixelWeightsNamed(name));
+  model.pixels = std::make_shared<PixelNetwork>(weights);
+  model.checksum ^= crc32(weights.bytes());
+  return model;
 }
 
 }  // namespace odis::core

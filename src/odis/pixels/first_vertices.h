@@ -13,8 +13,8 @@ enum class IncidentRadiance : uint8_t { full, withoutDirect };
 
 // 64 bytes.
 struct FirstVertex {
-  Float3 position, normal;  // unit shading normal, on the side of the outgoing direction
-  Float3 wi;                // the direction that the path went on in
+  Float3 position, normal;    // unit shading normal, on the side of the outgoing direction
+  Float3 wi;                  // the direction that the path went on in
   float distance = INFINITY;  // to the next vertex; infinity if the ray left the scene
   float radiance = 0;         // luminance that arrives from wi
   float pdf = 0;              // density of wi, times the survival probability; 0: nothing is known of wi

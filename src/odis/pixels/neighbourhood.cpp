@@ -139,8 +139,12 @@ void look(const FirstVertices& vertices, const PixelPlace& place, Neighbourhood&
     farWeight += weight;
     if (!(v.pdf > 0) || weight < 0.01f) return;
     const float distance = std::isfinite(v.distance) ? v.distance : INFINITY;
-    const Seen seen{splat(aimed(v, offset)), weight, v.radiance / v.pdf, v.radiance,
-                    extent > 0 ? extent / (extent + distance) : 0, near};
+    const Seen seen{splat(aimed(v, offset)),
+                    weight,
+                    v.radiance / v.pdf,
+                    v.radiance,
+                    extent > 0 ? extent / (extent + distance) : 0,
+                    near};
     energy += seen.weight * seen.energy;
     nearSeen += near;
     all.push_back(seen);
@@ -168,16 +172,22 @@ void look(const FirstVertices& vertices, const PixelPlace& place, Neighbourhood&
     result.nearness[t] = result.farCount[t] > 0 ? distances[t] / result.farCount[t] : 0;
 
   const float count = std::max(heights.count, 1.0f);
-  const float scalars[kPixelScalars] = {
-      std::log1p(nearEffective.value()), std::log1p(farEffective.value()), std::log1p(nearWeight),
-      std::log1p(farWeight),             place.roughness,                  place.albedo,
-      1 - length(normals) / count,       nearWeight / count,               heights.sum / count,
-      albedo.deviation(),                roughness.deviation(),            nearSeen / count};
+  const float scalars[kPixelScalars] = {std::log1p(nearEffective.value()),
+                                        std::log1p(farEffective.value()),
+                                        std::log1p(nearWeight),
+                                        std::log1p(farWeight),
+                                        place.roughness,
+                                        place.albedo,
+                                        1 - length(normals) / count,
+                                        nearWeight / count,
+                                        heights.sum / count,
+                                        albedo.deviation(),
+                                        roughness.deviation(),
+                                        nearSeen / count};
   std::copy_n(scalars, kPixelScalars, result.scalars);
 }
 
-void describe(const Neighbourhood& n, const Float3& normal, std::span<float> maps,
-              std::span<float> scalars) {
+void describe(const Neighbourhood& n, const Float3& normal, std::span<float> maps, std::span<float> scalars) {
   const float nearEnergy = sumOf(n.nearEnergy), farEnergy = sumOf(n.farEnergy);
   const float farCount = sumOf(n.farCount), farRadiance = sumOf(n.farRadiance);
   const float toMean = farRadiance > 0 ? farCount / farRadiance : 0;
@@ -208,11 +218,12 @@ Histogram histogramOf(const Neighbourhood& n) {
   const float nearShare = nearCount / (nearCount + kPriorSamples);
   const float farShare = (1 - nearShare) * farCount / (farCount + kPriorSamples);
   const auto inverse = [](float sum) { return sum > 0 ? 1 / sum : 0; };
-  const float toNear = nearShare * inverse(sumOf(n.nearEnergy)), toFar = farShare * inverse(sumOf(n.farEnergy));
+  const float toNear = nearShare * inverse(sumOf(n.nearEnergy)),
+              toFar = farShare * inverse(sumOf(n.farEnergy));
   Histogram result;
   for (size_t t = 0; t < kMapTexels; ++t)
-    result[t] = toNear * n.nearEnergy[t] + toFar * n.farEnergy[t] +
-                (1 - nearShare - farShare) / float(kMapTexels);
+    result[t] =
+        toNear * n.nearEnergy[t] + toFar * n.farEnergy[t] + (1 - nearShare - farShare) / float(kMapTexels);
   return result;
 }
 

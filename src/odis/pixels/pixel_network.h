@@ -1,18 +1,23 @@
-// The network that makes a map at a pixel from what its neighbourhood saw: a convolutional encoder and decoder
-// on the octahedral square, whose wrap-around its convolutions follow. It is computed by oneDNN, which is
-// loaded when it is asked for; training (src/learn/torch) has the same network on libtorch.
-//
-//   16 x 16   input, kPixelChannels  -> encode0.0 -> encode0.1 -------------------> (+) -> decode0 -> output
-//    8 x 8      mean of 2 x 2  -> encode1.0 -> encode1.1 ----> (+) -> decode1 -> each texel four times
-//    4 x 4        mean of 2 x 2  -> middle.0 (+ scalars) -> middle.1 -> each texel four times
-//
-// Convolutions are 3 x 3 and rectified; there are `width` channels in the first level, twice as many in each
-// next one. (+) puts the decoder's channels in front of those of the encoder. `scalars` is a linear layer of
-// the standardized scalars, which is added to middle.0 before that is rectified. `output` is 1 x 1 over
-// decode0 and the input; the softmax over its texels is the share of each in the radiance.
-//
-// Tensors: pixels.NAME.weight ([outputs, inputs, 3, 3]; `scalars` [outputs, kPixelScalars]; `output`
-// [1, inputs, 1, 1]), pixels.NAME.bias, pixels.mean and pixels.scale ([kPixelScalars]: what standardizes
-// scalars), pixels.full ([1]: 1 where the radiance is all that arrives, 0 without what next-event estimation
-// covers).
+// The network of pixel_weights.h as what makes maps at pixels.
 #pragma once
+
+#include "odis/pixels/pixel_convolutions.h"
+#include "odis/pixels/pixel_model.h"
+
+namespace odis::core {
+
+class PixelNetwork : public PixelModel {
+ public:
+  // Throws WeightsError: other tensors than it needs, or no oneDNN.
+  explicit PixelNetwork(const Weights& weights);
+
+  IncidentRadiance radiance() const override { return m_weights.radiance; }
+  void predict(size_t count, const Neighbourhood* seen, const PixelPlace* places,
+               Histogram* result) const override;
+
+ private:
+  PixelWeights m_weights;
+  std::unique_ptr<const PixelConvolutions> m_convolutions;
+};
+
+}  // namespace odis::core

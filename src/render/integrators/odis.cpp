@@ -30,6 +30,8 @@ GuideOptions guideOptions(const RenderJob& job) {
   guide.model = options.model;
   if (options.guide != GuideKind::network) guide.model = guide.model.withDirectionFormula();
   if (options.lights != LightChoiceKind::network) guide.model = guide.model.withLightFormula();
+  if (guide.pixelMaps == ODIS_PIXEL_MAPS_NETWORK && !options.pixelNetwork.empty())
+    guide.model = guide.model.withPixelNetwork(options.pixelNetwork);
   return guide;
 }
 
@@ -42,7 +44,9 @@ FrameOptions guidedFrameOptions(const RenderJob& job) {
   frame.pilotWeight = float(options.pilotWeight);
   frame.guidedCost = options.guidedCost;
   frame.refinementSamples = uint32_t(options.refineSpp);
-  frame.oracleSamples = options.guide == GuideKind::oracle ? uint32_t(options.oracleSpp) : 0;
+  const bool oracle =
+      options.guide == GuideKind::oracle || options.guideOptions.pixelMaps == ODIS_PIXEL_MAPS_ORACLE;
+  frame.oracleSamples = oracle ? uint32_t(options.oracleSpp) : 0;
   frame.keepPilotVertices = options.records;
   frame.guide = guideOptions(job);
   return frame;

@@ -42,13 +42,16 @@ struct RenderOptions {
   bool variance = false;  // also estimate the variance of each pixel
   bool features = false;  // also write albedo, normals, position, depth, roughness
 
-  int guideBounces = -1;  // how many vertices of a path are guided; -1: all, 1: the first
-  PpgOptions ppg;         // ppg only
-  RestirOptions restir;   // restir only
+  int guideBounces =
+      -1;          // how many vertices of a path are guided, of those that may be; -1: all, 1: the first
+  PpgOptions ppg;  // ppg only
+  RestirOptions restir;  // restir only
 
   // odis only
   GuideKind guide = GuideKind::network;
-  Model model;                                         // the networks, or what stands for them
+  Model model;  // the networks, or what stands for them
+  // The network for maps at pixels that comes with ODIS, by name; empty: that of `model`.
+  std::string pixelNetwork;
   RouletteKind roulette = RouletteKind::formula;       // of the guided samples
   LightChoiceKind lights = LightChoiceKind::network;   // likewise
   ShadowRayKind shadowRays = ShadowRayKind::roulette;  // likewise

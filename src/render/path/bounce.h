@@ -82,6 +82,8 @@ void playRouletteOnArrival(const PathSettings& settings, Batch& batch, Bounces b
 Bounces keepScattered(Bounces bounces);
 // Finds out what directions are sampled from.
 void prepareDirections(const PathSettings& settings, Bounces bounces);
+// Counts the vertices of each path that may be guided, this one included.
+void countGuidable(const PathSettings& settings, Bounces bounces);
 // Chooses a light and a point on it, and weighs what it gives against sampling directions.
 void estimateDirectLight(const PathSettings& settings, Bounces bounces);
 void sampleDirections(Bounces bounces);

@@ -48,10 +48,11 @@ struct BsdfHost {
 
 }  // namespace
 
-void GuidedBsdf::prepare(const PathSettings& settings, int depth, const Vertex& vertex, uint32_t cell) {
+void GuidedBsdf::prepare(const PathSettings& settings, const Path& path, const Vertex& vertex,
+                         uint32_t cell) {
   m_mixture = {};
   m_rival = nullptr;
-  if (!guidesAt(settings, depth)) return;
+  if (!guidesAt(settings, path)) return;
   if (!settings.rival && (cell == kNoCell || !guidesDirections(settings.guide->decisions[cell]))) return;
   const Bsdf& bsdf = vertex.at.shape->bsdf();
   const float guidable = bsdf.guidableProbability(vertex.at, vertex.wo);

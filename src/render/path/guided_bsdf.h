@@ -11,7 +11,7 @@ namespace odis::render {
 class GuidedBsdf {
  public:
   // `cell` is kNoCell where the guide knows nothing.
-  void prepare(const PathSettings& settings, int depth, const Vertex& vertex, uint32_t cell);
+  void prepare(const PathSettings& settings, const Path& path, const Vertex& vertex, uint32_t cell);
 
   // The BSDF sampling fraction: 1 where nothing is guided.
   float bsdfFraction() const { return m_mixture.bsdfFraction(); }
@@ -26,9 +26,10 @@ class GuidedBsdf {
   VertexMap<float> m_map;
 };
 
-// Whether directions are guided at all at this depth.
-inline bool guidesAt(const PathSettings& settings, int depth) {
-  return (settings.guide || settings.rival) && (settings.guideBounces < 0 || depth <= settings.guideBounces);
+// Whether directions are guided at all where a path is.
+inline bool guidesAt(const PathSettings& settings, const Path& path) {
+  return (settings.guide || settings.rival) &&
+         (settings.guideBounces < 0 || path.guidable < settings.guideBounces);
 }
 
 }  // namespace odis::render

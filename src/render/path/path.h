@@ -23,8 +23,9 @@ struct PathSettings {
   int rrDepth = 5;                        // depth where roulette by throughput begins
   const GuideView* guide = nullptr;       // null, and no rival: BSDF sampling only
   const DirectionGuide* rival = nullptr;  // another guide than ODIS's
-  int guideBounces = -1;                  // number of a path's vertices whose directions are guided; -1: all
-  bool shadowRoulette = false;            // whether shadow rays of guided paths are played for
+  // Number of a path's vertices whose directions are guided, of those that may be; -1: all.
+  int guideBounces = -1;
+  bool shadowRoulette = false;  // whether shadow rays of guided paths are played for
   // Whether paths are ended by what `guide` knows of where they arrive.
   bool learnedRoulette = false;
   bool learnedLights = false;  // whether next-event estimation chooses lights by what it knows
@@ -67,6 +68,7 @@ struct Path {
   // probability with which roulette left the path until it did.
   bool visible = false;
   float visibleWeight = 1;
+  int guidable = 0;         // vertices so far with lobes that may be guided
   float uSurvival = 0;      // random number that decides, where the ray arrives, whether the path goes on
   LightReference previous;  // where the ray started
   float distance = 0;       // length of the path from the camera to there

@@ -14,7 +14,16 @@ Bounces keepScattered(Bounces bounces) {
 }
 
 void prepareDirections(const PathSettings& settings, Bounces bounces) {
-  for (Bounce& bounce : bounces) bounce.bsdf.prepare(settings, bounce.depth, *bounce.vertex, bounce.cell);
+  for (Bounce& bounce : bounces) bounce.bsdf.prepare(settings, *bounce.path, *bounce.vertex, bounce.cell);
+}
+
+void countGuidable(const PathSettings& settings, Bounces bounces) {
+  // Nobody else asks.
+  if (settings.guideBounces < 0 && !(settings.guide && settings.guide->pixelCells)) return;
+  for (Bounce& bounce : bounces) {
+    const Vertex& vertex = *bounce.vertex;
+    bounce.path->guidable += vertex.at.shape->bsdf().guidableProbability(vertex.at, vertex.wo) > 0;
+  }
 }
 
 void sampleDirections(Bounces bounces) {

@@ -25,19 +25,21 @@ void findVertices(const PathSettings& settings, std::span<const Path> paths, Bat
 }
 
 // Finds the cells that guide the vertices.
-void findGuidingCells(const PathSettings& settings, std::span<const Path> paths, int depth, Batch& batch) {
+void findGuidingCells(const PathSettings& settings, std::span<const Path> paths, Batch& batch) {
   batch.cells.assign(batch.vertices.size(), kNoCell);
-  if (!settings.guide || !guidesAt(settings, depth)) return;
+  if (!settings.guide) return;
   batch.places.clear();
   for (size_t i = 0; i < batch.vertices.size(); ++i) {
     const Vertex& vertex = batch.vertices[i];
-    const PathIdentity& identity = paths[batch.active[i]].identity;
-    batch.places.push_back({{}, {}, identity.pixel, identity.sample});
+    const Path& path = paths[batch.active[i]];
+    batch.places.push_back({{}, {}, path.identity.pixel, path.identity.sample, path.guidable == 0});
     if (!vertex.at.shape) continue;
     batch.places.back().position = toOdis(vertex.at.p);
     batch.places.back().normal = toOdis(facingNormal(vertex.at, vertex.wo));
   }
   findCells(*settings.guide, batch.places.data(), batch.places.size(), batch.cells.data());
+  for (size_t i = 0; i < batch.cells.size(); ++i)
+    if (!guidesAt(settings, paths[batch.active[i]])) batch.cells[i] = kNoCell;
 }
 
 // Takes some paths through all steps of a bounce; returns those that were scattered.
@@ -47,6 +49,7 @@ Bounces takeSteps(const PathSettings& settings, Batch& batch, Bounces bounces) {
   playRouletteOnArrival(settings, batch, bounces);
   bounces = keepScattered(bounces);
   prepareDirections(settings, bounces);
+  countGuidable(settings, bounces);
   estimateDirectLight(settings, bounces);
   sampleDirections(bounces);
   describeFirstHits(settings, bounces);
@@ -88,7 +91,7 @@ void tracePaths(const PathSettings& settings, std::span<Path> paths, std::vector
   std::iota(batch.active.begin(), batch.active.end(), 0u);
   for (int depth = 1; !batch.active.empty(); ++depth) {
     findVertices(settings, paths, batch);
-    findGuidingCells(settings, paths, depth, batch);
+    findGuidingCells(settings, paths, batch);
     bounceAll(settings, paths, depth, batch);
     traceShadowRays(*settings.scene, paths, batch);
   }
