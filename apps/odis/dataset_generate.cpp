@@ -19,7 +19,7 @@ namespace odis::app {
 namespace {
 
 struct GenerateArguments {
-  std::string scenes, seeds, shards, output, hdri, textures, furniture;
+  std::string scenes, seeds, shards, output, hdri, textures, furniture, kind = "cells";
   int of = 1, jobs = 0;
   bool quick = false, quality = false, quiet = false;
 };
@@ -61,9 +61,10 @@ std::vector<learn::ShardSource> sourcesOf(const GenerateArguments& a) {
 }
 
 int generate(const GenerateArguments& a) {
-  const learn::DataSettings settings = a.quick     ? learn::DataSettings::quick()
-                                       : a.quality ? learn::DataSettings::quality()
-                                                   : learn::DataSettings();
+  learn::DataSettings settings = a.quick     ? learn::DataSettings::quick()
+                                 : a.quality ? learn::DataSettings::quality()
+                                             : learn::DataSettings();
+  if (a.kind == "incident-radiance") settings = settings.incidentRadiance();
   const learn::Assets assets(a.hdri, a.textures, a.furniture);
   const std::vector<learn::ShardSource> sources = sourcesOf(a);
   render::makeFolder(a.output);
@@ -101,6 +102,10 @@ Command addDatasetGenerate(CLI::App& parent) {
       ->capture_default_str();
   app->add_option("--jobs", a->jobs, "Shards to make at a time, a thread each; 0: one a core")
       ->check(within(kThreadCount))
+      ->capture_default_str();
+  app->add_option("--kind", a->kind,
+                  "cells: what cells learn from; incident-radiance: maps at pixels, and their neighbourhoods")
+      ->check(CLI::IsMember({"cells", "incident-radiance"}))
       ->capture_default_str();
   app->add_option("--hdri", a->hdri, "Folder of environment maps for generated scenes (HDR, EXR)");
   app->add_option("--textures", a->textures, "Folder of textures for them (PNG, JPEG)");

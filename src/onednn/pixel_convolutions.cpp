@@ -40,7 +40,8 @@ std::vector<uint16_t> borderTable(int side) {
 }
 
 memory::desc activations(size_t count, int side, uint32_t channels) {
-  return {{memory::dim(count), memory::dim(channels), side, side}, memory::data_type::f32,
+  return {{memory::dim(count), memory::dim(channels), side, side},
+          memory::data_type::f32,
           memory::format_tag::nhwc};
 }
 
@@ -60,15 +61,15 @@ class Convolution {
 #if DNNL_VERSION_MAJOR >= 3
     if (rectify) after.append_eltwise(dnnl::algorithm::eltwise_relu, 0, 0);
     attributes.set_post_ops(after);
-    const dnnl::convolution_forward::primitive_desc described(
-        engine, dnnl::prop_kind::forward_inference, dnnl::algorithm::convolution_direct, in, any, bias, out,
-        step, none, none, attributes);
+    const dnnl::convolution_forward::primitive_desc described(engine, dnnl::prop_kind::forward_inference,
+                                                              dnnl::algorithm::convolution_direct, in, any,
+                                                              bias, out, step, none, none, attributes);
 #else
     if (rectify) after.append_eltwise(1, dnnl::algorithm::eltwise_relu, 0, 0);
     attributes.set_post_ops(after);
     const dnnl::convolution_forward::primitive_desc described(
-        {dnnl::prop_kind::forward_inference, dnnl::algorithm::convolution_direct, in, any, bias, out, step, none,
-         none},
+        {dnnl::prop_kind::forward_inference, dnnl::algorithm::convolution_direct, in, any, bias, out, step,
+         none, none},
         attributes, engine);
 #endif
     m_in = described.src_desc();
@@ -85,13 +86,22 @@ class Convolution {
     stream.wait();
   }
 
-  int side() const { return m_side; }
-  uint32_t inputs() const { return m_inputs; }
-  uint32_t outputs() const { return m_outputs; }
-  size_t scratchBytes() const { return m_scratch.get_size(); }
+  int side() const {
+    return m_side;
+  }
+  uint32_t inputs() const {
+    return m_inputs;
+  }
+  uint32_t outputs() const {
+    return m_outputs;
+  }
+  size_t scratchBytes() const {
+    return m_scratch.get_size();
+  }
 
   // `in` has a border, `out` has none.
-  void run(const dnnl::engine& engine, dnnl::stream& stream, float* in, float* out, std::byte* scratch) const {
+  void run(const dnnl::engine& engine, dnnl::stream& stream, float* in, float* out,
+           std::byte* scratch) const {
     memory source(m_in, engine, in), result(m_out, engine, out), space(m_scratch, engine, scratch);
     m_primitive.execute(stream, {{DNNL_ARG_SRC, source},
                                  {DNNL_ARG_WEIGHTS, m_weight},

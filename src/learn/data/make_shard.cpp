@@ -71,15 +71,43 @@ nlohmann::ordered_json groupsJson(const render::LightSampler& lights) {
   return result;
 }
 
+// What the header says of every view.
+nlohmann::ordered_json viewJson(const std::string& file, const render::Scene& scene, const ViewFrame& frame,
+                                size_t pilots, size_t targets) {
+  return {{"file", fs::path(file).filename().string()},
+          {"width", scene.film().crop.width},
+          {"height", scene.film().crop.height},
+          {"origin", {frame.origin.x, frame.origin.y, frame.origin.z}},
+          {"edge", frame.edge},
+          {"unit", frame.unit},
+          {"pilots", pilots},
+          {"targets", targets}};
+}
+
+// How many pixels a view's image has: as many as the settings say, or, where windows are cut out of it, a
+// number that is drawn, every size as likely as another.
+int pixelsOf(const DataSettings& settings, Random& random) {
+  const WindowSettings& windows = settings.windows;
+  if (windows.count == 0) return settings.pixels;
+  const double ratio = double(windows.mostPixels) / windows.leastPixels;
+  return int(windows.leastPixels * std::pow(ratio, random.unit()));
+}
+
 // Adds a view's arrays, and returns what else there is to say of it.
 nlohmann::ordered_json addView(ShardWriter& writer, const std::string& file, size_t view, uint64_t seed,
                                const DataSettings& settings) {
+  Random random = Random(seed).fork(fmt::format("data of view {}", view));
   render::Warnings warnings;
   render::LoadOptions load;
-  load.pixels = settings.pixels;
+  load.pixels = pixelsOf(settings, random);
   const auto scene = render::Scene::load(file, load, warnings);
   const render::LightSampler lights(scene->emitters());
-  Random random = Random(seed).fork(fmt::format("data of view {}", view));
+  if (settings.windows.count > 0) {
+    const WindowView content =
+        traceWindows(*scene, lights, settings.windows, settings.targets, settings.pilots, random.bits());
+    addColumns(writer, view, content, settings.windows.size);
+    return viewJson(file, *scene, content.frame, content.pilots.size(), content.targets.size());
+  }
   std::vector<Pilot> pilots;
   for (int i = 0; i < settings.pilots; ++i) pilots.push_back(tracePilot(*scene, lights, random.bits()));
   const ViewFrame frame = frameOf(pilots);
@@ -90,16 +118,10 @@ nlohmann::ordered_json addView(ShardWriter& writer, const std::string& file, siz
 
   nlohmann::ordered_json parts = nlohmann::ordered_json::array();
   for (const LightParts& part : lights.dividedLights()) parts.push_back({part.first, part.count});
-  return {{"file", fs::path(file).filename().string()},
-          {"width", scene->film().crop.width},
-          {"height", scene->film().crop.height},
-          {"origin", {frame.origin.x, frame.origin.y, frame.origin.z}},
-          {"edge", frame.edge},
-          {"unit", frame.unit},
-          {"pilots", pilots.size()},
-          {"targets", targets.size()},
-          {"dividedLights", parts},
-          {"lightGroups", groupsJson(lights)}};
+  nlohmann::ordered_json json = viewJson(file, *scene, frame, pilots.size(), targets.size());
+  json["dividedLights"] = parts;
+  json["lightGroups"] = groupsJson(lights);
+  return json;
 }
 
 }  // namespace
@@ -133,7 +155,27 @@ DataSettings DataSettings::quality() {
   return settings;
 }
 
+DataSettings DataSettings::incidentRadiance() const {
+  DataSettings settings = *this;
+  settings.windows.count = std::max(1, targets.pixels / 4);
+  // Half of the directions lie below most surfaces: 4,096 samples a map are traced, or twice as many.
+  settings.targets.perTexel = std::min(4 * targets.perTexel, 16);
+  settings.targets.cells = settings.targets.outgoing = settings.targets.lights = 0;
+  return settings;
+}
+
 nlohmann::ordered_json toJson(const DataSettings& s) {
+  if (s.windows.count > 0)
+    return {{"kind", "incident-radiance"},
+            {"leastPixels", s.windows.leastPixels},
+            {"mostPixels", s.windows.mostPixels},
+            {"windows", s.windows.count},
+            {"windowSize", s.windows.size},
+            {"middle", s.windows.middle},
+            {"pilots", s.pilots},
+            {"maxDepth", kDeepestPath},
+            {"pixelTargets", s.targets.pixels},
+            {"samplesPerTexel", s.targets.perTexel * kTargetTexels / kWindowMapTexels}};
   return {{"pixels", s.pixels},
           {"pilots", s.pilots},
           {"maxDepth", kDeepestPath},

@@ -4,7 +4,7 @@
 #include <optional>
 #include <string>
 
-#include "learn/data/targets.h"
+#include "learn/data/windows.h"
 #include "learn/scenes/kinds.h"
 
 namespace odis::learn {
@@ -13,9 +13,13 @@ struct DataSettings {
   int pixels = 14400;  // of a view, about; four pilots are as many paths as that of an image of 640 x 360
   int pilots = 4;
   TargetSettings targets;
+  WindowSettings windows;  // of a data set of incident radiance; none in one of cells
 
   static DataSettings quick();    // for tests and a first look
   static DataSettings quality();  // as many pixels as one renders, more targets, smoother ones
+  // These settings for the other kind of data set: reference maps of incident radiance at pixels, and pilots
+  // of what is around them.
+  DataSettings incidentRadiance() const;
 };
 // As it stands in shards and manifests.
 nlohmann::ordered_json toJson(const DataSettings& settings);

@@ -24,17 +24,15 @@ void sortByPixel(const render::TileVertices& tiles, Pilot& pilot) {
     pilot.vertices.insert(pilot.vertices.end(), paths[pixel], paths[pixel] + pilot.lengths[pixel]);
 }
 
-}  // namespace
-
-Pilot tracePilot(const render::Scene& scene, const render::LightSampler& lights, uint64_t seed) {
+// Traces the pass, which wants the samples that it wants.
+Pilot trace(const render::Scene& scene, const render::LightSampler& lights, uint64_t seed,
+            render::Pass pass) {
   const render::Crop& crop = scene.film().crop;
   const size_t pixels = size_t(crop.width) * size_t(crop.height);
-  render::Pass pass;
   pass.path.scene = &scene;
   pass.path.lights = &lights;
   pass.path.maxDepth = kDeepestPath;
   pass.seed = seed;
-  pass.samples = [](uint32_t) { return SampleRange{0, 1}; };
   pass.wantsVertices = true;
   Pilot pilot;
   pilot.image.assign(pixels, render::Rgb(0, 0, 0));
@@ -51,6 +49,41 @@ Pilot tracePilot(const render::Scene& scene, const render::LightSampler& lights,
   sortByPixel(tiles, pilot);
   pilot.sampleWeight.assign(pixels, 1);
   for (const PathVertex& v : pilot.vertices) pilot.sampleWeight[v.pixel] = v.sampleWeight;
+  return pilot;
+}
+
+// Leaves out what comes after each path's first usable vertex.
+void cutOff(Pilot& pilot) {
+  size_t left = 0, next = 0;
+  for (uint8_t& length : pilot.lengths) {
+    const size_t end = next + length;
+    uint8_t kept = 0;
+    for (bool found = false; next < end && !found; ++kept) {
+      found = isUsable(pilot.vertices[next]);
+      pilot.vertices[left++] = pilot.vertices[next++];
+    }
+    length = kept;
+    next = end;
+  }
+  pilot.vertices.resize(left);
+}
+
+}  // namespace
+
+Pilot tracePilot(const render::Scene& scene, const render::LightSampler& lights, uint64_t seed) {
+  render::Pass pass;
+  pass.samples = [](uint32_t) { return SampleRange{0, 1}; };
+  return trace(scene, lights, seed, pass);
+}
+
+Pilot tracePilot(const render::Scene& scene, const render::LightSampler& lights, uint64_t seed,
+                 const std::vector<bool>& wanted, std::vector<render::FeatureSums>& features) {
+  render::Pass pass;
+  pass.path.features = true;
+  pass.features = &features;
+  pass.samples = [&](uint32_t pixel) { return SampleRange{0, wanted[pixel] ? 1u : 0u}; };
+  Pilot pilot = trace(scene, lights, seed, pass);
+  cutOff(pilot);
   return pilot;
 }
 

@@ -64,8 +64,8 @@ void TargetTracer::trace(std::span<const Start> starts, Target& target) {
   const float length = render::length(normal);
   target.normal = render::toOdis(length > 0 ? normal / length : starts.front().reference.n);
   traceArriving(starts, target);
-  traceOutgoing(starts, target);
-  traceLights(starts, target);
+  if (m_settings.outgoing > 0) traceOutgoing(starts, target);
+  if (m_settings.lights > 0) traceLights(starts, target);
   ++m_target;
 }
 

@@ -69,7 +69,10 @@ std::vector<Target> traceTargets(const render::Scene& scene, const render::Light
 // Adds the arrays of the targets; radiance in the frame's unit.
 void addColumns(ShardWriter& writer, const std::string& prefix, std::span<const Target> targets,
                 size_t groups, const ViewFrame& frame);
-// Throws ShardError.
+// The same with maps of so many texels a side, and without what is scattered back and what lights give.
+void addMapColumns(ShardWriter& writer, const std::string& prefix, std::span<const Target> targets,
+                   size_t side, const ViewFrame& frame);
+// Of either kind. Throws ShardError.
 std::vector<Target> readTargets(const ShardReader& reader, const std::string& prefix, const ViewFrame& frame);
 
 }  // namespace odis::learn

@@ -123,7 +123,8 @@ PixelMaps makePixelMaps(const FirstVertices& vertices, int tile, const PixelMode
     tasks.forEach(std::min(kPortion, batches - first), [&](size_t batch) {
       thread_local std::vector<Neighbourhood> seen(kPixelBatch);
       thread_local std::vector<Histogram> radiance(kPixelBatch);
-      const size_t begin = (first + batch) * kPixelBatch, count = std::min(kPixelBatch, places.size() - begin);
+      const size_t begin = (first + batch) * kPixelBatch,
+                   count = std::min(kPixelBatch, places.size() - begin);
       for (size_t i = 0; i < count; ++i) look(vertices, places[begin + i], seen[i]);
       model.predict(count, seen.data(), &places[begin], radiance.data());
       for (size_t i = 0; i < count; ++i) pack(radiance[i], &maps.texels[(begin + i) * kMapTexels]);
@@ -166,8 +167,8 @@ PixelMaps PixelOracle::maps(const Tasks& tasks) const {
     maps.ofPixel.push_back(pixel.count > 0 ? uint32_t(maps.places.size()) : kNoMap);
     if (!(pixel.count > 0)) continue;
     const float length = std::sqrt(dot(pixel.normal, pixel.normal));
-    maps.places.push_back({pixel.position / pixel.count,
-                           length > 0 ? pixel.normal / length : Float3{0, 0, 1}});
+    maps.places.push_back(
+        {pixel.position / pixel.count, length > 0 ? pixel.normal / length : Float3{0, 0, 1}});
   }
   maps.texels.resize(maps.size() * kMapTexels);
   tasks.forEach(size_t(m_height), [&](size_t y) {

@@ -17,7 +17,7 @@ struct PixelMaps {
     Float3 position, normal;
   };
   std::vector<Place> places;
-  std::vector<uint16_t> texels;  // [map][texel]: relative radiance, without a floor
+  std::vector<uint16_t> texels;   // [map][texel]: relative radiance, without a floor
   std::vector<uint32_t> ofPixel;  // [pixel]: its map, or kNoMap
 
   size_t size() const { return places.size(); }

@@ -30,8 +30,7 @@ void PixelNetwork::predict(size_t count, const Neighbourhood* seen, const PixelP
   for (size_t i = 0; i < count; ++i) {
     const std::span<float> own(&scalars[i * kPixelScalars], kPixelScalars);
     describe(seen[i], places[i].normal, {&maps[i * kMap], kMap}, own);
-    for (size_t s = 0; s < kPixelScalars; ++s)
-      own[s] = (own[s] - m_weights.mean[s]) * m_weights.scale[s];
+    for (size_t s = 0; s < kPixelScalars; ++s) own[s] = (own[s] - m_weights.mean[s]) * m_weights.scale[s];
   }
   m_convolutions->run(count, maps.data(), scalars.data(), logits.data());
   for (size_t i = 0; i < count; ++i) softmax(&logits[i * kMapTexels], result[i]);

@@ -9,8 +9,8 @@ constexpr uint32_t kMostChannels = 64;
 PixelLayer readLayer(const Weights& weights, const std::string& name, uint32_t outputs, uint32_t inputs,
                      uint32_t side) {
   PixelLayer layer{inputs, outputs, side, {}, weights.get(name + ".bias", {outputs})};
-  const std::vector<uint32_t> shape = side > 0 ? std::vector<uint32_t>{outputs, inputs, side, side}
-                                               : std::vector<uint32_t>{outputs, inputs};
+  const std::vector<uint32_t> shape =
+      side > 0 ? std::vector<uint32_t>{outputs, inputs, side, side} : std::vector<uint32_t>{outputs, inputs};
   layer.weight = weights.get(name + ".weight", shape);
   return layer;
 }
