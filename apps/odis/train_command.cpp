@@ -30,8 +30,8 @@ class TrainConsole : public learn::TrainObserver {
   void loaded(size_t shards, size_t examples) override {
     print(fmt::format("{} shards, {} examples\n", shards, examples));
   }
-  void step(int of, const learn::LossRow& row) override {
-    const int step = row.step;
+  void step(int of, const learn::History& history) override {
+    const int step = history.losses.back().step;
     const Clock::time_point now = Clock::now();
     if (m_first == 0) {
       m_first = step;
@@ -43,17 +43,24 @@ class TrainConsole : public learn::TrainObserver {
     const std::string left = step > m_first && step < of
                                  ? ", " + durationText(seconds * (of - step) / (step - m_first)) + " left"
                                  : "";
-    print(fmt::format("step {} of {}: loss of maps {:.4f}, of lights {:.4f}{}\n", step, of, row.loss,
-                      row.lights, left));
+    print(fmt::format("step {} of {}: {}{}\n", step, of,
+                      named(history.lossNames, history.losses.back().losses), left));
   }
-  void validated(const learn::ValidationRow& row) override {
-    print(fmt::format("step {}: predicted variance {:.4f}, of the formula {:.4f}\n", row.step, row.variance,
-                      row.formula));
+  void validated(const learn::History& history) override {
+    const learn::ValidationRow& row = history.validations.back();
+    print(
+        fmt::format("step {}, held-out scenes: {}\n", row.step, named(history.validationNames, row.values)));
   }
   bool cancelled() const override { return InterruptScope::interrupted(); }
 
  private:
   using Clock = std::chrono::steady_clock;
+  static std::string named(const std::vector<std::string>& names, const std::vector<double>& values) {
+    std::string text;
+    for (size_t i = 0; i < values.size(); ++i)
+      text += fmt::format("{}{} {:.4f}", i > 0 ? ", " : "", names[i], values[i]);
+    return text;
+  }
   void print(const std::string& line) const {
     if (!m_quiet) say(line);
   }

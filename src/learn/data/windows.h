@@ -11,9 +11,9 @@ inline constexpr int kWindowMapSize = 16;
 inline constexpr int kWindowMapTexels = kWindowMapSize * kWindowMapSize;
 
 struct WindowSettings {
-  int count = 0;       // of windows; 0: the data set is one of cells
-  int size = 32;       // pixels a side
-  int middle = 8;      // targets lie in a square of so many pixels a side in the middle
+  int count = 0;   // of windows; 0: the data set is one of cells
+  int size = 32;   // pixels a side
+  int middle = 8;  // targets lie in a square of so many pixels a side in the middle
   int leastPixels = 57600, mostPixels = 921600;  // of the image that they are cut out of
 };
 
@@ -29,8 +29,8 @@ struct WindowView {
   std::vector<Window> windows;
   std::vector<Pilot> pilots;
   ViewFrame frame;
-  std::vector<Target> targets;      // whose maps have kWindowMapTexels texels
-  std::vector<uint16_t> windowOf;   // [target]
+  std::vector<Target> targets;     // whose maps have kWindowMapTexels texels
+  std::vector<uint16_t> windowOf;  // [target]
   // [target]: the standard error of the map of all that arrives, over the map, as norms of vectors of texels.
   std::vector<float> noise;
   // Means and variances over the pilots' samples, which features are free of noise in: [window][row][column].

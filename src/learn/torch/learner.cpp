@@ -1,23 +1,10 @@
 // The learner on libtorch, a library of its own that `odis train` loads: nobody else waits for libtorch to
 // be loaded, and no other source for its headers.
-#include <torch/torch.h>
-#ifdef ODIS_GLOO
-#include <torch/csrc/distributed/c10d/ProcessGroupGloo.hpp>
-#endif
-#ifdef ODIS_NCCL
-#include <torch/csrc/distributed/c10d/ProcessGroupNCCL.hpp>
-#endif
-#if defined(ODIS_GLOO) || defined(ODIS_NCCL)
-#define ODIS_PROCESSES
-#include <torch/csrc/distributed/c10d/TCPStore.hpp>
-#endif
-
-#include <cstdlib>
 #include <mutex>
 #include <sstream>
 #include <thread>
 
-#include "learn/train/learner.h"
+#include "learn/torch/processes.h"
 
 namespace odis::learn {
 
@@ -27,8 +14,6 @@ constexpr int64_t kTexels = kMapTexels;
 // Every map has so much of the uniform distribution in it (GuideOptions::floor), and the share of the
 // BSDF's draws that the variance is computed for.
 constexpr double kFloor = 0.03, kAlpha = 0.4;
-// Gradients longer than this are shortened.
-constexpr double kLongestGradient = 1;
 // Width of the lights' layers, and the share of choices that follows the network (odis/models/lights.cpp).
 constexpr int64_t kPairWidth = 16;
 constexpr double kLearnedShare = 0.9;
@@ -84,10 +69,6 @@ struct LightModuleImpl : torch::nn::Module {
 };
 TORCH_MODULE(LightModule);
 
-torch::Tensor toDevice(const std::vector<float>& values, at::IntArrayRef shape, const torch::Device& device) {
-  return torch::from_blob(const_cast<float*>(values.data()), shape, torch::kFloat32).to(device);
-}
-
 // A batch of each kind as tensors.
 struct LightRows {
   torch::Tensor pairs, formula, rms, probability;
@@ -136,26 +117,10 @@ torch::Tensor lossOf(Loss loss, const torch::Tensor& map, const Rows& rows) {
       return (map - rows.mass).abs().sum(-1).mean();
     case Loss::l2:
       return double(kTexels) * (map - rows.mass).square().sum(-1).mean();
+    case Loss::log:  // of the network at pixels alone
+      break;
   }
   return {};
-}
-
-torch::Device chooseDevice(const std::string& name) {
-  const bool cuda = torch::cuda::is_available();
-  if (name == "cuda" && !cuda)
-    throw TrainError("there is no CUDA device that libtorch can use, expected \"cpu\"");
-  if (!cuda || name == "cpu") return torch::kCPU;
-  // As torchrun numbers the processes of a machine.
-  const char* local = std::getenv("LOCAL_RANK");
-  const int index = local ? std::atoi(local) : 0;
-  return {torch::kCUDA, torch::DeviceIndex(index % int(torch::cuda::device_count()))};
-}
-
-core::Tensor toTensor(const std::string& name, const torch::Tensor& tensor) {
-  const torch::Tensor values = tensor.detach().to(torch::kCPU, torch::kFloat32).contiguous();
-  core::Tensor result{name, {}, {values.data_ptr<float>(), values.data_ptr<float>() + values.numel()}};
-  for (const int64_t size : values.sizes()) result.shape.push_back(uint32_t(size));
-  return result;
 }
 
 struct Modules {
@@ -178,14 +143,15 @@ Modules makeModules(const TrainConfig& config) {
 class TorchLearner : public Learner {
  public:
   TorchLearner(const TrainConfig& config, const Processes& processes)
-      : m_device(chooseDevice(config.device)), m_processes(processes), m_modules(makeModules(config)) {
+      : m_device(chooseDevice(config.device)),
+        m_together(processes, m_device),
+        m_modules(makeModules(config)) {
     m_modules.directions->to(m_device);
     m_modules.lights->to(m_device);
     m_adam = std::make_unique<torch::optim::Adam>(m_modules.directions->parameters(),
                                                   torch::optim::AdamOptions(1e-3));
     m_lightAdam =
         std::make_unique<torch::optim::Adam>(m_modules.lights->parameters(), torch::optim::AdamOptions(1e-3));
-    if (processes.count > 1) join();
   }
 
   std::string device() const override { return m_device.is_cuda() ? "cuda" : "cpu"; }
@@ -199,9 +165,9 @@ class TorchLearner : public Learner {
 
   double step(const DirectionBatch& batch, Loss loss, double learningRate) override {
     const Rows rows(batch, m_device);
-    return descend(*m_modules.directions, *m_adam,
-                   lossOf(loss, m_modules.directions(rows.scalars, rows.basis, rows.there), rows),
-                   learningRate);
+    return m_together.descend(*m_modules.directions, *m_adam,
+                              lossOf(loss, m_modules.directions(rows.scalars, rows.basis, rows.there), rows),
+                              learningRate);
   }
 
   double step(const LightBatch& batch, double learningRate) override {
@@ -209,7 +175,7 @@ class TorchLearner : public Learner {
     const torch::Tensor mixture =
         kLearnedShare * m_modules.lights(rows.pairs, rows.formula) + (1 - kLearnedShare) * rows.probability;
     const torch::Tensor moment = (rows.rms.square() / mixture.clamp_min(1e-9)).sum(-1);
-    return descend(*m_modules.lights, *m_lightAdam, torch::log(moment).mean(), learningRate);
+    return m_together.descend(*m_modules.lights, *m_lightAdam, torch::log(moment).mean(), learningRate);
   }
 
   std::vector<float> predict(const DirectionBatch& batch) override {
@@ -273,102 +239,11 @@ class TorchLearner : public Learner {
     m_lightAdam->load(lightAdam);
   }
 
-  std::string agree(const std::string& text) override {
-    if (m_processes.count == 1) return text;
-    torch::Tensor length = torch::tensor({int64_t(text.size())});
-    broadcast(length);
-    torch::Tensor bytes = torch::zeros({length.item<int64_t>()}, torch::kUInt8);
-    if (m_processes.rank == 0) std::memcpy(bytes.data_ptr(), text.data(), text.size());
-    if (bytes.numel() > 0) broadcast(bytes);
-    return {static_cast<const char*>(bytes.data_ptr()), size_t(bytes.numel())};
-  }
+  std::string agree(const std::string& text) override { return m_together.agree(text); }
 
  private:
-  // A step of the optimizer along the gradient of the loss, averaged over all processes; returns the loss.
-  double descend(torch::nn::Module& module, torch::optim::Adam& adam, const torch::Tensor& loss,
-                 double learningRate) {
-    adam.zero_grad();
-    loss.backward();
-    double mean = loss.item<double>();
-    if (m_processes.count > 1) average(module, mean);
-    torch::nn::utils::clip_grad_norm_(module.parameters(), kLongestGradient);
-    for (auto& group : adam.param_groups())
-      static_cast<torch::optim::AdamOptions&>(group.options()).lr(learningRate);
-    adam.step();
-    return mean;
-  }
-
-#ifdef ODIS_PROCESSES
-  void join() {
-    const char* address = std::getenv("MASTER_ADDR");
-    const char* port = std::getenv("MASTER_PORT");
-    if (!address || !port)
-      throw TrainError("several processes need MASTER_ADDR and MASTER_PORT, as torchrun sets them");
-    try {
-      c10d::TCPStoreOptions options;
-      options.port = uint16_t(std::atoi(port));
-      options.isServer = m_processes.rank == 0;
-      options.numWorkers = size_t(m_processes.count);
-      m_group = makeGroup(c10::make_intrusive<c10d::TCPStore>(address, options));
-    } catch (const c10::Error& e) {
-      throw TrainError(std::string("the processes don't find each other: ") + e.what_without_backtrace());
-    }
-  }
-  // What libtorch 2 calls a backend was a process group before.
-#if TORCH_VERSION_MAJOR >= 2
-  using Group = c10d::Backend;
-#else
-  using Group = c10d::ProcessGroup;
-#endif
-  // Processes on CUDA talk by NCCL where it is there, others by Gloo.
-  c10::intrusive_ptr<Group> makeGroup(const c10::intrusive_ptr<c10d::Store>& store) {
-#ifdef ODIS_NCCL
-    if (m_device.is_cuda()) {
-      m_talksOn = m_device;
-      return c10::make_intrusive<c10d::ProcessGroupNCCL>(store, m_processes.rank, m_processes.count);
-    }
-#endif
-#ifdef ODIS_GLOO
-    const auto gloo = c10d::ProcessGroupGloo::Options::create();
-    gloo->devices.push_back(c10d::ProcessGroupGloo::createDefaultDevice());
-    return c10::make_intrusive<c10d::ProcessGroupGloo>(store, m_processes.rank, m_processes.count, gloo);
-#else
-    throw TrainError("this odis was built without Gloo: several processes need a CUDA device each");
-#endif
-  }
-  // What the first process has, for all.
-  void broadcast(torch::Tensor& tensor) {
-    std::vector<torch::Tensor> there{tensor.to(m_talksOn)};
-    m_group->broadcast(there)->wait();
-    tensor = there[0].to(torch::kCPU);
-  }
-  // Of all gradients at once, and the loss.
-  void average(torch::nn::Module& module, double& loss) {
-    std::vector<torch::Tensor> parts;
-    for (const torch::Tensor& p : module.parameters()) parts.push_back(p.grad().reshape({-1}).to(m_talksOn));
-    parts.push_back(torch::full({1}, loss, torch::TensorOptions(m_talksOn).dtype(torch::kFloat32)));
-    std::vector<torch::Tensor> all{torch::cat(parts)};
-    m_group->allreduce(all)->wait();
-    const torch::Tensor mean = all[0] / double(m_processes.count);
-    int64_t at = 0;
-    for (torch::Tensor& p : module.parameters()) {
-      p.mutable_grad().copy_(mean.slice(0, at, at + p.numel()).reshape(p.sizes()));
-      at += p.numel();
-    }
-    loss = mean[at].item<double>();
-  }
-  torch::Device m_talksOn = torch::kCPU;  // where tensors are when processes exchange them
-  c10::intrusive_ptr<Group> m_group;
-#else
-  void join() {
-    throw TrainError("this odis was built without Gloo and NCCL: one process can train");
-  }
-  void broadcast(torch::Tensor&) {}
-  void average(torch::nn::Module&, double&) {}
-#endif
-
   torch::Device m_device;
-  Processes m_processes;
+  TorchProcesses m_together;
   Modules m_modules;
   std::unique_ptr<torch::optim::Adam> m_adam, m_lightAdam;
 };

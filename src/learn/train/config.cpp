@@ -16,7 +16,14 @@ namespace {
 constexpr std::pair<Loss, const char*> kLosses[] = {{Loss::crossEntropy, "cross-entropy"},
                                                     {Loss::logVariance, "log-variance"},
                                                     {Loss::l1, "l1"},
-                                                    {Loss::l2, "l2"}};
+                                                    {Loss::l2, "l2"},
+                                                    {Loss::log, "log"}};
+
+constexpr std::pair<Network, const char*> kNetworks[] = {{Network::cells, "cells"},
+                                                         {Network::pixels, "pixels"}};
+
+constexpr std::pair<core::IncidentRadiance, const char*> kRadiances[] = {
+    {core::IncidentRadiance::full, "full"}, {core::IncidentRadiance::withoutDirect, "without-direct"}};
 
 constexpr std::pair<Precision, const char*> kPrecisions[] = {{Precision::single, "single"},
                                                              {Precision::mixed, "mixed"}};
@@ -101,6 +108,7 @@ TrainConfig readConfig(const std::string& path) {
   keys.take("data", c.data);
   keys.take("examples", c.examples);
   keys.take("shards", c.shards, 1, kMany);
+  keys.take("network", c.network, kNetworks);
   keys.take("steps", c.steps, 1, kMany);
   keys.take("batch", c.batch, 1, 1 << 20);
   keys.take("hidden", c.hidden, 1, 256);
@@ -114,10 +122,23 @@ TrainConfig readConfig(const std::string& path) {
   keys.take("validateSteps", c.validateSteps, 1, kMany);
   keys.take("validationScenes", c.validationScenes, 0, kMany);
   keys.take("seed", c.seed, 0, kMany);
+  keys.take("width", c.width, 8, 64);
+  keys.take("tile", c.tile, 1, 16);
+  keys.take("radiance", c.radiance, kRadiances);
+  keys.take("adversarialWeight", c.adversarialWeight, 0.0, 1e6);
+  keys.take("adversarialStart", c.adversarialStart, 0, kMany);
+  keys.take("adversarialFull", c.adversarialFull, 0, kMany);
+  keys.take("discriminatorRate", c.discriminatorRate, 0.0, 1.0);
   keys.take("precision", c.precision, kPrecisions);
   keys.take("device", c.device);
   if (c.device != "auto" && c.device != "cpu" && c.device != "cuda")
     keys.fail("device", "found " + c.device + ", expected auto, cpu or cuda");
+  if (c.width % 8 != 0) keys.fail("width", fmt::format("found {}, expected a multiple of 8", c.width));
+  if (c.adversarialFull < c.adversarialStart)
+    keys.fail("adversarialFull", fmt::format("found {}, expected at least adversarialStart, {}",
+                                             c.adversarialFull, c.adversarialStart));
+  if (c.network == Network::cells && c.loss == Loss::log)
+    keys.fail("loss", "found log, which is for the network at pixels alone");
   keys.expectNoneLeft();
   if (c.data.empty()) keys.fail("data", "is missing, expected a folder of shards");
   // Folders are relative to the file that names them.
@@ -131,6 +152,7 @@ nlohmann::ordered_json toJson(const TrainConfig& c) {
   return {{"data", c.data},
           {"examples", c.examples},
           {"shards", c.shards},
+          {"network", nameOf(c.network, kNetworks)},
           {"steps", c.steps},
           {"batch", c.batch},
           {"hidden", c.hidden},
@@ -144,6 +166,13 @@ nlohmann::ordered_json toJson(const TrainConfig& c) {
           {"validateSteps", c.validateSteps},
           {"validationScenes", c.validationScenes},
           {"seed", c.seed},
+          {"width", c.width},
+          {"tile", c.tile},
+          {"radiance", nameOf(c.radiance, kRadiances)},
+          {"adversarialWeight", c.adversarialWeight},
+          {"adversarialStart", c.adversarialStart},
+          {"adversarialFull", c.adversarialFull},
+          {"discriminatorRate", c.discriminatorRate},
           {"precision", nameOf(c.precision, kPrecisions)},
           {"device", c.device}};
 }

@@ -1,6 +1,7 @@
 #include "learn/train/history.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
@@ -17,8 +18,7 @@ using render::Rgb;
 namespace {
 
 constexpr int kWidth = 640, kPanel = 220, kMargin = 44;
-const Rgb kPaper{1, 1, 1}, kInk{0.02f, 0.02f, 0.02f}, kGrid{0.8f, 0.8f, 0.8f}, kLine{0.05f, 0.2f, 0.6f},
-    kOther{0.7f, 0.3f, 0.02f};
+const Rgb kPaper{1, 1, 1}, kInk{0.02f, 0.02f, 0.02f}, kGrid{0.8f, 0.8f, 0.8f};
 
 using Points = std::vector<std::pair<double, double>>;
 
@@ -119,20 +119,25 @@ void putScalar(std::string& file, double seconds, int step, const std::string& t
 }  // namespace
 
 Canvas drawHistory(const History& history) {
-  Canvas canvas(kWidth, 3 * kPanel, kPaper);
-  Points losses, lights, network, formula;
-  for (const LossRow& row : history.losses) {
-    losses.emplace_back(row.step, row.loss);
-    lights.emplace_back(row.step, row.lights);
+  static const Rgb kLines[] = {
+      {0.05f, 0.2f, 0.6f}, {0.7f, 0.3f, 0.02f}, {0.1f, 0.45f, 0.1f}, {0.4f, 0.1f, 0.5f}};
+  const size_t panels = history.lossNames.size() + 1;
+  Canvas canvas(kWidth, int(panels) * kPanel, kPaper);
+  for (size_t i = 0; i < history.lossNames.size(); ++i) {
+    Points losses;
+    for (const LossRow& row : history.losses) losses.emplace_back(row.step, row.losses[i]);
+    drawPanel(canvas, int(i) * kPanel, history.lossNames[i], {{losses, kLines[0]}});
   }
-  for (const ValidationRow& row : history.validations) {
-    network.emplace_back(row.step, row.variance);
-    formula.emplace_back(row.step, row.formula);
+  std::vector<std::pair<Points, Rgb>> series;
+  std::string title = "held-out scenes: ";
+  static constexpr const char* kColors[] = {" (blue)", " (orange)", " (green)", " (purple)"};
+  for (size_t i = 0; i < std::min(history.validationNames.size(), std::size(kLines)); ++i) {
+    Points values;
+    for (const ValidationRow& row : history.validations) values.emplace_back(row.step, row.values[i]);
+    series.emplace_back(values, kLines[i]);
+    title += (i > 0 ? ", " : "") + history.validationNames[i] + kColors[i];
   }
-  drawPanel(canvas, 0, "loss of maps", {{losses, kLine}});
-  drawPanel(canvas, kPanel, "loss of choices among lights", {{lights, kLine}});
-  drawPanel(canvas, 2 * kPanel, "predicted variance on held-out scenes: network (blue), formula (orange)",
-            {{network, kLine}, {formula, kOther}});
+  drawPanel(canvas, int(history.lossNames.size()) * kPanel, title, series);
   return canvas;
 }
 
@@ -143,25 +148,27 @@ std::string tensorboardEvents(const History& history) {
   putText(first, kFileVersion, "brain.Event:2");
   putRecord(file, first);
   for (const LossRow& row : history.losses) {
-    putScalar(file, row.seconds, row.step, "loss/maps", row.loss);
-    putScalar(file, row.seconds, row.step, "loss/lights", row.lights);
+    for (size_t i = 0; i < row.losses.size(); ++i)
+      putScalar(file, row.seconds, row.step, history.lossNames[i], row.losses[i]);
     putScalar(file, row.seconds, row.step, "learning rate", row.learningRate);
   }
-  for (const ValidationRow& row : history.validations) {
-    putScalar(file, 0, row.step, "validation/network", row.variance);
-    putScalar(file, 0, row.step, "validation/formula", row.formula);
-  }
+  for (const ValidationRow& row : history.validations)
+    for (size_t i = 0; i < row.values.size(); ++i)
+      putScalar(file, 0, row.step, "validation/" + history.validationNames[i], row.values[i]);
   return file;
 }
 
 void writeHistory(const std::string& folder, const History& history) {
-  std::string losses = "step,loss,loss of lights,learning rate,seconds\n",
-              validations = "step,network,formula\n";
+  std::string losses = "step", validations = "step";
+  for (const std::string& name : history.lossNames) losses += "," + name;
+  losses += ",learning rate,seconds\n";
+  for (const std::string& name : history.validationNames) validations += "," + name;
+  validations += "\n";
   for (const LossRow& row : history.losses)
     losses +=
-        fmt::format("{},{},{},{},{:.1f}\n", row.step, row.loss, row.lights, row.learningRate, row.seconds);
+        fmt::format("{},{},{},{:.1f}\n", row.step, fmt::join(row.losses, ","), row.learningRate, row.seconds);
   for (const ValidationRow& row : history.validations)
-    validations += fmt::format("{},{},{}\n", row.step, row.variance, row.formula);
+    validations += fmt::format("{},{}\n", row.step, fmt::join(row.values, ","));
   render::writeFile(folder + "/losses.csv", losses);
   render::writeFile(folder + "/validation.csv", validations);
   render::writeFile(folder + "/events.out.tfevents.odis", tensorboardEvents(history));

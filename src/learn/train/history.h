@@ -11,18 +11,19 @@ namespace odis::learn {
 // The mean over the steps since the row before.
 struct LossRow {
   int step = 0;
-  double loss = 0, lights = 0;  // of maps, of choices among lights
+  std::vector<double> losses;  // as History::lossNames
   double learningRate = 0;
   double seconds = 0;  // since the training began, pauses left out
 };
 
-// Held-out scenes: predictedVariance() of the network, and of the formula beside it.
+// What held-out scenes say.
 struct ValidationRow {
   int step = 0;
-  double variance = 1, formula = 1;
+  std::vector<double> values;  // as History::validationNames
 };
 
 struct History {
+  std::vector<std::string> lossNames, validationNames;
   std::vector<LossRow> losses;
   std::vector<ValidationRow> validations;
 };
@@ -31,7 +32,7 @@ struct History {
 // WriteError.
 void writeHistory(const std::string& folder, const History& history);
 
-// The curves: losses above, predicted variance below.
+// The curves: a panel for each loss, and one for what held-out scenes say.
 Canvas drawHistory(const History& history);
 // An event file as TensorBoard reads it: records with masked CRC-32C, each a protocol buffer `Event`.
 std::string tensorboardEvents(const History& history);

@@ -8,6 +8,7 @@
 
 #include "learn/train/config.h"
 #include "learn/train/example_pool.h"
+#include "learn/train/pixel_examples.h"
 #include "odis/weights/weights.h"
 
 namespace odis::learn {
@@ -25,11 +26,24 @@ struct Processes {
 // By the environment, as torchrun sets it: RANK, WORLD_SIZE. Throws TrainError.
 Processes processesOfEnvironment();
 
-class Learner {
+// What is the same whatever is learned.
+class LearnerState {
  public:
-  virtual ~Learner() = default;
+  virtual ~LearnerState() = default;
   // Where it computes: "cpu" or "cuda".
   virtual std::string device() const = 0;
+  // What the run time needs.
+  virtual std::vector<core::Tensor> tensors() const = 0;
+  // Everything that the next step depends on, as bytes.
+  virtual std::string state() const = 0;
+  virtual void restore(const std::string& state) = 0;
+  // The text that the first process gives, for all. Every process must call it.
+  virtual std::string agree(const std::string& text) = 0;
+};
+
+// The networks of cells.
+class Learner : public LearnerState {
+ public:
   // Takes from a batch what the cells' numbers are standardized by. To be called once, before anything is
   // learned.
   virtual void standardize(const DirectionBatch& batch) = 0;
@@ -42,16 +56,26 @@ class Learner {
   virtual std::vector<float> predict(const DirectionBatch& batch) = 0;
   // The shares that the network gives the groups of lights: [count][group].
   virtual std::vector<float> predict(const LightBatch& batch) = 0;
-  // What the run time needs.
-  virtual std::vector<core::Tensor> tensors() const = 0;
-  // Everything that the next step depends on, as bytes.
-  virtual std::string state() const = 0;
-  virtual void restore(const std::string& state) = 0;
-  // The text that the first process gives, for all. Every process must call it.
-  virtual std::string agree(const std::string& text) = 0;
+};
+
+// The network at pixels, and the discriminator that it is trained against (TrainConfig::adversarialWeight).
+class PixelLearner : public LearnerState {
+ public:
+  // Likewise, of the scalars.
+  virtual void standardize(const PixelBatch& batch) = 0;
+  struct Losses {
+    double map = 0;            // between the network's maps and the references
+    double discriminator = 0;  // hinge loss; 0 without one
+  };
+  // A step of Adam of the network, and one of the discriminator before it if `adversarialWeight` is positive;
+  // the losses of the batch before, over all processes.
+  virtual Losses step(const PixelBatch& batch, double learningRate, double adversarialWeight) = 0;
+  // The shares of the texels, [count][row][column].
+  virtual std::vector<float> predict(const PixelBatch& batch) = 0;
 };
 
 // Throws TrainError.
 std::unique_ptr<Learner> makeLearner(const TrainConfig& config, const Processes& processes);
+std::unique_ptr<PixelLearner> makePixelLearner(const TrainConfig& config, const Processes& processes);
 
 }  // namespace odis::learn

@@ -18,6 +18,20 @@ int numberOfEnvironment(const char* name, int missing) {
   return int(value);
 }
 
+// What the library on libtorch makes. It stays loaded: libtorch does not like to be let go.
+template <class Made>
+std::unique_ptr<Made> make(const char* function, const TrainConfig& config, const Processes& processes) {
+  void* library = dlopen("libodis_learner.so", RTLD_NOW | RTLD_LOCAL);
+  if (!library)
+    throw TrainError(
+        std::string("training needs libtorch: install libtorch-dev and libgloo-dev, and build again (") +
+        dlerror() + ")");
+  using Make = Made* (*)(const TrainConfig&, const Processes&);
+  const auto maker = reinterpret_cast<Make>(dlsym(library, function));
+  if (!maker) throw TrainError("libodis_learner.so is of another version");
+  return std::unique_ptr<Made>(maker(config, processes));
+}
+
 }  // namespace
 
 Processes processesOfEnvironment() {
@@ -29,16 +43,11 @@ Processes processesOfEnvironment() {
 }
 
 std::unique_ptr<Learner> makeLearner(const TrainConfig& config, const Processes& processes) {
-  // Stays loaded: libtorch does not like to be let go.
-  void* library = dlopen("libodis_learner.so", RTLD_NOW | RTLD_LOCAL);
-  if (!library)
-    throw TrainError(
-        std::string("training needs libtorch: install libtorch-dev and libgloo-dev, and build again (") +
-        dlerror() + ")");
-  using Make = Learner* (*)(const TrainConfig&, const Processes&);
-  const auto make = reinterpret_cast<Make>(dlsym(library, "odisMakeLearner"));
-  if (!make) throw TrainError("libodis_learner.so is of another version");
-  return std::unique_ptr<Learner>(make(config, processes));
+  return make<Learner>("odisMakeLearner", config, processes);
+}
+
+std::unique_ptr<PixelLearner> makePixelLearner(const TrainConfig& config, const Processes& processes) {
+  return make<PixelLearner>("odisMakePixelLearner", config, processes);
 }
 
 }  // namespace odis::learn

@@ -8,9 +8,7 @@
 #include <thread>
 
 #include "learn/data/dataset.h"
-#include "learn/train/validation.h"
-#include "odis/models/direction_formula.h"
-#include "odis/models/direction_network.h"
+#include "learn/train/task.h"
 #include "odis_version.h"
 #include "render/files/read_json.h"
 #include "render/files/replace_file.h"
@@ -23,8 +21,7 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-constexpr size_t kStandardizedBy = 4096;  // examples
-constexpr int kStepsPerRow = 50;          // of losses.csv
+constexpr int kStepsPerRow = 50;  // of losses.csv
 constexpr size_t kShardsAtOnce = 100;
 
 double learningRateAt(const TrainConfig& c, int step) {
@@ -41,16 +38,21 @@ class Training {
         m_folder(folder),
         m_processes(processes),
         m_observer(observer),
-        m_learner(makeLearner(config, processes)),
-        m_pool(config.examples.empty() ? folder + "/examples" : config.examples) {}
+        m_task(config.network == Network::pixels
+                   ? makePixelTask(config, processes)
+                   : makeCellTask(config, processes,
+                                  config.examples.empty() ? folder + "/examples" : config.examples)),
+        m_learner(m_task->learner()) {
+    m_history.lossNames = m_task->lossNames();
+    m_history.validationNames = m_task->validationNames();
+    m_sums.assign(m_history.lossNames.size(), 0);
+  }
 
   bool run() {
     if (first()) claimFolder();
     if (!restore()) {
       if (!takeUpShards(true)) return false;
-      DirectionBatch batch;
-      m_pool.draw(uint64_t(m_config.seed), ~uint64_t(0), kStandardizedBy, m_config.shiftProbability, batch);
-      m_learner->standardize(batch);
+      m_task->standardize();
     }
     while (m_step < m_config.steps) {
       if (stopAgreed()) return false;
@@ -89,7 +91,7 @@ class Training {
                       path));
     render::writeFile(path, nlohmann::ordered_json{{"software", "ODIS " ODIS_VERSION_STRING},
                                                    {"processes", m_processes.count},
-                                                   {"device", m_learner->device()},
+                                                   {"device", m_learner.device()},
                                                    {"config", mine}}
                                     .dump(1) +
                                 "\n");
@@ -118,12 +120,12 @@ class Training {
       if (!wait || int(there) >= m_config.shards)
         for (const std::string& name : newShards()) list += name + "\n";
     }
-    list = m_learner->agree(list);
+    list = m_learner.agree(list);
     std::vector<std::string> names;
     for (size_t at = 0, end; (end = list.find('\n', at)) != std::string::npos; at = end + 1)
       names.push_back(list.substr(at, end - at));
     load(names);
-    if (m_pool.size() > 0) return true;
+    if (m_task->size() > 0) return true;
     if (wait && first() && !m_observer.cancelled())
       throw TrainError(fmt::format("no shard in \"{}\" has anything to learn from", m_config.data));
     return false;
@@ -150,38 +152,34 @@ class Training {
         files.push_back(shardFile(m_config.data, names[i]));
         m_shards.push_back(names[i]);
       }
-      m_pool.add(files);
-      m_observer.loaded(m_shards.size(), m_pool.size());
+      m_task->add(files);
+      m_observer.loaded(m_shards.size(), m_task->size());
     }
   }
 
   // The first process decides for all.
-  bool stopAgreed() { return m_learner->agree(m_observer.cancelled() ? "stop" : "go on") == "stop"; }
+  bool stopAgreed() { return m_learner.agree(m_observer.cancelled() ? "stop" : "go on") == "stop"; }
 
   // Steps until the next checkpoint.
   void round() {
     const Clock::time_point start = Clock::now();
     const double before = m_seconds;
     const int end = std::min(m_config.steps, (m_step / m_config.roundSteps + 1) * m_config.roundSteps);
-    DirectionBatch batch;
-    LightBatch lights;
     while (m_step < end) {
-      const bool tuning = m_step >= m_config.steps - m_config.fineTuneSteps;
       const uint64_t draw = uint64_t(m_step) * uint64_t(m_processes.count) + uint64_t(m_processes.rank);
-      m_pool.draw(uint64_t(m_config.seed), draw, size_t(m_config.batch), m_config.shiftProbability, batch);
       const double rate = learningRateAt(m_config, m_step);
-      m_sum += m_learner->step(batch, tuning ? Loss::logVariance : m_config.loss, rate);
-      if (m_pool.lightSize() > 0) {
-        m_pool.draw(uint64_t(m_config.seed), draw, size_t(m_config.batch), lights);
-        m_lightSum += m_learner->step(lights, rate);
-      }
+      const std::vector<double> losses = m_task->step(m_step, draw, rate);
+      for (size_t i = 0; i < losses.size(); ++i) m_sums[i] += losses[i];
       ++m_inSum;
       ++m_step;
       m_seconds = before + std::chrono::duration<double>(Clock::now() - start).count();
       if (m_step % kStepsPerRow == 0 || m_step == m_config.steps) {
-        m_history.losses.push_back({m_step, m_sum / m_inSum, m_lightSum / m_inSum, rate, m_seconds});
-        m_observer.step(m_config.steps, m_history.losses.back());
-        m_sum = m_lightSum = m_inSum = 0;
+        std::vector<double> means;
+        for (const double sum : m_sums) means.push_back(sum / m_inSum);
+        m_history.losses.push_back({m_step, means, rate, m_seconds});
+        m_observer.step(m_config.steps, m_history);
+        m_sums.assign(m_sums.size(), 0);
+        m_inSum = 0;
       }
       if (first() && (m_step % m_config.validateSteps == 0 || m_step == m_config.steps)) validate();
     }
@@ -193,25 +191,23 @@ class Training {
     for (const std::string& name : shardsOf(Split::validation))
       if (int(files.size()) < m_config.validationScenes) files.push_back(shardFile(m_config.data, name));
     if (files.empty()) return;
-    if (files != m_formulaOf) {
-      m_formula = predictedVariance(files, std::make_shared<core::DirectionFormula>(GuideOptions()));
-      m_formulaOf = files;
-    }
-    const auto network = std::make_shared<core::DirectionNetwork>(core::Weights("", m_learner->tensors()));
-    m_history.validations.push_back({m_step, predictedVariance(files, network), m_formula});
-    m_observer.validated(m_history.validations.back());
+    m_history.validations.push_back({m_step, m_task->validate(files)});
+    m_task->draw(m_folder);
+    m_observer.validated(m_history);
   }
 
   nlohmann::ordered_json about() const {
     nlohmann::ordered_json json = {
         {"software", "ODIS " ODIS_VERSION_STRING},
-        {"network", "blend of maps: docs/network.md"},
+        {"network", m_task->about()},
         {"config", toJson(m_config)},
-        {"data", {{"shards", m_shards.size()}, {"examples", m_pool.size()}, {"crc32", m_pool.fingerprint()}}},
+        {"data",
+         {{"shards", m_shards.size()}, {"examples", m_task->size()}, {"crc32", m_task->fingerprint()}}},
         {"steps", m_step}};
     if (!m_history.validations.empty()) {
       const ValidationRow& last = m_history.validations.back();
-      json["validation"] = {{"predictedVariance", last.variance}, {"formula", last.formula}};
+      for (size_t i = 0; i < last.values.size(); ++i)
+        json["validation"].push_back({m_history.validationNames[i], last.values[i]});
     }
     return json;
   }
@@ -219,21 +215,17 @@ class Training {
   // First what others read, last the checkpoint: whatever is killed in between is made again.
   void save() {
     writeHistory(m_folder, m_history);
-    render::writeFile(m_folder + "/odis.weights",
-                      core::Weights(about().dump(), m_learner->tensors()).bytes());
+    render::writeFile(m_folder + "/odis.weights", core::Weights(about().dump(), m_learner.tensors()).bytes());
     nlohmann::ordered_json losses = nlohmann::ordered_json::array(),
                            validations = nlohmann::ordered_json::array();
-    for (const LossRow& r : m_history.losses)
-      losses.push_back({r.step, r.loss, r.lights, r.learningRate, r.seconds});
-    for (const ValidationRow& r : m_history.validations)
-      validations.push_back({r.step, r.variance, r.formula});
-    const std::string state = m_learner->state();
+    for (const LossRow& r : m_history.losses) losses.push_back({r.step, r.losses, r.learningRate, r.seconds});
+    for (const ValidationRow& r : m_history.validations) validations.push_back({r.step, r.values});
+    const std::string state = m_learner.state();
     ShardWriter writer;
     writer.add("learner", {state.size()},
                std::span(reinterpret_cast<const uint8_t*>(state.data()), state.size()));
     writer.write(checkpointPath(), {{"step", m_step},
-                                    {"sum", m_sum},
-                                    {"lightSum", m_lightSum},
+                                    {"sums", m_sums},
                                     {"inSum", m_inSum},
                                     {"seconds", m_seconds},
                                     {"shards", m_shards},
@@ -245,21 +237,20 @@ class Training {
   bool restore() {
     std::string bytes;
     if (first() && fs::exists(checkpointPath())) bytes = shardBytes(checkpointPath());
-    bytes = m_learner->agree(bytes);
+    bytes = m_learner.agree(bytes);
     if (bytes.empty()) return false;
     const ShardReader reader(checkpointPath(), bytes);
     const nlohmann::json& h = reader.header();
     m_step = h.at("step");
-    m_sum = h.at("sum");
-    m_lightSum = h.at("lightSum");
+    m_sums = h.at("sums").get<std::vector<double>>();
     m_inSum = h.at("inSum");
     m_seconds = h.at("seconds");
     for (const nlohmann::json& r : h.at("losses"))
-      m_history.losses.push_back({r.at(0), r.at(1), r.at(2), r.at(3), r.at(4)});
+      m_history.losses.push_back({r.at(0), r.at(1).get<std::vector<double>>(), r.at(2), r.at(3)});
     for (const nlohmann::json& r : h.at("validations"))
-      m_history.validations.push_back({r.at(0), r.at(1), r.at(2)});
+      m_history.validations.push_back({r.at(0), r.at(1).get<std::vector<double>>()});
     const std::vector<uint8_t> state = reader.read<uint8_t>("learner");
-    m_learner->restore({reinterpret_cast<const char*>(state.data()), state.size()});
+    m_learner.restore({reinterpret_cast<const char*>(state.data()), state.size()});
     load(h.at("shards").get<std::vector<std::string>>());
     return true;
   }
@@ -268,17 +259,15 @@ class Training {
   const std::string m_folder;
   const Processes m_processes;
   TrainObserver& m_observer;
-  std::unique_ptr<Learner> m_learner;
-  ExamplePool m_pool;
+  const std::unique_ptr<Task> m_task;
+  LearnerState& m_learner;
   std::vector<std::string> m_shards;  // taken up, in this order
   size_t m_filesSeen = 0;
   int m_step = 0;
-  double m_sum = 0, m_lightSum = 0;  // of losses since the last row
-  double m_inSum = 0;                // of how many steps
+  std::vector<double> m_sums;  // of losses since the last row
+  double m_inSum = 0;          // of how many steps
   double m_seconds = 0;
   History m_history;
-  std::vector<std::string> m_formulaOf;
-  double m_formula = 1;
 };
 
 }  // namespace

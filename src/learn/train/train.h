@@ -14,8 +14,9 @@ class TrainObserver {
   virtual ~TrainObserver() = default;
   virtual void waiting(size_t /*shards*/, int /*expected*/) {}
   virtual void loaded(size_t /*shards*/, size_t /*examples*/) {}
-  virtual void step(int /*of*/, const LossRow& /*row*/) {}
-  virtual void validated(const ValidationRow& /*row*/) {}
+  // Of the last row of each.
+  virtual void step(int /*of*/, const History& /*history*/) {}
+  virtual void validated(const History& /*history*/) {}
   virtual bool cancelled() const { return false; }
 };
 
