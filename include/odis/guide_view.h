@@ -27,7 +27,7 @@ inline constexpr uint32_t kMaxLightGroups = ODIS_MAX_LIGHT_GROUPS;
 
 // The cell of the pixel's own map, for the first vertices of paths; kNoCell where there is none.
 ODIS_HOST_DEVICE inline uint32_t pixelCell(const GuideView& view, const Place& place) {
-  return place.first && view.pixelCells ? view.pixelCells[place.pixel] : kNoCell;
+  return place.first && place.pixel < view.pixelCount ? view.pixelCells[place.pixel] : kNoCell;
 }
 
 // The finest cell that there is for a vertex; kNoCell where the guide has seen nothing at all.

@@ -109,6 +109,7 @@ typedef struct OdisGuideView {
   // [pixel]: the cell that holds the pixel's own map (OdisGuideOptions.pixelMaps), or ODIS_NO_CELL; NULL
   // without such maps. These cells come after those of the grid, and no key leads to them.
   const uint32_t* pixelCells ODIS_DEFAULT(NULL);
+  uint32_t pixelCount ODIS_DEFAULT(0);
 } OdisGuideView;
 
 // What a frame asks the host to trace.

@@ -75,7 +75,14 @@ void bindMaps(nb::class_<Guide>& guide) {
             const size_t texels = self.p->view().maps.directions ? kMapTexels : 0;
             return shown<NumpyArray<const float, 3, -1>>(self, self.p->view().maps.directions, {3, texels});
           },
-          "(3, 256), float32: unit directions of the texels' centres; (3, 0) without cells.");
+          "(3, 256), float32: unit directions of the texels' centres; (3, 0) without cells.")
+      .def_prop_ro(
+          "pixel_cells",
+          [](Self self) {
+            const GuideView view = self.p->view();
+            return shown<NumpyArray<const uint32_t, -1>>(self, view.pixelCells, {view.pixelCount});
+          },
+          "(pixels,), uint32: the cell of each pixel's own map, or NO_CELL; empty without such maps.");
 }
 
 void bindDecisions(nb::class_<Guide>& guide) {

@@ -36,8 +36,8 @@ void setLightParts(GuideOptions& options, const Ranges& ranges) {
 constexpr const char* kGuideOptions = R"(How guides are made of vertices; all fields are optional.
 
 model: Model, by default the networks that come with the library
-cells_per_diagonal: int >= 1 (32): the finest cells have an edge of (diagonal of what the first vertices
-    span) / this
+cells_per_diagonal: int >= 0 (32): the finest cells have an edge of (diagonal of what the first vertices
+    span) / this; 0: there are no cells
 prior_samples: four floats >= 0 (250, 250, 120, 30): weight of the coarser level when the formula blends its
     map with a finer one's, in samples, finest level first; the last is for the uniform map
 floor: float in [0, 1] (0.03): share of the uniform distribution in every map
@@ -47,6 +47,11 @@ fixed_bsdf_fraction: float in [0, 1] (0): above 0 this BSDF sampling fraction ev
 control_variate: bool (True): whether the mean outgoing radiance stands in for paths that roulette ends
 cached_error: float >= 0 (0): above 0 paths may end with a cell's cached radiance, if they are off by less
     than this fraction of the pixel's value for it: images are biased then
+pixel_maps: PixelMaps (NONE): what makes maps at pixels, which guide the first vertex of each path in frames
+pixel_tile: int in [1, 16] (1): a map for each square of so many pixels a side
+pixel_share: float in [0, 1] (1): share of a pixel's map; the rest is the map of its cell
+pixel_direct_light: bool (True): whether histograms and oracles at pixels hold what next-event estimation covers
+cosine_product: bool (True): whether maps are multiplied by the cosine at a vertex
 light_groups: int <= 32 (0): groups of lights that the vertices tell apart; 0: learn nothing about lights
 light_parts: list of (first, count) ([]): groups that are equal parts of one light
 
@@ -80,7 +85,9 @@ void bindGuideOptions(nb::module_& module) {
           "__init__",
           [](GuideOptions* self, std::optional<Model> model, int32_t cellsPerDiagonal,
              const PriorSamples& samples, float floor, float clamp, float fixedBsdfFraction,
-             bool controlVariate, float cachedError, uint32_t lightGroups, const Ranges& parts) {
+             bool controlVariate, float cachedError, OdisPixelMaps pixelMaps, uint32_t pixelTile,
+             float pixelShare, bool pixelDirectLight, bool cosineProduct, uint32_t lightGroups,
+             const Ranges& parts) {
             new (self) GuideOptions{{}, model ? *model : Model(), {}};
             self->cellsPerDiagonal = cellsPerDiagonal;
             setPriorSamples(*self, samples);
@@ -89,6 +96,11 @@ void bindGuideOptions(nb::module_& module) {
             self->fixedBsdfFraction = fixedBsdfFraction;
             self->controlVariate = controlVariate;
             self->cachedError = cachedError;
+            self->pixelMaps = pixelMaps;
+            self->pixelTile = pixelTile;
+            self->pixelShare = pixelShare;
+            self->pixelDirectLight = pixelDirectLight;
+            self->cosineProduct = cosineProduct;
             self->lightGroups = lightGroups;
             setLightParts(*self, parts);
           },
@@ -96,7 +108,10 @@ void bindGuideOptions(nb::module_& module) {
           "prior_samples"_a = std::to_array(defaults.priorSamples), "floor"_a = defaults.floor,
           "clamp"_a = defaults.clamp, "fixed_bsdf_fraction"_a = defaults.fixedBsdfFraction,
           "control_variate"_a = defaults.controlVariate, "cached_error"_a = defaults.cachedError,
-          "light_groups"_a = defaults.lightGroups, "light_parts"_a = Ranges())
+          "pixel_maps"_a = ODIS_PIXEL_MAPS_NONE, "pixel_tile"_a = defaults.pixelTile,
+          "pixel_share"_a = defaults.pixelShare, "pixel_direct_light"_a = defaults.pixelDirectLight,
+          "cosine_product"_a = defaults.cosineProduct, "light_groups"_a = defaults.lightGroups,
+          "light_parts"_a = Ranges())
       .def_rw("model", &GuideOptions::model)
       .def_rw("cells_per_diagonal", &GuideOptions::cellsPerDiagonal)
       .def_prop_rw("prior_samples", priorSamples, setPriorSamples)
@@ -105,6 +120,13 @@ void bindGuideOptions(nb::module_& module) {
       .def_rw("fixed_bsdf_fraction", &GuideOptions::fixedBsdfFraction)
       .def_rw("control_variate", &GuideOptions::controlVariate)
       .def_rw("cached_error", &GuideOptions::cachedError)
+      .def_prop_rw(
+          "pixel_maps", [](const GuideOptions& self) { return OdisPixelMaps(self.pixelMaps); },
+          [](GuideOptions& self, OdisPixelMaps maps) { self.pixelMaps = maps; })
+      .def_rw("pixel_tile", &GuideOptions::pixelTile)
+      .def_rw("pixel_share", &GuideOptions::pixelShare)
+      .def_rw("pixel_direct_light", &GuideOptions::pixelDirectLight)
+      .def_rw("cosine_product", &GuideOptions::cosineProduct)
       .def_rw("light_groups", &GuideOptions::lightGroups)
       .def_prop_rw("light_parts", lightParts, setLightParts);
 }
@@ -154,6 +176,11 @@ void bindFrameOptions(nb::module_& module) {
 }  // namespace
 
 void bindOptions(nb::module_& module) {
+  nb::enum_<OdisPixelMaps>(module, "PixelMaps", "What makes maps at pixels.")
+      .value("NONE", ODIS_PIXEL_MAPS_NONE)
+      .value("HISTOGRAM", ODIS_PIXEL_MAPS_HISTOGRAM)
+      .value("NETWORK", ODIS_PIXEL_MAPS_NETWORK)
+      .value("ORACLE", ODIS_PIXEL_MAPS_ORACLE);
   bindGuideOptions(module);
   bindFrameOptions(module);
 }

@@ -68,6 +68,7 @@ GuideView Guide::view() const {
   view.cached = m_data->cached.empty() ? nullptr : m_data->cached.data();
   view.rules.cachedError = m_data->cachedError;
   view.pixelCells = m_data->pixelCells.empty() ? nullptr : m_data->pixelCells.data();
+  view.pixelCount = uint32_t(m_data->pixelCells.size());
   return view;
 }
 

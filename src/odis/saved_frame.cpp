@@ -215,9 +215,7 @@ SavedFrame::SavedFrame(const Archive& file)
       oraclePixels(file.get<PixelOracle::Pixel>("pixels.oracle")) {
   const auto isFull = [this](size_t size) { return size == 0 || size == pilot.size(); };
   file.require(isFull(oraclePixels.size()), "pixels.oracle: are damaged");
-  if (guide.view().pixelCells)
-    file.require(file.get<uint32_t>("guide.pixelCells").size() == pilot.size(),
-                 "guide.pixelCells: are damaged");
+  file.require(isFull(guide.view().pixelCount), "guide.pixelCells: are damaged");
   file.require(isFull(pixelValues.size()), "frame.pixelValues: are damaged");
   const std::vector<uint32_t> counts = file.get<uint32_t>("frame.counts");
   file.require(isFull(counts.size()) && schedule.restore(counts), "frame.counts: are damaged");

@@ -48,7 +48,10 @@ TEST(Settings, ReachTheOptions) {
                     "bsdf-fraction=0.3",   "prior-samples=1:2:3.5:0",
                     "map-floor=0.1",       "ppg-threshold=500",
                     "ppg-flux=0.5",        "ppg-directional=nearest",
-                    "ppg-combine=last",    "restir-neighbours=7"});
+                    "ppg-combine=last",    "restir-neighbours=7",
+                    "pixel-maps=oracle",   "pixel-network=paper-fast",
+                    "pixel-tile=3",        "pixel-share=0.5",
+                    "map-cosine=off",      "pixel-light=without-direct"});
   EXPECT_EQ(o.samples, odis::render::SampleSpread::even);
   EXPECT_EQ(o.guide, odis::render::GuideKind::oracle);
   EXPECT_EQ(o.oracleSpp, 8);
@@ -65,6 +68,12 @@ TEST(Settings, ReachTheOptions) {
   const float expected[] = {1, 2, 3.5f, 0};
   EXPECT_TRUE(std::equal(expected, expected + 4, o.guideOptions.priorSamples));
   EXPECT_EQ(o.guideOptions.floor, 0.1f);
+  EXPECT_EQ(o.guideOptions.pixelMaps, ODIS_PIXEL_MAPS_ORACLE);
+  EXPECT_EQ(o.pixelNetwork, "paper-fast");
+  EXPECT_EQ(o.guideOptions.pixelTile, 3u);
+  EXPECT_EQ(o.guideOptions.pixelShare, 0.5f);
+  EXPECT_FALSE(o.guideOptions.cosineProduct);
+  EXPECT_FALSE(o.guideOptions.pixelDirectLight);
   EXPECT_EQ(o.ppg.threshold, 500);
   EXPECT_EQ(o.ppg.flux, 0.5f);
   EXPECT_EQ(o.ppg.directional, odis::render::QuadtreeFilter::nearest);
@@ -89,7 +98,7 @@ TEST(Settings, AKeyAndAValueAreExpected) {
 }
 
 TEST(Settings, ValuesOutOfRangeAreRefused) {
-  EXPECT_EQ(complaintAbout("cells=0"), "--set cells: found \"0\", expected a whole number from 1 to 65536");
+  EXPECT_EQ(complaintAbout("cells=-1"), "--set cells: found \"-1\", expected a whole number from 0 to 65536");
   EXPECT_EQ(complaintAbout("bsdf-fraction=1.5"),
             "--set bsdf-fraction: found \"1.5\", expected a number from 0 to 1");
   for (const char* text :
@@ -152,6 +161,12 @@ TEST(Settings, DefaultsAreThoseOfTheOptions) {
   for (int level = 0; level < odis::kCellLevels; ++level)
     EXPECT_EQ(o.guideOptions.priorSamples[level], expected.guideOptions.priorSamples[level]);
   EXPECT_EQ(o.guideOptions.floor, expected.guideOptions.floor);
+  EXPECT_EQ(o.guideOptions.pixelMaps, expected.guideOptions.pixelMaps);
+  EXPECT_EQ(o.pixelNetwork, expected.pixelNetwork);
+  EXPECT_EQ(o.guideOptions.pixelTile, expected.guideOptions.pixelTile);
+  EXPECT_EQ(o.guideOptions.pixelShare, expected.guideOptions.pixelShare);
+  EXPECT_EQ(o.guideOptions.cosineProduct, expected.guideOptions.cosineProduct);
+  EXPECT_EQ(o.guideOptions.pixelDirectLight, expected.guideOptions.pixelDirectLight);
   EXPECT_EQ(o.ppg.threshold, expected.ppg.threshold);
   EXPECT_EQ(o.ppg.flux, expected.ppg.flux);
   EXPECT_EQ(o.ppg.spatial, expected.ppg.spatial);
@@ -211,12 +226,12 @@ TEST_F(Odis, MistakesInSettingsAreWrongUsage) {
   expectFailure("render room.xml --set guide-bounce=1", 2, "Did you mean guide-bounces?");
   expectFailure("render room.xml --set photon-mapping=1", 2, "--help-settings lists all");
   expectFailure("render room.xml --set cells", 2, "expected key=value");
-  expectFailure("render room.xml --set cells=0", 2, "expected a whole number from 1 to 65536");
+  expectFailure("render room.xml --set cells=-1", 2, "expected a whole number from 0 to 65536");
   expectFailure("render room.xml --set lights=tree", 2, "expected one of network|formula|hierarchy");
   expectFailure("render room.xml --set", 2, "--set");
   expectFailure("render room.xml --guide-bounce 1", 2, "Did you mean --set guide-bounces=...?");
-  expectFailure("compare room.xml -o out --methods 'a=--set cells=0'", 2, "--set cells");
-  expectFailure("inspect room.xml --pixel 6,4 --set cells=0", 2, "--set cells");
+  expectFailure("compare room.xml -o out --methods 'a=--set cells=-1'", 2, "--set cells");
+  expectFailure("inspect room.xml --pixel 6,4 --set cells=-1", 2, "--set cells");
   EXPECT_FALSE(exists("room.exr"));
   EXPECT_EQ(run("render room.xml -q --set guide-bounces=1 --set cells=16").code, 0);
 }
@@ -234,7 +249,7 @@ TEST_F(Odis, RenderHasFewOptions) {
                (line[first + 1] == '-' || std::isalpha(static_cast<unsigned char>(line[first + 1])));
   }
   EXPECT_GT(options, 10);
-  EXPECT_LE(options, 31) << help.text;
+  EXPECT_LE(options, 32) << help.text;
 }
 
 }  // namespace

@@ -36,6 +36,8 @@ inline ::testing::AssertionResult sameView(const GuideView& a, const GuideView& 
     return differ("light tables");
   if (!a.cached != !b.cached || (a.cached && !sameBits(a.cached, b.cached, 2 * cells)))
     return differ("cached radiance");
+  if (a.pixelCount != b.pixelCount || !sameBits(a.pixelCells, b.pixelCells, a.pixelCount))
+    return differ("cells of pixels");
   static_assert(sizeof(GuideRules) == 32);
   if (!sameBits(&a.rules, &b.rules, 1)) return differ("rules");
   return ::testing::AssertionSuccess();

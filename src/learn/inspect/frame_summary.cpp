@@ -43,6 +43,11 @@ std::vector<ChosenOption> chosenOptions(const core::SavedOptions& saved) {
   ofGuide("fixedBsdfFraction", &core::GuideOptions::fixedBsdfFraction);
   ofGuide("controlVariate", &core::GuideOptions::controlVariate);
   ofGuide("cachedError", &core::GuideOptions::cachedError);
+  ofGuide("pixelMaps", &core::GuideOptions::pixelMaps);
+  ofGuide("pixelTile", &core::GuideOptions::pixelTile);
+  ofGuide("pixelShare", &core::GuideOptions::pixelShare);
+  ofGuide("pixelDirectLight", &core::GuideOptions::pixelDirectLight);
+  ofGuide("cosineProduct", &core::GuideOptions::cosineProduct);
   ofGuide("lightGroups", &core::GuideOptions::lightGroups);
   ofGuide("lightPartCount", &core::GuideOptions::lightPartCount);
   return chosen;
@@ -51,8 +56,9 @@ std::vector<ChosenOption> chosenOptions(const core::SavedOptions& saved) {
 std::string modelText(uint64_t id) {
   if (id == 0) return "formulas";
   const auto part = [&](uint64_t network) { return (id & network) != 0 ? "a network" : "a formula"; };
-  return fmt::format("directions by {}, lights by {}, weights {:08x}", part(core::kDirectionNetwork),
-                     part(core::kLightNetwork), uint32_t(id));
+  return fmt::format("directions by {}, lights by {}{}, weights {:08x}", part(core::kDirectionNetwork),
+                     part(core::kLightNetwork),
+                     (id & core::kPixelNetwork) != 0 ? ", pixels by a network" : "", uint32_t(id));
 }
 
 // Where a frame is between its first sample and its last.

@@ -18,8 +18,7 @@ constexpr double kLeak = 0.2;
 
 // A border of one texel as the octahedral square continues: beyond a side lies that side, reversed.
 torch::Tensor bordered(const torch::Tensor& x) {
-  const torch::Tensor wide =
-      torch::cat({x.slice(3, 0, 1).flip(2), x, x.slice(3, -1).flip(2)}, 3);
+  const torch::Tensor wide = torch::cat({x.slice(3, 0, 1).flip(2), x, x.slice(3, -1).flip(2)}, 3);
   return torch::cat({wide.slice(2, 0, 1).flip(3), wide, wide.slice(2, -1).flip(3)}, 2);
 }
 
@@ -77,9 +76,9 @@ TORCH_MODULE(PixelModule);
 struct SpectralConvolutionImpl : torch::nn::Module {
   SpectralConvolutionImpl(int64_t inputs, int64_t outputs, int64_t side)
       : layer(register_module("layer", convolution(inputs, outputs, side))),
-        vector(register_buffer("vector", torch::nn::functional::normalize(
-                                             torch::randn({outputs}),
-                                             torch::nn::functional::NormalizeFuncOptions().dim(0)))) {}
+        vector(register_buffer(
+            "vector", torch::nn::functional::normalize(
+                          torch::randn({outputs}), torch::nn::functional::NormalizeFuncOptions().dim(0)))) {}
 
   torch::Tensor forward(const torch::Tensor& x) {
     const torch::Tensor weight = layer->weight;
@@ -114,7 +113,8 @@ struct DiscriminatorImpl : torch::nn::Module {
         scalars(register_module("scalars", torch::nn::Linear(kScalars, 4 * w))),
         score(register_module("score", SpectralConvolution(4 * w, 1, 1))) {}
 
-  torch::Tensor forward(const torch::Tensor& shares, const torch::Tensor& maps, const torch::Tensor& numbers) {
+  torch::Tensor forward(const torch::Tensor& shares, const torch::Tensor& maps,
+                        const torch::Tensor& numbers) {
     const torch::Tensor map = torch::log(kLogOffset + kPixelTexels * shares).view({-1, 1, kSide, kSide});
     torch::Tensor x = through(layer0, torch::cat({map, maps}, 1));
     x = through(layer1, halved(x));
@@ -169,7 +169,8 @@ torch::Tensor pixelLoss(Loss loss, const torch::Tensor& shares, const PixelRows&
     case Loss::l2:
       return double(kPixelTexels) * (shares - rows.mass).square().sum(-1).mean();
     case Loss::log:
-      return (torch::log(kLogOffset + kPixelTexels * shares) - torch::log(kLogOffset + kPixelTexels * rows.mass))
+      return (torch::log(kLogOffset + kPixelTexels * shares) -
+              torch::log(kLogOffset + kPixelTexels * rows.mass))
           .abs()
           .mean();
   }
@@ -214,10 +215,9 @@ class TorchPixelLearner : public PixelLearner {
     m_modules.discriminator->train();
     const torch::Tensor real = m_modules.discriminator(rows.mass, rows.maps, numbers),
                         made = m_modules.discriminator(shares.detach(), rows.maps, numbers);
-    losses.discriminator =
-        m_together.descend(*m_modules.discriminator, *m_discriminatorAdam,
-                           (torch::relu(1 - real) + torch::relu(1 + made)).mean(),
-                           learningRate * m_discriminatorRate);
+    losses.discriminator = m_together.descend(*m_modules.discriminator, *m_discriminatorAdam,
+                                              (torch::relu(1 - real) + torch::relu(1 + made)).mean(),
+                                              learningRate * m_discriminatorRate);
     m_modules.discriminator->eval();
     const torch::Tensor fooled = -m_modules.discriminator(shares, rows.maps, numbers).mean();
     losses.map = loss.item<double>();

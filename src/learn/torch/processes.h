@@ -23,7 +23,8 @@ namespace odis::learn {
 // Gradients longer than this are shortened.
 inline constexpr double kLongestGradient = 1;
 
-inline torch::Tensor toDevice(const std::vector<float>& values, at::IntArrayRef shape, const torch::Device& device) {
+inline torch::Tensor toDevice(const std::vector<float>& values, at::IntArrayRef shape,
+                              const torch::Device& device) {
   return torch::from_blob(const_cast<float*>(values.data()), shape, torch::kFloat32).to(device);
 }
 

@@ -59,8 +59,8 @@ void normalize(std::vector<float>& map) {
 }
 
 Float3 directionOfTexel(int t) {
-  return squareToDirection(Float2{(float(t % kMapSize) + 0.5f) / kMapSize,
-                                  (float(t / kMapSize) + 0.5f) / kMapSize});
+  return squareToDirection(
+      Float2{(float(t % kMapSize) + 0.5f) / kMapSize, (float(t / kMapSize) + 0.5f) / kMapSize});
 }
 
 }  // namespace
@@ -105,7 +105,8 @@ class PixelExampleMaker {
     for (const Pilot& pilot : m_pilots) {
       std::map<uint32_t, core::FirstVertex>& of = m_firsts.emplace_back();
       for (const PathVertex& v : pilot.vertices)
-        if (core::mayBeGuided(v)) of.emplace(v.pixel, turnedVertex(core::describeFirst(v, m_config.radiance)));
+        if (core::mayBeGuided(v))
+          of.emplace(v.pixel, turnedVertex(core::describeFirst(v, m_config.radiance)));
     }
     for (size_t i = 0; i < m_targets.size(); ++i) add(m_targets[i], m_windowOf[i]);
   }
@@ -132,8 +133,13 @@ class PixelExampleMaker {
     const PathVertex& v = vertexOf(target);
     const core::FirstVertex first = core::describeFirst(v, m_config.radiance);
     const int x0 = m_windowX[window], y0 = m_windowY[window];
-    core::PixelPlace place{turned(target.position, m_turn), turned(target.normal, m_turn), first.roughness,
-                           first.albedo, 0, 0, m_config.tile};
+    core::PixelPlace place{turned(target.position, m_turn),
+                           turned(target.normal, m_turn),
+                           first.roughness,
+                           first.albedo,
+                           0,
+                           0,
+                           m_config.tile};
     // The tile lies anywhere around the pixel.
     place.x = int(v.pixel) % m_width - x0 - m_random.integer(0, m_config.tile - 1);
     place.y = int(v.pixel) / m_width - y0 - m_random.integer(0, m_config.tile - 1);

@@ -29,7 +29,8 @@ const std::array<std::array<uint8_t, kMapTexels>, kMapSymmetries>& mapSymmetries
 class PixelExamples {
  public:
   // `histograms`: keeps what core::histogramOf() makes of each example, too.
-  PixelExamples(const TrainConfig& config, bool histograms) : m_config(&config), m_keepHistograms(histograms) {}
+  PixelExamples(const TrainConfig& config, bool histograms)
+      : m_config(&config), m_keepHistograms(histograms) {}
 
   // Adds the examples of shards, in this order, by all cores. Throws ShardError.
   void add(const std::vector<std::string>& shardFiles);

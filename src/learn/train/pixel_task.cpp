@@ -80,8 +80,8 @@ class PixelTask : public Task {
   std::string about() const override { return "maps at pixels: docs/paper.md"; }
   std::vector<std::string> lossNames() const override { return {"loss", "loss of the discriminator"}; }
   std::vector<std::string> validationNames() const override {
-    return {"share of log-gain",     "share of log-gain times cosine", "variance",
-            "variance of histogram", "variance of reference",          "cross-entropy",
+    return {"share of log-gain",          "share of log-gain times cosine", "variance",
+            "variance of histogram",      "variance of reference",          "cross-entropy",
             "cross-entropy of histogram", "cross-entropy of reference"};
   }
 
