@@ -34,7 +34,7 @@ foreach(library odis odis_static)
   add_library(odis::${library} ALIAS ${library})
   target_include_directories(${library} PUBLIC
     $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}/include> $<INSTALL_INTERFACE:include>)
-  target_link_libraries(${library} PRIVATE $<$<BOOL:${ODIS_TBB}>:TBB::tbb> Threads::Threads)
+  target_link_libraries(${library} PRIVATE $<$<BOOL:${ODIS_TBB}>:TBB::tbb> Threads::Threads ${CMAKE_DL_LIBS})
 endforeach()
 
 # The network at pixels on oneDNN: a library of its own, which the others load when they are asked for it.
@@ -45,11 +45,11 @@ if(TARGET dnnl)
   target_link_libraries(odis_pixels PRIVATE dnnl odis_compiler)
   set_target_properties(odis_pixels PROPERTIES CXX_VISIBILITY_PRESET hidden VISIBILITY_INLINES_HIDDEN ON)
   odis_embed_bytes(odis_pixels odis::core paperWeights ${PROJECT_SOURCE_DIR}/weights/paper.weights)
-  odis_embed_bytes(odis_pixels odis::core paperFastWeights ${PROJECT_SOURCE_DIR}/weights/paper-fast.weights)
-  odis_embed_bytes(odis_pixels odis::core paperAdversarialWeights
-    ${PROJECT_SOURCE_DIR}/weights/paper-adversarial.weights)
-  odis_embed_bytes(odis_pixels odis::core paperFastAdversarialWeights
-    ${PROJECT_SOURCE_DIR}/weights/paper-fast-adversarial.weights)
+  odis_embed_bytes(odis_pixels odis::core fastWeights ${PROJECT_SOURCE_DIR}/weights/fast.weights)
+  odis_embed_bytes(odis_pixels odis::core paperGanWeights
+    ${PROJECT_SOURCE_DIR}/weights/paper-gan.weights)
+  odis_embed_bytes(odis_pixels odis::core fastGanWeights
+    ${PROJECT_SOURCE_DIR}/weights/fast-gan.weights)
 endif()
 # Lets a program, or a library with the library inside, find what it may load from the build.
 function(odis_finds TARGET)

@@ -57,7 +57,7 @@ void applyPaperPreset(RenderOptions& options, bool fast) {
   if (options.integrator != IntegratorKind::odis)
     throw UsageError("--preset: expected --integrator odis, others have no presets");
   options.guideOptions.pixelMaps = ODIS_PIXEL_MAPS_NETWORK;
-  options.pixelNetwork = fast ? "paper-fast" : "paper";
+  options.pixelNetwork = fast ? "fast" : "paper";
   options.guideOptions.pixelTile = fast ? 4 : 1;
   options.guideOptions.cosineProduct = false;
   options.guideOptions.fixedBsdfFraction = 0.5f;

@@ -85,8 +85,8 @@ ODIS_API OdisModel odisNewModelFromMemory(OdisContext context, const void* bytes
 // Makes a model like this one in which a formula replaces the network for directions, for lights, or both.
 ODIS_API OdisModel odisNewModelWithFormulas(OdisModel model, bool directions, bool lights);
 // Makes a model like this one with a network for maps at pixels (OdisGuideOptions.pixelMaps) that comes with
-// the optional component of ODIS on oneDNN: "paper", "paper-adversarial", "paper-fast" or
-// "paper-fast-adversarial". Without the component ODIS_ERROR_FILE says how to get it.
+// the optional component of ODIS on oneDNN: "paper", "paper-gan", "fast" or
+// "fast-gan". Without the component ODIS_ERROR_FILE says how to get it.
 ODIS_API OdisModel odisNewModelWithPixelNetwork(OdisModel model, const char* name);
 ODIS_API void odisRetainModel(OdisModel model);
 ODIS_API void odisReleaseModel(OdisModel model);

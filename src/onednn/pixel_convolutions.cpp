@@ -267,9 +267,9 @@ class OneDnnConvolutions : public PixelConvolutions {
 }  // namespace
 
 std::string_view paperWeights();
-std::string_view paperFastWeights();
-std::string_view paperAdversarialWeights();
-std::string_view paperFastAdversarialWeights();
+std::string_view fastWeights();
+std::string_view paperGanWeights();
+std::string_view fastGanWeights();
 
 extern "C" __attribute__((visibility("default"))) PixelConvolutions* odisMakePixelConvolutions(
     const PixelWeights& weights) {
@@ -279,9 +279,9 @@ extern "C" __attribute__((visibility("default"))) PixelConvolutions* odisMakePix
 // Empty where there are none of that name.
 extern "C" __attribute__((visibility("default"))) std::string_view odisPixelWeights(std::string_view name) {
   if (name == "paper") return paperWeights();
-  if (name == "paper-fast") return paperFastWeights();
-  if (name == "paper-adversarial") return paperAdversarialWeights();
-  if (name == "paper-fast-adversarial") return paperFastAdversarialWeights();
+  if (name == "fast") return fastWeights();
+  if (name == "paper-gan") return paperGanWeights();
+  if (name == "fast-gan") return fastGanWeights();
   return {};
 }
 

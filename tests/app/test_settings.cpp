@@ -49,7 +49,7 @@ TEST(Settings, ReachTheOptions) {
                     "map-floor=0.1",       "ppg-threshold=500",
                     "ppg-flux=0.5",        "ppg-directional=nearest",
                     "ppg-combine=last",    "restir-neighbours=7",
-                    "pixel-maps=oracle",   "pixel-network=paper-fast",
+                    "pixel-maps=oracle",   "pixel-network=fast",
                     "pixel-tile=3",        "pixel-share=0.5",
                     "map-cosine=off",      "pixel-light=without-direct"});
   EXPECT_EQ(o.samples, odis::render::SampleSpread::even);
@@ -69,7 +69,7 @@ TEST(Settings, ReachTheOptions) {
   EXPECT_TRUE(std::equal(expected, expected + 4, o.guideOptions.priorSamples));
   EXPECT_EQ(o.guideOptions.floor, 0.1f);
   EXPECT_EQ(o.guideOptions.pixelMaps, ODIS_PIXEL_MAPS_ORACLE);
-  EXPECT_EQ(o.pixelNetwork, "paper-fast");
+  EXPECT_EQ(o.pixelNetwork, "fast");
   EXPECT_EQ(o.guideOptions.pixelTile, 3u);
   EXPECT_EQ(o.guideOptions.pixelShare, 0.5f);
   EXPECT_FALSE(o.guideOptions.cosineProduct);

@@ -256,7 +256,7 @@ TEST(Frame, MisuseIsAnError) {
   for (const auto spoil : {+[](FrameOptions& o) { o.width = 0; }, +[](FrameOptions& o) { o.height = 0; },
                            +[](FrameOptions& o) { o.samplesPerPixel = 0; },
                            +[](FrameOptions& o) { o.pilotSamplesPerPixel = -1; },
-                           +[](FrameOptions& o) { o.guide.cellsPerDiagonal = 0; },
+                           +[](FrameOptions& o) { o.guide.cellsPerDiagonal = -1; },
                            +[](FrameOptions& o) { o.guide.lightGroups = kMaxLightGroups + 1; },
                            +[](FrameOptions& o) { o.guide.floor = NAN; }}) {
     FrameOptions bad = options;

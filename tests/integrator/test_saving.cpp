@@ -89,6 +89,26 @@ TEST_F(Saving, AnInterruptedRenderingGoesOnToTheSameBits) {
   }
 }
 
+TEST_F(Saving, MapsAtPixelsGoOnToTheSameBits) {
+  for (const OdisPixelMaps maps : {ODIS_PIXEL_MAPS_HISTOGRAM, ODIS_PIXEL_MAPS_ORACLE}) {
+    RenderOptions options = everything(IntegratorKind::odis);
+    options.guideOptions.pixelMaps = maps;
+    options.guideOptions.pixelShare = 0.5f;
+    options.oracleSpp = 3;
+    const RenderResult expected = test::renderScene(*m_scene, options);
+    options.saving.file = file();
+    options.saving.everySeconds = 1e9;
+    for (bool complete = false; !complete;) {
+      CancelAfter progress(17);
+      const RenderResult result = render(*m_scene, options, progress);
+      complete = !result.stats.interrupted;
+      options.saving.resumeFrom = file();
+      if (complete) expectSame(result, expected);
+    }
+    options.saving.resumeFrom = "";
+  }
+}
+
 TEST_F(Saving, SavingAgainAndAgainChangesNothing) {
   RenderOptions options = everything(IntegratorKind::odis);
   const RenderResult expected = test::renderScene(*m_scene, options);

@@ -9,8 +9,10 @@ namespace odis::test {
 
 // A model of these parts; formulas in the place of those that are null.
 inline Model makeModel(std::shared_ptr<const core::DirectionModel> directions,
-                       std::shared_ptr<const core::LightModel> lights) {
-  return Model(new core::ContextModel(Context::shared().get(), {std::move(directions), std::move(lights)}));
+                       std::shared_ptr<const core::LightModel> lights,
+                       std::shared_ptr<const core::PixelModel> pixels = nullptr) {
+  return Model(new core::ContextModel(Context::shared().get(),
+                                      {std::move(directions), std::move(lights), std::move(pixels)}));
 }
 
 // A model without networks.

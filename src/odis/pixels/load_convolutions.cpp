@@ -45,7 +45,7 @@ std::string_view pixelWeightsNamed(const std::string& name) {
   const std::string_view bytes = reinterpret_cast<Find>(findFunction("odisPixelWeights"))(name);
   if (bytes.empty())
     throw WeightsError("maps at pixels by a network: there is no \"" + name +
-                       "\", expected paper, paper-adversarial, paper-fast or paper-fast-adversarial");
+                       "\", expected paper, paper-gan, fast or fast-gan");
   return bytes;
 }
 

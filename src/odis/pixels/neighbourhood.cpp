@@ -137,7 +137,7 @@ void look(const FirstVertices& vertices, const PixelPlace& place, Neighbourhood&
     const float weight = likeness(offset, place.normal, v.normal, extent);
     if (near) nearWeight += weight;
     farWeight += weight;
-    if (!(v.pdf > 0) || weight < 0.01f) return;
+    if (!(v.pdf > 0) || !std::isfinite(v.radiance / v.pdf) || weight < 0.01f) return;
     const float distance = std::isfinite(v.distance) ? v.distance : INFINITY;
     const Seen seen{splat(aimed(v, offset)),
                     weight,

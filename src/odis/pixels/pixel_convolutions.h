@@ -20,7 +20,7 @@ class PixelConvolutions {
 
 // Loads the component. Throws WeightsError where it is not there.
 std::unique_ptr<PixelConvolutions> makePixelConvolutions(const PixelWeights& weights);
-// The bytes of weights that come with the component: "paper", "paper-fast", ... Throws WeightsError.
+// The bytes of weights that come with the component: "paper", "fast", ... Throws WeightsError.
 std::string_view pixelWeightsNamed(const std::string& name);
 
 }  // namespace odis::core

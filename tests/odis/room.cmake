@@ -1,0 +1,2 @@
+# The network at pixels, where it is built.
+odis_finds(test_odis odis_pixels)
