@@ -137,8 +137,9 @@ typedef struct OdisGuideOptions {
   // radiance of a cell (OdisCachedRadiance) whose standard error, times the path's throughput, is below this
   // fraction of the pixel's value: less noise and fewer rays, and images that are biased.
   float cachedError ODIS_DEFAULT(0);
-  // An OdisPixelMaps: what guides the first vertex of each path whose lobes may be guided, in frames. Its other
-  // decisions are those of the cell that it lies in, a BSDF sampling fraction of .5 where there is none.
+  // An OdisPixelMaps: what guides the first vertex of each path whose lobes may be guided, in frames. Its
+  // other decisions are those of the cell that it lies in; where there is none, half of the draws follow the
+  // map.
   int32_t pixelMaps ODIS_DEFAULT(ODIS_PIXEL_MAPS_NONE);
   uint32_t pixelTile ODIS_DEFAULT(1);  // in [1, 16]: a map for each square of so many pixels a side
   // In [0, 1]: share of a pixel's map in what guides there; the rest is that of the cell's, if there is one.

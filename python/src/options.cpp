@@ -50,7 +50,8 @@ cached_error: float >= 0 (0): above 0 paths may end with a cell's cached radianc
 pixel_maps: PixelMaps (NONE): what makes maps at pixels, which guide the first vertex of each path in frames
 pixel_tile: int in [1, 16] (1): a map for each square of so many pixels a side
 pixel_share: float in [0, 1] (1): share of a pixel's map; the rest is the map of its cell
-pixel_direct_light: bool (True): whether histograms and oracles at pixels hold what next-event estimation covers
+pixel_direct_light: bool (True): whether histograms and oracles at pixels hold what next-event estimation
+    covers
 cosine_product: bool (True): whether maps are multiplied by the cosine at a vertex
 light_groups: int <= 32 (0): groups of lights that the vertices tell apart; 0: learn nothing about lights
 light_parts: list of (first, count) ([]): groups that are equal parts of one light

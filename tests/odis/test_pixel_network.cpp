@@ -51,7 +51,9 @@ class RandomWeights {
 // Values of one place: [channel][row][column].
 struct Maps {
   Maps(uint32_t c, int s) : channels(c), side(s), values(size_t(c) * size_t(s * s)) {}
-  float& at(uint32_t c, int x, int y) { return values[(size_t(c) * size_t(side) + size_t(y)) * size_t(side) + size_t(x)]; }
+  float& at(uint32_t c, int x, int y) {
+    return values[(size_t(c) * size_t(side) + size_t(y)) * size_t(side) + size_t(x)];
+  }
   // Beyond the border the octahedral square continues, mirrored.
   float beyond(uint32_t c, int x, int y) {
     if (x < 0 || x >= side) {
@@ -102,7 +104,8 @@ Maps joined(Maps& decoded, Maps& encoded) {
   for (int y = 0; y < out.side; ++y)
     for (int x = 0; x < out.side; ++x) {
       for (uint32_t c = 0; c < decoded.channels; ++c) out.at(c, x, y) = decoded.at(c, x / 2, y / 2);
-      for (uint32_t c = 0; c < encoded.channels; ++c) out.at(decoded.channels + c, x, y) = encoded.at(c, x, y);
+      for (uint32_t c = 0; c < encoded.channels; ++c)
+        out.at(decoded.channels + c, x, y) = encoded.at(c, x, y);
     }
   return out;
 }
@@ -118,7 +121,8 @@ std::vector<float> plainLogits(const PixelWeights& w, Maps input, const std::vec
   a = convolved(w.middle[0], half, false);
   for (uint32_t o = 0; o < w.scalars.outputs; ++o) {
     float added = w.scalars.bias[o];
-    for (uint32_t i = 0; i < kPixelScalars; ++i) added += w.scalars.weight[o * kPixelScalars + i] * scalars[i];
+    for (uint32_t i = 0; i < kPixelScalars; ++i)
+      added += w.scalars.weight[o * kPixelScalars + i] * scalars[i];
     for (int y = 0; y < 4; ++y)
       for (int x = 0; x < 4; ++x) a.at(o, x, y) = std::max(a.at(o, x, y) + added, 0.0f);
   }

@@ -1,5 +1,5 @@
-// Windows: small squares of an image where every pixel has pilots, and some pixels have targets. What a data set
-// of incident radiance is made of.
+// Windows: small squares of an image where every pixel has pilots, and some pixels have targets. What a data
+// set of incident radiance is made of.
 #pragma once
 
 #include "learn/data/targets.h"

@@ -168,8 +168,8 @@ class PixelExampleMaker {
           toHalf(kMapTexels * histogram[size_t(texelAt(t % kMapSize, t / kMapSize))]));
   }
 
-  // What arrives, and the mean square of what next-event estimation leaves of it: emission has the weight that
-  // MIS gives it with a diffuse surface's density. False where no light arrives.
+  // What arrives, and the mean square of what next-event estimation leaves of it: emission has the weight
+  // that MIS gives it with a diffuse surface's density. False where no light arrives.
   bool addMaps(const Target& target) {
     std::vector<float> mass(kMapTexels), square(kMapTexels);
     double sum = 0;

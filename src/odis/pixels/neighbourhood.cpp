@@ -39,12 +39,12 @@ struct Spread {
 
 // The effective number of samples: many of which one holds all the light are worth one.
 struct EffectiveCount {
-  float sum = 0, squares = 0;
-  void add(float x) {
+  double sum = 0, squares = 0;
+  void add(double x) {
     sum += x;
     squares += x * x;
   }
-  float value() const { return squares > 0 ? sum * sum / squares : 0; }
+  float value() const { return squares > 0 ? float(sum * sum / squares) : 0; }
 };
 
 float length(const Float3& v) {
@@ -106,6 +106,63 @@ Float3 aimed(const FirstVertex& v, const Float3& offset) {
   return distance > 0 ? to / distance : v.wi;
 }
 
+// What surfaces there are around a place.
+struct NearSurfaces {
+  Spread albedo, roughness, heights;  // of near ones; heights above the place's plane over the extent
+  Float3 normals;                     // their sum
+  float nearWeight = 0, farWeight = 0, nearSeen = 0;
+};
+
+// Looks at the vertices around, and takes the samples of those that are like the place.
+NearSurfaces gather(const FirstVertices& vertices, const PixelPlace& place, std::vector<Seen>& samples) {
+  constexpr float kLeastLikeness = 0.01f;
+  NearSurfaces around;
+  samples.clear();
+  const float extent = extentOf(vertices, place);
+  forEachAround(vertices, place, [&](const FirstVertex& v, bool near) {
+    const Float3 offset = v.position - place.position;
+    const float weight = likeness(offset, place.normal, v.normal, extent);
+    if (near) {
+      around.albedo.add(v.albedo);
+      around.roughness.add(v.roughness);
+      around.heights.add(extent > 0 ? std::min(std::abs(dot(offset, place.normal)) / extent, 10.0f) : 0);
+      around.normals = around.normals + v.normal;
+      around.nearWeight += weight;
+    }
+    around.farWeight += weight;
+    const float energy = v.pdf > 0 ? v.radiance / v.pdf : INFINITY;
+    if (!std::isfinite(energy) || weight < kLeastLikeness) return;
+    samples.push_back({splat(aimed(v, offset)), weight, energy, v.radiance,
+                       extent > 0 ? extent / (extent + v.distance) : 0, near});
+    around.nearSeen += near;
+  });
+  return around;
+}
+
+// Sums up samples of a total weight; fireflies count less.
+void sumUp(const std::vector<Seen>& samples, float totalWeight, Neighbourhood& result,
+           EffectiveCount& nearEffective, EffectiveCount& farEffective) {
+  double energy = 0;
+  for (const Seen& s : samples) energy += double(s.weight) * s.energy;
+  const auto most = float(totalWeight > 0 ? kClamp * energy / totalWeight : 0);
+  for (const Seen& s : samples) {
+    const float clamped = s.weight * std::min(s.energy, most);
+    const float radiance = s.weight * s.radiance * (s.energy > most ? most / s.energy : 1);
+    add(result.farEnergy, s.texels, clamped);
+    add(result.farCount, s.texels, s.weight);
+    add(result.farRadiance, s.texels, radiance);
+    add(result.nearness, s.texels, s.weight * s.nearness);
+    farEffective.add(clamped);
+    if (!s.near) continue;
+    add(result.nearEnergy, s.texels, clamped);
+    add(result.nearCount, s.texels, s.weight);
+    add(result.nearRadiance, s.texels, radiance);
+    nearEffective.add(clamped);
+  }
+  for (size_t t = 0; t < kMapTexels; ++t)
+    if (result.farCount[t] > 0) result.nearness[t] /= result.farCount[t];
+}
+
 void logOf(const Histogram& sums, float scale, Histogram& result) {
   for (size_t t = 0; t < kMapTexels; ++t) result[t] = std::log1p(scale * sums[t]);
 }
@@ -120,70 +177,23 @@ float sumOf(const Histogram& histogram) {
 
 void look(const FirstVertices& vertices, const PixelPlace& place, Neighbourhood& result) {
   result = {};
-  const float extent = extentOf(vertices, place);
-  thread_local std::vector<Seen> all;
-  all.clear();
-  Spread albedo, roughness, heights;
-  Float3 normals;
-  float nearWeight = 0, farWeight = 0, energy = 0, nearSeen = 0;
-  forEachAround(vertices, place, [&](const FirstVertex& v, bool near) {
-    const Float3 offset = v.position - place.position;
-    if (near) {
-      albedo.add(v.albedo);
-      roughness.add(v.roughness);
-      heights.add(extent > 0 ? std::min(std::abs(dot(offset, place.normal)) / extent, 10.0f) : 0);
-      normals = normals + v.normal;
-    }
-    const float weight = likeness(offset, place.normal, v.normal, extent);
-    if (near) nearWeight += weight;
-    farWeight += weight;
-    if (!(v.pdf > 0) || !std::isfinite(v.radiance / v.pdf) || weight < 0.01f) return;
-    const float distance = std::isfinite(v.distance) ? v.distance : INFINITY;
-    const Seen seen{splat(aimed(v, offset)),
-                    weight,
-                    v.radiance / v.pdf,
-                    v.radiance,
-                    extent > 0 ? extent / (extent + distance) : 0,
-                    near};
-    energy += seen.weight * seen.energy;
-    nearSeen += near;
-    all.push_back(seen);
-  });
-
-  // Fireflies count less.
-  const float most = farWeight > 0 ? kClamp * energy / farWeight : 0;
+  thread_local std::vector<Seen> samples;
+  const NearSurfaces around = gather(vertices, place, samples);
   EffectiveCount nearEffective, farEffective;
-  Histogram distances{};
-  for (const Seen& s : all) {
-    const float clamped = s.weight * std::min(s.energy, most);
-    const float radiance = s.weight * s.radiance * (s.energy > most ? most / s.energy : 1);
-    add(result.farEnergy, s.texels, clamped);
-    add(result.farCount, s.texels, s.weight);
-    add(result.farRadiance, s.texels, radiance);
-    add(distances, s.texels, s.weight * s.nearness);
-    farEffective.add(clamped);
-    if (!s.near) continue;
-    add(result.nearEnergy, s.texels, clamped);
-    add(result.nearCount, s.texels, s.weight);
-    add(result.nearRadiance, s.texels, radiance);
-    nearEffective.add(clamped);
-  }
-  for (size_t t = 0; t < kMapTexels; ++t)
-    result.nearness[t] = result.farCount[t] > 0 ? distances[t] / result.farCount[t] : 0;
-
-  const float count = std::max(heights.count, 1.0f);
+  sumUp(samples, around.farWeight, result, nearEffective, farEffective);
+  const float count = std::max(around.heights.count, 1.0f);
   const float scalars[kPixelScalars] = {std::log1p(nearEffective.value()),
                                         std::log1p(farEffective.value()),
-                                        std::log1p(nearWeight),
-                                        std::log1p(farWeight),
+                                        std::log1p(around.nearWeight),
+                                        std::log1p(around.farWeight),
                                         place.roughness,
                                         place.albedo,
-                                        1 - length(normals) / count,
-                                        nearWeight / count,
-                                        heights.sum / count,
-                                        albedo.deviation(),
-                                        roughness.deviation(),
-                                        nearSeen / count};
+                                        1 - length(around.normals) / count,
+                                        around.nearWeight / count,
+                                        around.heights.sum / count,
+                                        around.albedo.deviation(),
+                                        around.roughness.deviation(),
+                                        around.nearSeen / count};
   std::copy_n(scalars, kPixelScalars, result.scalars);
 }
 

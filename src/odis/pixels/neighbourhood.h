@@ -1,5 +1,5 @@
-// What the pilot's samples around a pixel tell of the light that arrives there: the input of the network that
-// makes a map at a pixel (Bako, Meyer, DeRose and Sen 2019), and the histogram that it is compared with.
+// What the pilot's samples around a pixel tell of the light that arrives there: the input of the network
+// that makes a map at a pixel (Bako, Meyer, DeRose and Sen 2019), and the histogram that it is compared with.
 #pragma once
 
 #include <span>

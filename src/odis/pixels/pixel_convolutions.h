@@ -13,8 +13,8 @@ class PixelConvolutions {
  public:
   virtual ~PixelConvolutions() = default;
   // From the inputs of `count` places, at most kPixelBatch, to the output layer: maps [place][row][column]
-  // [channel], standardized scalars [place][kPixelScalars], logits [place][row][column]. Thread-safe, computed
-  // by the calling thread alone.
+  // [channel], standardized scalars [place][kPixelScalars], logits [place][row][column]. Thread-safe,
+  // computed by the calling thread alone.
   virtual void run(size_t count, const float* maps, const float* scalars, float* logits) const = 0;
 };
 

@@ -1,5 +1,5 @@
-// The network that makes a map at a pixel from what its neighbourhood saw: a convolutional encoder and decoder
-// on the octahedral square, whose wrap-around its convolutions follow.
+// The network that makes a map at a pixel from what its neighbourhood saw: a convolutional encoder and
+// decoder on the octahedral square, whose wrap-around its convolutions follow.
 //
 //   16 x 16   input, kPixelChannels  -> encode0.0 -> encode0.1 -------------------> (+) -> decode0 -> output
 //    8 x 8      mean of 2 x 2  -> encode1.0 -> encode1.1 ----> (+) -> decode1 -> each texel four times
