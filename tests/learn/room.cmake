@@ -1,6 +1,6 @@
 target_link_libraries(test_learn PRIVATE odis_learn nlohmann_json::nlohmann_json pugixml::pugixml)
 target_compile_definitions(test_learn PRIVATE ODIS_SAVED_SEEDS="${PROJECT_SOURCE_DIR}/fuzz/corpus/saved")
-odis_finds(test_learn odis_learner)
+odis_finds(test_learn odis_learner odis_pixels)
 if(ODIS_PYTHON)
   set(reader_test ${PROJECT_SOURCE_DIR}/python/tests/check_dataset.py)
   target_compile_definitions(test_learn PRIVATE ODIS_PYTHON="${ODIS_PYTHON}" ODIS_PYTHON_TEST="${reader_test}")

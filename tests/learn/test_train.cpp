@@ -399,8 +399,10 @@ TEST(TrainConfig, MistakesAreNamed) {
 
 TEST(History, TensorBoardsRecordsHaveTheirChecksums) {
   History history;
-  history.losses = {{50, 4.5, 0.4, 1e-3, 2}, {100, 4.25, 0.3, 1e-3, 4}};
-  history.validations = {{100, 0.7, 0.75}};
+  history.lossNames = {"loss", "loss of lights"};
+  history.validationNames = {"network", "formula"};
+  history.losses = {{50, {4.5, 0.4}, 1e-3, 2}, {100, {4.25, 0.3}, 1e-3, 4}};
+  history.validations = {{100, {0.7, 0.75}}};
   const std::string file = tensorboardEvents(history);
   // Records of a length, its CRC, the event and its CRC: one for the version, three a row of losses, two a
   // validation.
