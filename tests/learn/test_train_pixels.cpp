@@ -101,8 +101,8 @@ TEST_F(PixelTraining, GoesOnAsIfNothingHadHappenedForBothPlayers) {
   ASSERT_FALSE(train(config(), run("parts"), {}, impatient));
   ASSERT_TRUE(train(config(), run("parts"), {}, patient));
   EXPECT_EQ(bytesOf(run("parts") + "/odis.weights"), bytesOf(run("whole") + "/odis.weights"));
-  for (const char* file : {"config.json", "losses.csv", "validation.csv", "curves.png", "maps.png",
-                           "events.out.tfevents.odis"})
+  for (const char* file :
+       {"config.json", "losses.csv", "validation.csv", "curves.png", "maps.png", "events.out.tfevents.odis"})
     EXPECT_TRUE(fs::exists(run("whole") + "/" + file)) << file;
   EXPECT_NE(bytesOf(run("whole") + "/losses.csv").find("loss of the discriminator"), std::string::npos);
   EXPECT_NO_THROW(core::PixelWeights::read(core::Weights::load(run("whole") + "/odis.weights")));
