@@ -41,14 +41,18 @@ configure_file(cmake/odis.pc.in generated/odis.pc @ONLY)
 install(FILES ${PROJECT_BINARY_DIR}/generated/odis.pc DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig
   COMPONENT development)
 
-# The command finds what trains by its own place.
+# Command and library find what they load by their own place.
 if(TARGET odis_app)
   install(TARGETS odis_app RUNTIME COMPONENT command)
+  file(RELATIVE_PATH components ${CMAKE_INSTALL_FULL_BINDIR} ${CMAKE_INSTALL_FULL_LIBDIR}/odis)
+  set_target_properties(odis_app PROPERTIES INSTALL_RPATH $ORIGIN/${components})
+endif()
+if(TARGET odis_pixels)
+  install(TARGETS odis_pixels LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR}/odis COMPONENT paper)
+  set_target_properties(odis PROPERTIES INSTALL_RPATH $ORIGIN/odis)
 endif()
 if(TARGET odis_app AND TARGET odis_learner)
   install(TARGETS odis_learner LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR}/odis COMPONENT training)
-  file(RELATIVE_PATH learner ${CMAKE_INSTALL_FULL_BINDIR} ${CMAKE_INSTALL_FULL_LIBDIR}/odis)
-  set_target_properties(odis_app PROPERTIES INSTALL_RPATH $ORIGIN/${learner})
   # libtorch may lie in a wheel, outside of where the loader looks.
   set_target_properties(odis_learner PROPERTIES INSTALL_RPATH_USE_LINK_PATH ON)
 endif()

@@ -28,6 +28,7 @@ from ._odis import (
     Model,
     PassKind,
     PathVertices,
+    PixelMaps,
     VertexCounts,
     version_text,
 )
@@ -50,6 +51,7 @@ __all__ = [
     "Model",
     "PassKind",
     "PathVertices",
+    "PixelMaps",
     "VertexCounts",
     "version_text",
 ]

@@ -69,6 +69,7 @@ Guide Guide::withPixelMaps(const PixelMaps& maps, const GuideOptions& options, c
       const size_t to = count + m;
       const uint32_t from = cellAt(view, maps.places[m]);
       Histogram radiance = sharesOf(&maps.texels[m * kMapTexels]);
+      result.keys[to] = cells.grid.key(maps.places[m].position, maps.places[m].normal, 0);
       if (from == kNoCell) {
         std::fill_n(result.decisions[to].bsdfFraction, kRoughnessClasses, fixed);
       } else {
@@ -76,7 +77,7 @@ Guide Guide::withPixelMaps(const PixelMaps& maps, const GuideOptions& options, c
         for (size_t t = 0; t < kMapTexels; ++t)
           radiance[t] = options.pixelShare * radiance[t] + (1 - options.pixelShare) * ofCell[t];
         result.decisions[to] = cells.decisions[from];
-        result.keys[to] = cells.keys[from];
+        result.keys[to] = cells.keys[from];  // of its level
         std::copy_n(cells.lightTables.begin() + std::ptrdiff_t(from * columns), columns,
                     result.lightTables.begin() + std::ptrdiff_t(to * columns));
         if (!result.cached.empty()) std::copy_n(&cells.cached[2 * size_t(from)], 2, &result.cached[2 * to]);

@@ -78,6 +78,8 @@ def make_parser():
                         "(llvm_ad_rgb)")
     render.add_argument("--integrator", choices=("odis", "path"), default="odis",
                         help="odis is guided, path is Mitsuba's path tracer (odis)")
+    render.add_argument("--preset", choices=("default", "paper", "paper-fast"), default="default",
+                        help="paper, paper-fast: the method of Bako et al. 2019, docs/paper.md (default)")
     render.add_argument("--max-depth", type=number_from(-1), metavar="N",
                         help="longest path: 1 is light that the camera sees, -1 is no limit (the scene's, or -1)")
     render.add_argument("--rr-depth", type=number_from(1), metavar="N",
@@ -199,6 +201,8 @@ class Rendering:
     def check(self):
         if not os.path.exists(self.args.scene):
             raise Problem(BAD_INPUT, f"{self.args.scene}: there is no such file")
+        if self.args.preset != "default" and self.args.integrator != "odis":
+            raise Problem(BAD_INPUT, f"--preset {self.args.preset}: expected --integrator odis, path has no presets")
         format_of(self.output)
         for path in filter(None, (self.output, self.args.stats_json)):
             check_target(path)
@@ -226,7 +230,8 @@ class Rendering:
         given = {name: value for name, value in given.items() if value is not None}
         try:
             if kind == "odis":
-                return from_scene.guide(scene, **given, **({"aovs": args.aovs} if args.aovs else {}))
+                return from_scene.guide(scene, preset=args.preset, **given,
+                                        **({"aovs": args.aovs} if args.aovs else {}))
             path = {"type": "path", **from_scene.settings_of_scene(scene), **given}
             return mi.load_dict({"type": "aov", "aovs": args.aovs, "image": path} if args.aovs else path)
         except RuntimeError as error:
@@ -258,7 +263,8 @@ class Rendering:
             self.seconds[stage] += value
         self.result = {
             "width": bitmap.width(), "height": bitmap.height(), "samples": bitmap.width() * bitmap.height() * spp,
-            "spp": spp, "seed": self.args.seed, "integrator": self.args.integrator, "variant": self.args.variant,
+            "spp": spp, "seed": self.args.seed, "integrator": self.args.integrator, "preset": self.args.preset,
+            "variant": self.args.variant,
             "rays": integrator.rays if odis_renders else None}
         return bitmap
 

@@ -54,6 +54,7 @@ class GuideTables:
     least_survival: object
     full_shadow_ray_contribution: object
     least_shadow_ray_probability: object
+    pixel_cells: object = None  # UInt32 [pixel]: the cell of the pixel's own map, or odis.NO_CELL; None without such maps
 
 
 def grid_box(guide):
@@ -136,7 +137,8 @@ def make_guide_tables(guide, both_sides):
         roughness_bounds=[mi.Float(x) for x in rules.roughness_bounds[:2]],
         least_survival=mi.Float(rules.least_survival),
         full_shadow_ray_contribution=mi.Float(rules.full_shadow_ray_contribution),
-        least_shadow_ray_probability=mi.Float(rules.least_shadow_ray_probability))
+        least_shadow_ray_probability=mi.Float(rules.least_shadow_ray_probability),
+        pixel_cells=array_of(mi.UInt32, guide.pixel_cells) if guide.pixel_cells.size else None)
     dr.make_opaque(tables)
     return tables
 

@@ -169,11 +169,30 @@ def check_variant():
         raise RuntimeError(f"odis: expected a variant in rgb or spectral without polarisation, found {variant}")
 
 
+# Presets, and the networks at pixels and tiles of those of the paper.
+PRESETS = {"default": None, "paper": ("paper", 1), "paper-fast": ("fast", 4)}
+
+
+def frame_options(preset, width, height, spp, seed, lights):
+    """How the library makes an image."""
+    size = {"width": width, "height": height, "samples_per_pixel": spp, "seed": seed}
+    if PRESETS[preset] is None:
+        return odis.FrameOptions(**size, guided_cost=GUIDED_COST, guide=odis.GuideOptions(
+            light_groups=lights.groups, light_parts=lights.parts))
+    network, tile = PRESETS[preset]
+    return odis.FrameOptions(
+        **size, guided_cost=0, refinement_samples=0, pilot_samples_per_pixel=1, pilot_weight=1, adaptive=False,
+        guide=odis.GuideOptions(
+            model=odis.Model().with_pixel_network(network), pixel_maps=odis.PixelMaps.NETWORK, pixel_tile=tile,
+            cells_per_diagonal=0, fixed_bsdf_fraction=0.5, cosine_product=False))
+
+
 def make_integrator():
     """The class of the integrator for the variant that is set."""
 
     class OdisIntegrator(mi.SamplingIntegrator):
-        """Parameters: max_depth (-1), rr_depth (5) and hide_emitters (false), as of `path`; aovs (""), as of `aov`.
+        """Parameters: max_depth (-1), rr_depth (5) and hide_emitters (false), as of `path`; aovs (""), as of `aov`;
+        preset ("default", or "paper" and "paper-fast", docs/paper.md).
 
         After a rendering `seconds` holds the time of its stages, `rays` the number of rays, `frame` the odis.Frame.
         `progress`, if set, is called with the fraction of the samples that are traced. If `separate_compile` is set and
@@ -184,7 +203,7 @@ def make_integrator():
         # Dr.Jit traverses __dict__, also of an integrator that a scene holds, and would compile kernels anew whenever
         # something in there changes: all is kept out of it.
         __slots__ = ("settings", "scene", "known", "pixel_filter", "frame", "rays", "seconds",
-                     "progress", "separate_compile", "aovs", "unguided", "said_unguided", "samples_per_lane")
+                     "progress", "separate_compile", "aovs", "preset", "unguided", "said_unguided", "samples_per_lane")
 
         def __init__(self, props):
             check_variant()
@@ -196,11 +215,18 @@ def make_integrator():
                                  f"found {self.settings.max_depth}")
             if self.settings.rr_depth <= 0:
                 raise ValueError(f"odis: rr_depth: expected a number from 1, found {self.settings.rr_depth}")
+            self.preset = props.get("preset", "default")
+            if self.preset not in PRESETS:
+                raise ValueError(f"odis: preset: expected one of {', '.join(PRESETS)}, found {self.preset}")
+            if self.preset != "default":
+                self.settings.shadow_roulette = False
             self.scene, self.known = None, None
             self.progress, self.separate_compile = None, False
             names = props.get("aovs", "")
             self.aovs = make_aovs(mi.load_dict({"type": "aov", "aovs": names})) if names else None
-            self.unguided = mi.load_dict({"type": "path", **vars(self.settings)})
+            self.unguided = mi.load_dict({"type": "path", "max_depth": self.settings.max_depth,
+                                          "rr_depth": self.settings.rr_depth,
+                                          "hide_emitters": self.settings.hide_emitters})
             self.said_unguided = False
 
         def render(self, scene, sensor=0, seed=0, spp=0, develop=True, evaluate=True):
@@ -254,10 +280,7 @@ def make_integrator():
             film = sensor.film()
             self.pixel_filter = filter_quantiles(film.rfilter())
             width, height = film.crop_size()
-            self.frame = frame = odis.Frame(odis.FrameOptions(
-                width, height, samples_per_pixel=spp, seed=seed, guided_cost=GUIDED_COST,
-                guide=odis.GuideOptions(light_groups=self.known.lights.groups,
-                                        light_parts=self.known.lights.parts)))
+            self.frame = frame = odis.Frame(frame_options(self.preset, width, height, spp, seed, self.known.lights))
             has_alpha = mi.has_flag(film.flags(), mi.FilmFlags.Alpha)
             valid = np.zeros(width * height) if has_alpha else None  # samples of each pixel
             progress, traced, self.rays = self.progress or default_progress(), 0, 0

@@ -22,6 +22,7 @@ class Settings:
     max_depth: int  # 1 is emission that the camera sees; -1 is no limit
     rr_depth: int
     hide_emitters: bool
+    shadow_roulette: bool = True  # whether guided paths' shadow rays are played for
 
 
 @dataclass
@@ -123,6 +124,9 @@ def trace(scene, camera, settings, known, tables, recorder, samples):
     previous_pdf, previous_delta = mi.Float(1), mi.Bool(True)
     previous_cell, previous_fraction = mi.UInt32(odis.NO_CELL), mi.Float(0)
     row, recorded = mi.UInt32(recording.NO_ROW), mi.Bool(False)
+    # Whether no vertex before had lobes that may be guided: for these vertices there are maps at pixels.
+    has_pixel_maps = tables is not None and tables.pixel_cells is not None
+    first = mi.Bool(True)
 
     while dr.hint(more, label="odis: paths", exclude=[known, tables, recorder, lights, samples, camera]):
         # The next sample, where none is under way.
@@ -142,6 +146,8 @@ def trace(scene, camera, settings, known, tables, recorder, samples):
             recorded = dr.select(begins, chosen >= RECORDED, recorded)
         if dr.hint(tables is not None, mode="scalar"):
             pixel_value = dr.select(begins, dr.gather(mi.Float, samples.pixel_values, pixel, begins), pixel_value)
+        if dr.hint(has_pixel_maps, mode="scalar"):
+            first = first | begins
 
         active = mi.Bool(more)
         si = scene.ray_intersect(ray, mi.RayFlags.All, coherent=False, active=active)
@@ -181,6 +187,10 @@ def trace(scene, camera, settings, known, tables, recorder, samples):
         fraction, learned_lights = mi.Float(1), mi.Float(0)
         if dr.hint(tables is not None, mode="scalar"):
             cell = guide_tables.find_cell(tables, si.p, normal, active)
+            if dr.hint(has_pixel_maps, mode="scalar"):
+                own = dr.gather(mi.UInt32, tables.pixel_cells, pixel, active & first)
+                cell = dr.select(active & first & (own != odis.NO_CELL), own, cell)
+                first = first & ((flags & GUIDABLE) == 0)
             decisions = guide_tables.decisions_of(tables, cell, roughness, active)
             relative = mi.luminance(to_rgb(throughput, ray.wavelengths)) / pixel_value
             survival = guide_tables.survival_probability(tables, decisions.survival_factor, relative)
@@ -243,7 +253,7 @@ def trace(scene, camera, settings, known, tables, recorder, samples):
         direct = unweighted * mis
         lightable &= dr.max(dr.abs(direct)) > 0
         shadow = mi.Float(1)
-        if dr.hint(tables is not None, mode="scalar"):
+        if dr.hint(tables is not None and settings.shadow_roulette, mode="scalar"):
             adds = mi.luminance(to_rgb(throughput * direct, ray.wavelengths)) / pixel_value
             shadow = dr.select(cell != odis.NO_CELL, guide_tables.shadow_ray_probability(tables, adds), 1)
             lightable &= rng.next() < shadow
