@@ -7,7 +7,7 @@ ifeq ($(PRESET),tsan)
 export TSAN_OPTIONS ?= history_size=7:suppressions=$(CURDIR)/tests/support/thread_sanitizer/suppressions
 endif
 
-.PHONY: help setup build demo test bench agreement train-small weights fuzz format format-check lint clean
+.PHONY: help setup build demo test bench agreement train-small weights paper-weights fuzz format format-check lint clean
 
 help:                ## Show this list
 	@sed -n 's/^\([a-z-]*\):.*## /  make \1\t/p' Makefile | expand -t 24
@@ -40,6 +40,9 @@ train-small:         ## Make data and train weights from nothing, in some ten mi
 
 weights:             ## Make the shipped weights again (1,000 scenes, 1 to 2 hours; goes on where it stopped): out/weights/run
 	@scripts/train full "$(PRESET)" "$(JOBS)" 0-999 $(ASSETS)
+
+paper-weights:       ## Make the weights of `--preset paper` again, data included (some 2 hours; goes on where it stopped): out/paper
+	@scripts/train paper "$(PRESET)" "$(JOBS)" 0-999 --kind incident-radiance $(ASSETS)
 
 fuzz:                ## Feed damaged input to all readers, SECONDS=60 each; needs `scripts/setup --dev`
 	@cmake --preset fuzz $(CMAKE_FLAGS) > /dev/null
