@@ -2,6 +2,7 @@
 """What `odis` gains and costs in Mitsuba 3: error and time beside Mitsuba's `path`, as the table of docs/mitsuba.md.
 
     bench/in_mitsuba.py SCENE.xml... [--variant llvm_ad_rgb] [--pixels 230400] [--spp 4,16] [--seeds 4] [--cache DIR]
+                        [--preset paper-fast]
 
 Needs `pip install ".[mitsuba]"`. Both integrators run in one process and take turns, with max_depth 13, rr_depth 5,
 independent samples and a box filter. Times are wall clock and processor time without Dr.Jit's code generation and
@@ -73,9 +74,10 @@ def name_of(path):
     return os.path.basename(os.path.dirname(os.path.abspath(path)))
 
 
-def measure(scene, reference, spp, seeds):
+def measure(scene, reference, spp, seeds, preset):
     """Medians: seconds of `path`, ratios of time, processor time and error, and rays a sample."""
-    integrators = [mi.load_dict({"type": kind, **SETTINGS}) for kind in ("path", "odis")]
+    integrators = [mi.load_dict({"type": "path", **SETTINGS}),
+                   mi.load_dict({"type": "odis", "preset": preset, **SETTINGS})]
     for integrator in integrators:
         render(scene, integrator, spp, REFERENCE_SEED - 1)
     rows, rays = [], []
@@ -102,6 +104,7 @@ def main():
     parser.add_argument("--variant", default="llvm_ad_rgb")
     parser.add_argument("--pixels", type=int, default=230400)
     parser.add_argument("--spp", default="4,16", help="samples per pixel, with commas (4,16)")
+    parser.add_argument("--preset", default="default", help="of odis: default, paper or paper-fast (default)")
     parser.add_argument("--seeds", type=int, default=4)
     parser.add_argument("--reference-spp", type=int, default=256)
     parser.add_argument("--cache", default="out/mitsuba-references", metavar="DIR", help="keeps references there")
@@ -122,7 +125,7 @@ def main():
                 print(f"| {name_of(path)} {'| - ' * (len(COLUMNS) - 1)}|", flush=True)
                 continue
             for spp in counts:
-                seconds, *values, rays = measure(scene, reference, spp, args.seeds)
+                seconds, *values, rays = measure(scene, reference, spp, args.seeds, args.preset)
                 ratios[spp].append(values)
                 print_row(name_of(path), spp, (f"{seconds:.2f}", *values, f"{rays:.2f}"))
     for spp, values in ratios.items():
