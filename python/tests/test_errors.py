@@ -7,6 +7,18 @@ import numpy as np
 import odis
 
 
+class PixelNetworks(unittest.TestCase):
+    def test_names(self):
+        with self.assertRaisesRegex(odis.Error, "maps at pixels by a network: "):
+            odis.Model().with_pixel_network("papre")
+
+    def test_options(self):
+        for options, field in (({"pixel_tile": 0}, "pixelTile"), ({"pixel_share": 2.0}, "pixelShare"),
+                               ({"pixel_maps": odis.PixelMaps.NETWORK}, "model")):
+            with self.assertRaisesRegex(odis.Error, f"{field}: expected"):
+                odis.GuideBuilder(odis.GuideOptions(**options))
+
+
 class Arrays(unittest.TestCase):
     def setUp(self):
         self.fields = made_up.vertices(10)

@@ -1,6 +1,7 @@
 """The integrator `odis` against Mitsuba's `path`, on scenes made here. Skipped where Mitsuba does not run."""
 
 import unittest
+import unittest.mock
 
 import made_up
 import numpy as np
@@ -76,6 +77,34 @@ class Unbiased(unittest.TestCase):
         self.compare(mi.load_dict(scene), max_depth=6)
 
 
+class PixelMaps(Unbiased):
+    """The preset `paper`, with histograms at pixels in place of the network, which not every build has."""
+
+    def setUp(self):
+        def with_histogram(preset, width, height, spp, seed, lights):
+            return odis.FrameOptions(
+                width, height, samples_per_pixel=spp, seed=seed, guided_cost=0, refinement_samples=0,
+                pilot_samples_per_pixel=1, pilot_weight=1, adaptive=False,
+                guide=odis.GuideOptions(pixel_maps=odis.PixelMaps.HISTOGRAM, pixel_tile=2, cells_per_diagonal=0,
+                                        fixed_bsdf_fraction=0.5, cosine_product=False))
+        patch = unittest.mock.patch.object(odis.mitsuba.integrator, "frame_options", with_histogram)
+        patch.start()
+        self.addCleanup(patch.stop)
+
+    def compare(self, scene, spp=64, **parameters):
+        self.assertGreater(len(self.guide_of(scene).pixel_cells), 0)
+        super().compare(scene, spp, **parameters)
+
+    def guide_of(self, scene):
+        integrator = mi.load_dict({"type": "odis"})
+        mi.render(scene, integrator=integrator, spp=4)
+        guide = integrator.frame.guide
+        # First vertices alone are guided: there are no cells but those of pixels.
+        self.assertEqual(len(guide), (guide.pixel_cells != odis.NO_CELL).any() and guide.pixel_cells[
+            guide.pixel_cells != odis.NO_CELL].max() + 1)
+        return guide
+
+
 class Images(unittest.TestCase):
     def test_same_seed_same_bits(self):
         scene = mi.load_dict(box())
@@ -129,7 +158,8 @@ class Images(unittest.TestCase):
 class Errors(unittest.TestCase):
     def test_parameters(self):
         for parameters, expected in (({"max_depth": -2}, "max_depth: expected"), ({"rr_depth": 0}, "rr_depth: expected"),
-                                     ({"max_dept": 3}, "max_dept")):
+                                     ({"max_dept": 3}, "max_dept"),
+                                     ({"preset": "papre"}, "preset: expected one of default, paper, paper-fast")):
             with self.assertRaisesRegex(Exception, expected):
                 mi.load_dict({"type": "odis", **parameters})
 

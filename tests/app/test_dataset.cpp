@@ -69,6 +69,23 @@ TEST_F(Dataset, PartsMakeEveryShardOnce) {
   expectOk("dataset info all/scene1.shard --json", "view0/pilot0/radiance");
 }
 
+TEST_F(Dataset, IncidentRadianceIsMadeLikeTheOther) {
+  writeScenes(2);
+  const std::string make = "dataset generate --kind incident-radiance --scenes scenes --quick ";
+  expectOk(make + "-o whole", "train");
+  expectOk(make + "-o one --shards 1 --of 2 --jobs 1", "odis dataset merge one");
+  expectOk(make + "-o one --shards 2 --of 2 --jobs 1", "odis dataset merge one");
+  expectOk("dataset merge one -q");
+  EXPECT_EQ(bytesOf("one/manifest.json"), bytesOf("whole/manifest.json"));
+  expectOk("dataset check whole", "2 shards are as the manifest says");
+  expectOk("dataset info whole/scene1.shard", "4 pilots, ");
+  expectOk("dataset info whole/scene1.shard --json", "view0/window/albedoVariance");
+  expectOk("dataset preview whole -o maps.png --count 3");
+  EXPECT_TRUE(exists("maps.png"));
+  // Kinds don't mix.
+  expectFailure(std::string(kAll) + "-o whole", 3, "was made with other settings");
+}
+
 TEST_F(Dataset, TwoAtOnceDontHarmEachOther) {
   writeScenes(12);
   const std::string one = "'" ODIS_COMMAND "' " + std::string(kAll) + "-o data --jobs 1";

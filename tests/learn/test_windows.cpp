@@ -6,6 +6,7 @@
 #include <sstream>
 
 #include "learn/data/dataset.h"
+#include "learn/train/examples.h"
 #include "learn/train/pixel_examples.h"
 #include "render/files/replace_file.h"
 #include "support/temporary_folder.h"
@@ -150,6 +151,10 @@ TEST_F(Windows, DontMixWithDataOfCells) {
   EXPECT_THROW(makeShard({"a", 3, nullptr, m_folder.path("scene")}, DataSettings::quick(), Assets{},
                          m_folder.path("data")),
                GenerateError);
+}
+
+TEST_F(Windows, AreNothingForTheNetworksOfCells) {
+  EXPECT_THROW(makeExamples(ShardReader(file())), ShardError);
 }
 
 TEST_F(Windows, AreWhatTheNetworkAtPixelsLearnsFrom) {

@@ -71,7 +71,7 @@ nlohmann::ordered_json groupsJson(const render::LightSampler& lights) {
   return result;
 }
 
-// What the header says of every view.
+// What the header says of every view; of lights nothing, yet.
 nlohmann::ordered_json viewJson(const std::string& file, const render::Scene& scene, const ViewFrame& frame,
                                 size_t pilots, size_t targets) {
   return {{"file", fs::path(file).filename().string()},
@@ -81,7 +81,9 @@ nlohmann::ordered_json viewJson(const std::string& file, const render::Scene& sc
           {"edge", frame.edge},
           {"unit", frame.unit},
           {"pilots", pilots},
-          {"targets", targets}};
+          {"targets", targets},
+          {"dividedLights", nlohmann::ordered_json::array()},
+          {"lightGroups", nlohmann::ordered_json::array()}};
 }
 
 // How many pixels a view's image has: as many as the settings say, or, where windows are cut out of it, a

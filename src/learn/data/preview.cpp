@@ -26,6 +26,24 @@ const Rgb kBackground(0.02f), kInk(0.7f), kFrame(0.06f), kUnsampled(0.0f, 0.015f
 
 using Map = std::array<float, kTargetTexels>;
 
+// Maps of fewer texels as if they had kTargetSize a side.
+template <class T>
+void enlarge(std::vector<T>& map) {
+  constexpr int kRatio = kTargetSize / kWindowMapSize;
+  std::vector<T> large(kTargetTexels);
+  for (int t = 0; t < kTargetTexels; ++t)
+    large[size_t(t)] = map[size_t(t / kTargetSize / kRatio * kWindowMapSize + t % kTargetSize / kRatio)];
+  map = std::move(large);
+}
+
+void enlargeMaps(Target& target) {
+  if (target.samples.size() == kTargetTexels) return;
+  enlarge(target.samples);
+  for (std::vector<float>* map : {&target.indirect, &target.indirectRms, &target.emission,
+                                  &target.emissionRms, &target.lightPdf, &target.rays})
+    enlarge(*map);
+}
+
 // A view of a shard, unpacked.
 struct ViewData {
   std::string name;
@@ -52,6 +70,7 @@ struct ViewData {
     if (width < 1 || height < 1 || pilots.empty() || pilots[0].image.size() != size_t(width) * size_t(height))
       throw ShardError(name + ": the image is not of the size that the header says");
     targets = readTargets(shard, targetPrefix(view), frame);
+    for (Target& target : targets) enlargeMaps(target);
     grid = CellGrid(frame.origin, frame.edge);
   }
   uint64_t cellOf(const PathVertex& v) const { return grid.key(v.position, v.normal, 0); }

@@ -201,9 +201,9 @@ std::vector<Target> readTargets(const ShardReader& reader, const std::string& pr
   const Columns columns(prefix, frame);
   std::vector<Target> targets = columns.readPlaces(reader);
   const Shape maps = reader.shape(prefix + "samples");
-  const size_t side = maps.size() == 3 ? maps[1] : kTargetSize;
+  const size_t side = maps.size() == 3 && maps[1] == kWindowMapSize ? kWindowMapSize : kTargetSize;
   columns.readMaps(reader, targets, side);
-  if (side != kTargetSize) return targets;
+  if (side == kWindowMapSize) return targets;
   columns.readOutgoing(reader, targets);
   columns.readLights(reader, targets);
   return targets;

@@ -14,6 +14,9 @@ namespace odis::learn {
 // Maps are equal-area octahedral squares (odis/octahedral.h) of so many texels a side, row by row.
 inline constexpr int kTargetSize = 32;
 inline constexpr int kTargetTexels = kTargetSize * kTargetSize;
+// In data sets of incident radiance they have so many.
+inline constexpr int kWindowMapSize = 16;
+inline constexpr int kWindowMapTexels = kWindowMapSize * kWindowMapSize;
 
 // The direction of a point of a texel, its place within given from 0 to 1.
 inline Float3 directionInTexel(int texel, const Float2& within) {

@@ -6,10 +6,6 @@
 
 namespace odis::learn {
 
-// Maps of targets in windows have so many texels a side, row by row.
-inline constexpr int kWindowMapSize = 16;
-inline constexpr int kWindowMapTexels = kWindowMapSize * kWindowMapSize;
-
 struct WindowSettings {
   int count = 0;   // of windows; 0: the data set is one of cells
   int size = 32;   // pixels a side

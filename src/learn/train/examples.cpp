@@ -132,6 +132,9 @@ ViewExamples examplesOf(const ShardReader& shard, size_t view, size_t pilotCount
 }  // namespace
 
 std::vector<ViewExamples> makeExamples(const ShardReader& shard) {
+  if (const auto settings = shard.header().find("settings");
+      settings != shard.header().end() && settings->value("kind", "cells") != "cells")
+    throw ShardError(shard.path() + ": is of another kind of data set, expected one of cells");
   std::vector<ViewExamples> views;
   const nlohmann::json& headers = shard.header().at("views");
   for (size_t view = 0; view < headers.size(); ++view)
