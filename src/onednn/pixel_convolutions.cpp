@@ -118,7 +118,8 @@ class Convolution {
   memory m_weight, m_bias;
 };
 
-// One thread for what oneDNN does on behalf of this one: tasks are shared out by the library.
+// One thread for what oneDNN does on behalf of this one: tasks are shared out by the library. Convolutions
+// are made for as many threads as there are when they are made, so this holds for that as well.
 class OneThread {
  public:
   OneThread() : m_before(omp_get_max_threads()) { omp_set_num_threads(1); }
@@ -273,6 +274,7 @@ std::string_view fastGanWeights();
 
 extern "C" __attribute__((visibility("default"))) PixelConvolutions* odisMakePixelConvolutions(
     const PixelWeights& weights) {
+  const OneThread alone;
   return new OneDnnConvolutions(weights);
 }
 

@@ -163,8 +163,9 @@ void sumUp(const std::vector<Seen>& samples, float totalWeight, Neighbourhood& r
     if (result.farCount[t] > 0) result.nearness[t] /= result.farCount[t];
 }
 
+// Most texels of single samples are empty.
 void logOf(const Histogram& sums, float scale, Histogram& result) {
-  for (size_t t = 0; t < kMapTexels; ++t) result[t] = std::log1p(scale * sums[t]);
+  for (size_t t = 0; t < kMapTexels; ++t) result[t] = sums[t] > 0 ? std::log1p(scale * sums[t]) : 0;
 }
 
 float sumOf(const Histogram& histogram) {
