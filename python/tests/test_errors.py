@@ -88,7 +88,7 @@ class Library(unittest.TestCase):
 
     def test_options(self):
         invalid = odis.ErrorCode.INVALID_ARGUMENT
-        for name, value in {"cells_per_diagonal": 0, "floor": 2, "clamp": 0, "fixed_bsdf_fraction": -1,
+        for name, value in {"cells_per_diagonal": -1, "floor": 2, "clamp": 0, "fixed_bsdf_fraction": -1,
                             "light_groups": 33, "prior_samples": (-1, 0, 0, 0)}.items():
             options = odis.GuideOptions(**{name: value})
             self.assertEqual(np.ravel(getattr(options, name)).tolist(), np.ravel(value).tolist())
