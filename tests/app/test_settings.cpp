@@ -236,6 +236,24 @@ TEST_F(Odis, MistakesInSettingsAreWrongUsage) {
   EXPECT_EQ(run("render room.xml -q --set guide-bounces=1 --set cells=16").code, 0);
 }
 
+// With oneDNN the preset renders, to the same bits for any number of threads; without, it says what to install.
+TEST_F(Odis, ThePapersPresetRenders) {
+  const odis::test::Outcome first =
+      run("render room.xml -q --preset paper-fast --threads 1 -o one.exr --png one.png");
+  if (first.code != 0) {
+    EXPECT_NE(first.text.find("install oneDNN"), std::string::npos) << first.text;
+    GTEST_SKIP() << "without oneDNN";
+  }
+  EXPECT_EQ(run("render room.xml -q --preset paper-fast --threads 3 -o three.exr --png three.png").code, 0);
+  EXPECT_EQ(runShell("cmp one.png three.png").code, 0);
+  // Presets are where settings start from.
+  EXPECT_EQ(run("render room.xml -q --preset paper --set pixel-network=fast-gan --set pixel-tile=2 --set "
+                "map-cosine=on -o image.exr")
+                .code,
+            0);
+  EXPECT_EQ(run("render room.xml -q --preset paper --set pixel-maps=histogram -o image.exr").code, 0);
+}
+
 // What hardly anybody changes is a setting, so that the list of options stays one that can be read.
 TEST_F(Odis, RenderHasFewOptions) {
   const odis::test::Outcome help = run("render --help");
