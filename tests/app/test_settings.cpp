@@ -236,7 +236,8 @@ TEST_F(Odis, MistakesInSettingsAreWrongUsage) {
   EXPECT_EQ(run("render room.xml -q --set guide-bounces=1 --set cells=16").code, 0);
 }
 
-// With oneDNN the preset renders, to the same bits for any number of threads; without, it says what to install.
+// With oneDNN the preset renders, to the same bits for any number of threads; without, it says what to
+// install.
 TEST_F(Odis, ThePapersPresetRenders) {
   const odis::test::Outcome first =
       run("render room.xml -q --preset paper-fast --threads 1 -o one.exr --png one.png");
