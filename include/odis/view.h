@@ -119,7 +119,8 @@ typedef struct OdisFramePass {
   bool wantsVertices ODIS_DEFAULT(false);
   bool partOfImage ODIS_DEFAULT(true);
   // The seed of the random numbers. Passes that are no part of the image have another one, and in frames of
-  // fewer than 16384 pixels each guide has one of its own (docs/unbiasedness.md#sobol-points).
+  // fewer than 16384 pixels, and with maps at pixels, each guide has one of its own
+  // (docs/unbiasedness.md#sobol-points).
   uint64_t seed ODIS_DEFAULT(0);
   // Number of samples of all passes of this kind and all pixels, for progress; about, where pixels have
   // different numbers.
