@@ -4,7 +4,7 @@ if(ODIS_TBB OR ODIS_RENDERER)
   find_package(TBB REQUIRED)
 endif()
 # Optional, for maps at pixels by a network.
-option(ODIS_ONEDNN "Build the network at pixels, where oneDNN is found" ON)
+option(ODIS_ONEDNN "Build the network at pixels, where oneDNN is found" ${PROJECT_IS_TOP_LEVEL})
 if(ODIS_ONEDNN)
   find_path(DNNL_INCLUDE_DIR dnnl.hpp)
   find_library(DNNL_LIBRARY dnnl)

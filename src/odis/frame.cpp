@@ -163,10 +163,11 @@ void Frame::Data::buildGuide(const VertexTiles& taught, const VertexTiles& judge
   cells = builder->build(partsOf(judged), pixelValues);
   if (pixelOracle) pixelMaps = pixelOracle->maps(*tasks);
   pixelOracle.reset();
+  keptBytes = pixelMaps.bytes();
   useCells();
   takeStock(pilotVertexCount * sizeof(PathVertex));
   oracleVertices = {};
-  keptBytes = pixelMaps.bytes() + (options.keepPilotVertices ? pilotVertexCount * sizeof(PathVertex) : 0);
+  if (options.keepPilotVertices) keptBytes += pilotVertexCount * sizeof(PathVertex);
   if (!options.keepPilotVertices) pilotVertices = {};
 }
 
@@ -184,6 +185,7 @@ void Frame::Data::takeStock(uint64_t vertices) {
   if (learns()) return;
   builder.reset();
   cells = {};
+  keptBytes -= pixelMaps.bytes();
   pixelMaps = {};
 }
 
@@ -238,7 +240,6 @@ void Frame::Data::giveUpGuiding() {
   for (const CellSamples& samples : cellSamples) keptBytes -= samples.bytes();
   cellSamples.clear();
   guide = cells = Guide();
-  pixelMaps = {};
   ++guidesBuilt;
   schedule.endRefinement();
   done = end;
