@@ -391,6 +391,14 @@ TEST(TrainConfig, MistakesAreNamed) {
   EXPECT_NE(errorOf(R"({"data": "d", "precision": "half"})").find("expected one of single, mixed"),
             std::string::npos);
   EXPECT_NE(errorOf(R"({"data": 7})").find("data: expected a text"), std::string::npos);
+  EXPECT_NE(errorOf(R"({"data": "d", "loss": "log"})").find("for the network at pixels alone"),
+            std::string::npos);
+  const std::string pixels = R"({"data": "d", "network": "pixels", )";
+  EXPECT_EQ(errorOf(pixels + R"("loss": "log", "width": 24, "tile": 4})"), "");
+  EXPECT_NE(errorOf(pixels + R"("width": 20})").find("expected a multiple of 8"), std::string::npos);
+  EXPECT_NE(errorOf(pixels + R"("tile": 9})").find("tile: found 9"), std::string::npos);
+  EXPECT_NE(errorOf(pixels + R"("adversarialStart": 9, "adversarialFull": 8})").find("at least"),
+            std::string::npos);
   std::ofstream(path) << R"({"data": "shards", "examples": "/elsewhere"})";
   EXPECT_EQ(readConfig(path).data, (fs::path(path).parent_path() / "shards").lexically_normal().string());
   EXPECT_EQ(readConfig(path).examples, "/elsewhere");

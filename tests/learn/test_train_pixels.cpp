@@ -186,6 +186,7 @@ TEST_F(PixelTraining, TwoProcessesLearnTheSame) {
       learned[rank] = learner->tensors();
     });
   for (std::thread& process : processes) process.join();
+  EXPECT_EQ(losses[0].map, losses[1].map);
   EXPECT_EQ(losses[0].discriminator, losses[1].discriminator);
   for (size_t i = 0; i < learned[0].size(); ++i) EXPECT_EQ(learned[0][i].values, learned[1][i].values);
 }

@@ -31,8 +31,10 @@ template <class T>
 void enlarge(std::vector<T>& map) {
   constexpr int kRatio = kTargetSize / kWindowMapSize;
   std::vector<T> large(kTargetTexels);
-  for (int t = 0; t < kTargetTexels; ++t)
-    large[size_t(t)] = map[size_t(t / kTargetSize / kRatio * kWindowMapSize + t % kTargetSize / kRatio)];
+  for (int t = 0; t < kTargetTexels; ++t) {
+    const int x = t % kTargetSize / kRatio, y = t / kTargetSize / kRatio;
+    large[size_t(t)] = map[size_t(y) * kWindowMapSize + size_t(x)];
+  }
   map = std::move(large);
 }
 

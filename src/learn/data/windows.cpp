@@ -160,7 +160,8 @@ void foldMaps(Target& target) {
   std::vector<double> counts(kWindowMapTexels), found(kWindowMapTexels);
   const std::vector<uint8_t> samples = target.samples;
   const auto texel = [](int t) {
-    return size_t(t / kTargetSize / kRatio * kWindowMapSize + t % kTargetSize / kRatio);
+    const int x = t % kTargetSize / kRatio, y = t / kTargetSize / kRatio;
+    return size_t(y) * kWindowMapSize + size_t(x);
   };
   for (int t = 0; t < kTargetTexels; ++t) counts[texel(t)] += samples[size_t(t)];
   const auto fold = [&](std::vector<float>& map, bool squared) {

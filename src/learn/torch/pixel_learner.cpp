@@ -220,7 +220,7 @@ class TorchPixelLearner : public PixelLearner {
                                               learningRate * m_discriminatorRate);
     m_modules.discriminator->eval();
     const torch::Tensor fooled = -m_modules.discriminator(shares, rows.maps, numbers).mean();
-    losses.map = loss.item<double>();
+    losses.map = m_together.mean(loss.item<double>());
     m_together.descend(*m_modules.network, *m_adam, loss + adversarialWeight * fooled, learningRate);
     return losses;
   }

@@ -78,6 +78,15 @@ class TorchProcesses {
     return mean;
   }
 
+  // The mean of a number over all processes.
+  double mean(double value) {
+    if (m_processes.count == 1) return value;
+    std::vector<torch::Tensor> all{
+        torch::full({1}, value, torch::TensorOptions(m_talksOn).dtype(torch::kFloat32))};
+    sum(all);
+    return all[0].item<double>() / m_processes.count;
+  }
+
  private:
 #ifdef ODIS_PROCESSES
   void join() {
@@ -123,13 +132,16 @@ class TorchProcesses {
     m_group->broadcast(there)->wait();
     tensor = there[0].to(torch::kCPU);
   }
+  void sum(std::vector<torch::Tensor>& tensors) {
+    m_group->allreduce(tensors)->wait();
+  }
   // Of all gradients at once, and the loss.
   void average(torch::nn::Module& module, double& loss) {
     std::vector<torch::Tensor> parts;
     for (const torch::Tensor& p : module.parameters()) parts.push_back(p.grad().reshape({-1}).to(m_talksOn));
     parts.push_back(torch::full({1}, loss, torch::TensorOptions(m_talksOn).dtype(torch::kFloat32)));
     std::vector<torch::Tensor> all{torch::cat(parts)};
-    m_group->allreduce(all)->wait();
+    sum(all);
     const torch::Tensor mean = all[0] / double(m_processes.count);
     int64_t at = 0;
     for (torch::Tensor& p : module.parameters()) {
@@ -138,17 +150,18 @@ class TorchProcesses {
     }
     loss = mean[at].item<double>();
   }
-  torch::Device m_talksOn = torch::kCPU;  // where tensors are when processes exchange them
   c10::intrusive_ptr<Group> m_group;
 #else
   void join() {
     throw TrainError("this odis was built without Gloo and NCCL: one process can train");
   }
   void broadcast(torch::Tensor&) {}
+  void sum(std::vector<torch::Tensor>&) {}
   void average(torch::nn::Module&, double&) {}
 #endif
 
   torch::Device m_device;
+  torch::Device m_talksOn = torch::kCPU;  // where tensors are when processes exchange them
   Processes m_processes;
 };
 

@@ -123,7 +123,7 @@ TrainConfig readConfig(const std::string& path) {
   keys.take("validationScenes", c.validationScenes, 0, kMany);
   keys.take("seed", c.seed, 0, kMany);
   keys.take("width", c.width, 8, 64);
-  keys.take("tile", c.tile, 1, 16);
+  keys.take("tile", c.tile, 1, 8);
   keys.take("radiance", c.radiance, kRadiances);
   keys.take("adversarialWeight", c.adversarialWeight, 0.0, 1e6);
   keys.take("adversarialStart", c.adversarialStart, 0, kMany);

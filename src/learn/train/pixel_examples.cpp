@@ -140,9 +140,8 @@ class PixelExampleMaker {
                            0,
                            0,
                            m_config.tile};
-    // The tile lies anywhere around the pixel.
-    place.x = int(v.pixel) % m_width - x0 - m_random.integer(0, m_config.tile - 1);
-    place.y = int(v.pixel) / m_width - y0 - m_random.integer(0, m_config.tile - 1);
+    place.x = tileAround(int(v.pixel) % m_width - x0);
+    place.y = tileAround(int(v.pixel) / m_width - y0);
     for (const auto& of : m_firsts) {
       core::FirstVertices vertices(m_size, m_size);
       for (int y = 0; y < m_size; ++y)
@@ -152,6 +151,13 @@ class PixelExampleMaker {
       addInput(vertices, place);
     }
     m_made.inputsOf.push_back(uint32_t(m_firsts.size()));
+  }
+
+  // Where a tile begins that lies anywhere around a pixel, but so that the window has all that is far of it.
+  int tileAround(int pixel) {
+    const int begin = pixel - m_random.integer(0, m_config.tile - 1);
+    return std::clamp(begin, core::kFarMargin,
+                      std::max(core::kFarMargin, m_size - core::kFarMargin - m_config.tile));
   }
 
   void addInput(const core::FirstVertices& vertices, const core::PixelPlace& place) {

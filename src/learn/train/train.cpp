@@ -207,7 +207,7 @@ class Training {
     if (!m_history.validations.empty()) {
       const ValidationRow& last = m_history.validations.back();
       for (size_t i = 0; i < last.values.size(); ++i)
-        json["validation"].push_back({m_history.validationNames[i], last.values[i]});
+        json["validation"][m_history.validationNames[i]] = last.values[i];
     }
     return json;
   }

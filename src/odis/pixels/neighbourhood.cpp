@@ -217,10 +217,10 @@ void describe(const Neighbourhood& n, const Float3& normal, std::span<float> map
   logOf(meanRadiance(n.farRadiance, n.farCount), toMean, channels[5]);
   channels[6] = cosinesTo(normal);
   channels[7] = n.nearness;
+  float* to = maps.data();
   for (int y = 0; y < kMapSize; ++y)
     for (int x = 0; x < kMapSize; ++x)
-      for (int c = 0; c < kPixelChannels; ++c)
-        maps[size_t((y * kMapSize + x) * kPixelChannels + c)] = channels[c][size_t(texelAt(x, y))];
+      for (const Histogram& channel : channels) *to++ = channel[size_t(texelAt(x, y))];
   std::copy_n(n.scalars, kPixelScalars, scalars.begin());
 }
 
