@@ -39,8 +39,9 @@ struct TrainConfig {
   int validateSteps = 1000;  // how often held-out scenes are looked at
   int validationScenes = 24;
   int seed = 1;
-  // Of the network at pixels: channels of its first level; pixels a side of a tile that has one map, as many
-  // as windows have room for; whether its maps hold all light that arrives, or what next-event estimation leaves over.
+  // Of the network at pixels: channels of its first level; pixels a side of a tile that has one map, as
+  // many as windows have room for; whether its maps hold all light that arrives, or what next-event
+  // estimation leaves over.
   int width = 16, tile = 1;
   core::IncidentRadiance radiance = core::IncidentRadiance::full;
   // Weight of the adversarial loss beside the other (0: there is none), reached between two steps, and the
