@@ -38,6 +38,13 @@ FirstVertices floorTowards(int width, int height, const Float3& source) {
   return vertices;
 }
 
+// Of a texel of a sampling map.
+float farEnergy(const Neighbourhood& seen, int texel) {
+  for (int t = 0; t < kMapTexels; ++t)
+    if (texelAt(t % kMapSize, t / kMapSize) == texel) return seen.sums[t][kFarEnergy];
+  return NAN;
+}
+
 size_t brightest(const Histogram& map) {
   return size_t(std::max_element(map.begin(), map.end()) - map.begin());
 }
@@ -52,8 +59,8 @@ TEST(Neighbourhood, SamplesAreAimedFromThePlace) {
   // A splat reaches four texels, from the place as from nowhere else.
   const Splat expected = splat(normalized(source - place.position));
   float inside = 0, all = 0;
-  for (const float value : seen.farEnergy) all += value;
-  for (const int texel : expected.texel) inside += seen.farEnergy[size_t(texel)];
+  for (const auto& texel : seen.sums) all += texel[kFarEnergy];
+  for (const int texel : expected.texel) inside += farEnergy(seen, texel);
   EXPECT_GT(all, 0);
   EXPECT_NEAR(inside, all, 1e-3f * all);
 }
@@ -72,7 +79,7 @@ TEST(Neighbourhood, OtherSurfacesDoNotCount) {
   const PixelPlace place{vertices.at(20, 20).position, kUp, 1, 0.5f, 20, 20, 1};
   Neighbourhood seen;
   look(vertices, place, seen);
-  EXPECT_EQ(seen.farEnergy[size_t(texelOf(Float3{-1, 0, 0}))], 0);
+  EXPECT_EQ(farEnergy(seen, texelOf(Float3{-1, 0, 0})), 0);
   EXPECT_EQ(brightest(histogramOf(seen)),
             size_t(texelOf(normalized(Float3{0.9f, 0.5f, 1} - place.position))));
 }

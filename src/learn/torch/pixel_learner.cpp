@@ -143,7 +143,7 @@ struct PixelRows {
     square = toDevice(b.square, {count, kPixelTexels}, device);
   }
   // Of each texel's centre with the normal, none below the horizon.
-  torch::Tensor cosines() const { return maps.select(1, 6).flatten(1).clamp_min(0); }
+  torch::Tensor cosines() const { return maps.select(1, core::kCosine).flatten(1).clamp_min(0); }
 };
 
 torch::Tensor withFloor(const torch::Tensor& shares) {

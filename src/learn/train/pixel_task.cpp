@@ -28,8 +28,7 @@ class Judge {
  public:
   Judge(const PixelBatch& batch, size_t row)
       : m_mass(&batch.mass[row * kMapTexels]), m_square(&batch.square[row * kMapTexels]) {
-    constexpr size_t kCosineChannel = 6;
-    const float* cosine = &batch.maps[row * kPixelMapNumbers + kCosineChannel * kMapTexels];
+    const float* cosine = &batch.maps[row * kPixelMapNumbers + core::kCosine * kMapTexels];
     for (size_t t = 0; t < kMapTexels; ++t) {
       m_cosine[t] = std::max(cosine[t], 0.0f);
       m_cosines += m_cosine[t];
@@ -152,7 +151,8 @@ class PixelTask : public Task {
         for (float& value : values) value = std::expm1(value);
         return values;
       };
-      const std::vector<float> maps[kColumns] = {energy(0), energy(3), over(m_heldOut.histogram(target)),
+      const std::vector<float> maps[kColumns] = {energy(core::kNearEnergy), energy(core::kFarEnergy),
+                                                 over(m_heldOut.histogram(target)),
                                                  over(m_learner->predict(batch)), over(batch.mass)};
       for (int c = 0; c < kColumns; ++c)
         drawMap(canvas, {kGap + c * kStep, kTitle + int(row) * kStep}, kMapPixels, {kMapSize, maps[c]},

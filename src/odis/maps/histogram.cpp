@@ -8,18 +8,6 @@
 
 namespace odis::core {
 
-int wrappedTexel(int x, int y) {
-  if (x < 0 || x >= kMapSize) {
-    x = x < 0 ? 0 : kMapSize - 1;
-    y = kMapSize - 1 - y;
-  }
-  if (y < 0 || y >= kMapSize) {
-    y = y < 0 ? 0 : kMapSize - 1;
-    x = kMapSize - 1 - x;
-  }
-  return texelAt(x, y);
-}
-
 Splat splat(const Float3& wi) {
   const Float2 square = directionToSquare(wi);
   const float x = square.x * kMapSize - 0.5f, y = square.y * kMapSize - 0.5f;

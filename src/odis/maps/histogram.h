@@ -9,9 +9,22 @@ namespace odis::core {
 
 using Histogram = std::array<float, kMapTexels>;
 
-// The texel in column x and row y, which may lie one step outside: the octahedral map continues across an
-// edge mirrored about the edge's middle.
-int wrappedTexel(int x, int y);
+// Where a texel in column x and row y is found that may lie one step outside: the octahedral map continues
+// across an edge mirrored about the edge's middle.
+inline void wrapTexel(int& x, int& y) {
+  if (x < 0 || x >= kMapSize) {
+    x = x < 0 ? 0 : kMapSize - 1;
+    y = kMapSize - 1 - y;
+  }
+  if (y < 0 || y >= kMapSize) {
+    y = y < 0 ? 0 : kMapSize - 1;
+    x = kMapSize - 1 - x;
+  }
+}
+inline int wrappedTexel(int x, int y) {
+  wrapTexel(x, y);
+  return texelAt(x, y);
+}
 
 // The four texels among which a direction is spread, bilinearly, across the seams of the octahedral map.
 struct Splat {

@@ -3,9 +3,9 @@
 #include <cmath>
 
 #include "odis/cells/shrinkage.h"
+#include "odis/maps/fast_log2.h"
 #include "odis/maps/instruction_sets.h"
 #include "odis/maps/texel_directions.h"
-#include "odis/models/fast_log2.h"
 
 namespace odis::core {
 

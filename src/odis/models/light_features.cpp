@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "odis/models/fast_log2.h"
+#include "odis/maps/fast_log2.h"
 #include "odis/models/lights.h"
 
 namespace odis::core {

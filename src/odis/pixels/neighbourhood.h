@@ -9,8 +9,18 @@
 
 namespace odis::core {
 
-// Of a map: near and far for each energy, number of samples and mean radiance; cosine; nearness.
-inline constexpr int kPixelChannels = 8;
+// The channels of a place's map. Of near and of far samples: energy (radiance / pdf), number and radiance.
+enum PixelChannel {
+  kNearEnergy,
+  kNearCount,
+  kNearRadiance,
+  kFarEnergy,
+  kFarCount,
+  kFarRadiance,
+  kCosine,    // between the texel and the place's normal
+  kNearness,  // extent / (extent + distance), where the extent is how far the place lies from its neighbours
+  kPixelChannels
+};
 inline constexpr int kPixelScalars = 12;
 
 // A place that a map is made for, and the square of pixels around it that is near: those of a tile and of
@@ -22,13 +32,12 @@ struct PixelPlace {
 };
 inline constexpr int kNearMargin = 4, kFarMargin = 12;
 
-// What is put together of a neighbourhood. Texels in the order of texelAt(); directions are those from the
-// place to where the samples' light came from, in world space.
+// What is put together of a neighbourhood. Directions are those from the place to where the samples' light
+// came from, in world space.
 struct Neighbourhood {
-  // Sums over samples, each weighted by how much its surface is like the place's: radiance / pdf (an estimate
-  // of the integral over each texel), number of samples, radiance.
-  Histogram nearEnergy, nearCount, nearRadiance, farEnergy, farCount, farRadiance;
-  Histogram nearness;  // mean of extent / (extent + distance) over a texel's samples, far ones included
+  // Sums over samples, each weighted by how much its surface is like the place's; those over kFarCount and
+  // kNearness are of all samples, near ones too, kCosine is 0. Rows and columns of the octahedral square.
+  alignas(64) float sums[kMapSize * kMapSize][kPixelChannels];
   float scalars[kPixelScalars];
 };
 void look(const FirstVertices& vertices, const PixelPlace& place, Neighbourhood& result);
