@@ -220,8 +220,8 @@ class OneDnnConvolutions : public PixelConvolutions {
   }
 
   // Writes a part of the channels of all texels, which lie `stride` apart.
-  static void copyPart(const Part& part, const BorderTable& table, int side, size_t count,
-                                 float* to, size_t stride) {
+  static void copyPart(const Part& part, const BorderTable& table, int side, size_t count, float* to,
+                       size_t stride) {
     const size_t n = part.channels;
     const int from = part.level > 0 ? side / 2 : part.level < 0 ? 2 * side : side;
     const std::vector<uint16_t>& sources = part.level > 0   ? table.half

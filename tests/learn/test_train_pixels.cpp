@@ -163,6 +163,37 @@ TEST_F(PixelTraining, OneDnnAgreesWithLibtorch) {
   }
 }
 
+TEST_F(PixelTraining, MapsOfOtherNetworksAreDrawnBeside) {
+  if (!canTrain()) GTEST_SKIP() << "built without libtorch";
+  TrainConfig wide = config();
+  wide.width = 16;
+  wide.steps = wide.validateSteps = 8;
+  TrainObserver patient;
+  ASSERT_TRUE(train(wide, run("wide"), {}, patient));
+  const std::string weights = run("wide") + "/odis.weights";
+  const auto learner = makePixelLearner(wide, {});
+  learner->take(core::Weights::load(weights).tensors());
+  const std::vector<core::Tensor> taken = learner->tensors();
+  for (size_t i = 0; i < taken.size(); ++i)
+    EXPECT_EQ(taken[i].values, core::Weights::load(weights).tensors()[i].values) << taken[i].name;
+
+  TrainConfig c = config();
+  c.steps = c.validateSteps = 8;
+  c.beside = {{"wide", weights}};
+  ASSERT_TRUE(train(c, run("beside"), {}, patient));
+  c.beside = {};
+  ASSERT_TRUE(train(c, run("alone"), {}, patient));
+  // PNG's header has the width after 16 bytes, the high byte first.
+  const auto widthOf = [](const std::string& folder) {
+    const std::string png = bytesOf(folder + "/maps.png");
+    return png.size() > 20 ? 256 * uint8_t(png[18]) + uint8_t(png[19]) : 0;
+  };
+  EXPECT_GT(widthOf(run("beside")), widthOf(run("alone")));
+  EXPECT_EQ(bytesOf(run("beside") + "/losses.csv"), bytesOf(run("alone") + "/losses.csv"));
+  c.beside = {{"nobody", run("nowhere")}};
+  EXPECT_THROW(train(c, run("fails"), {}, patient), ConfigError);
+}
+
 TEST_F(PixelTraining, TwoProcessesLearnTheSame) {
   if (!canTrain()) GTEST_SKIP() << "built without libtorch";
   setenv("MASTER_ADDR", "127.0.0.1", 1);

@@ -233,25 +233,19 @@ class TorchPixelLearner : public PixelLearner {
 
   std::vector<core::Tensor> tensors() const override {
     std::vector<core::Tensor> result;
-    const auto add = [&](const std::string& name, const auto& layer) {
-      result.push_back(toTensor("pixels." + name + ".weight", layer->weight));
-      result.push_back(toTensor("pixels." + name + ".bias", layer->bias));
-    };
-    const PixelModule& n = m_modules.network;
-    add("encode0.0", n->encode00);
-    add("encode0.1", n->encode01);
-    add("encode1.0", n->encode10);
-    add("encode1.1", n->encode11);
-    add("middle.0", n->middle0);
-    add("middle.1", n->middle1);
-    add("decode1", n->decode1);
-    add("decode0", n->decode0);
-    add("output", n->output);
-    add("scalars", n->scalars);
-    result.push_back(toTensor("pixels.mean", n->mean));
-    result.push_back(toTensor("pixels.scale", n->scale));
+    forEachTensor([&](const std::string& name, const torch::Tensor& tensor) {
+      result.push_back(toTensor(name, tensor));
+    });
     result.push_back({"pixels.full", {1}, {m_full ? 1.0f : 0.0f}});
     return result;
+  }
+
+  void take(const std::vector<core::Tensor>& tensors) override {
+    const torch::NoGradGuard guard;
+    forEachTensor([&](const std::string& name, const torch::Tensor& to) {
+      for (const core::Tensor& tensor : tensors)
+        if (tensor.name == name) to.copy_(toDevice(tensor.values, to.sizes(), m_device));
+    });
   }
 
   std::string state() const override {
@@ -290,6 +284,27 @@ class TorchPixelLearner : public PixelLearner {
     PixelModule network;
     Discriminator discriminator;
   };
+  // Calls use(name, tensor) for those that the network computes with.
+  template <class Use>
+  void forEachTensor(const Use& use) const {
+    const PixelModule& n = m_modules.network;
+    const auto layer = [&](const std::string& name, const auto& module) {
+      use("pixels." + name + ".weight", module->weight);
+      use("pixels." + name + ".bias", module->bias);
+    };
+    layer("encode0.0", n->encode00);
+    layer("encode0.1", n->encode01);
+    layer("encode1.0", n->encode10);
+    layer("encode1.1", n->encode11);
+    layer("middle.0", n->middle0);
+    layer("middle.1", n->middle1);
+    layer("decode1", n->decode1);
+    layer("decode0", n->decode0);
+    layer("output", n->output);
+    layer("scalars", n->scalars);
+    use("pixels.mean", n->mean);
+    use("pixels.scale", n->scale);
+  }
   // The same in every process, whatever it drew before. Processes may be threads, and the generator is one
   // for all.
   static Modules makeModules(const TrainConfig& config) {

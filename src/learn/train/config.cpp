@@ -63,6 +63,18 @@ class Keys {
       m_left.erase(found);
     }
   }
+  // An object of texts.
+  void take(const char* key, std::vector<std::pair<std::string, std::string>>& texts) {
+    m_known.emplace_back(key);
+    const auto found = m_left.find(key);
+    if (found == m_left.end()) return;
+    if (!found->is_object()) fail(key, "found " + found->dump() + ", expected an object of texts");
+    for (const auto& [name, text] : found->items()) {
+      if (!text.is_string()) fail(key, fmt::format("{}: found {}, expected a text", name, text.dump()));
+      texts.emplace_back(name, text.get<std::string>());
+    }
+    m_left.erase(found);
+  }
   // One of several words.
   template <class T, size_t N>
   void take(const char* key, T& value, const std::pair<T, const char*> (&words)[N]) {
@@ -129,6 +141,7 @@ TrainConfig readConfig(const std::string& path) {
   keys.take("adversarialStart", c.adversarialStart, 0, kMany);
   keys.take("adversarialFull", c.adversarialFull, 0, kMany);
   keys.take("discriminatorRate", c.discriminatorRate, 0.0, 1.0);
+  keys.take("beside", c.beside);
   keys.take("precision", c.precision, kPrecisions);
   keys.take("device", c.device);
   if (c.device != "auto" && c.device != "cpu" && c.device != "cuda")
@@ -141,14 +154,17 @@ TrainConfig readConfig(const std::string& path) {
     keys.fail("loss", "found log, which is for the network at pixels alone");
   keys.expectNoneLeft();
   if (c.data.empty()) keys.fail("data", "is missing, expected a folder of shards");
-  // Folders are relative to the file that names them.
+  // Paths are relative to the file that names them.
   const std::filesystem::path base = std::filesystem::path(path).parent_path();
   c.data = (base / c.data).lexically_normal().string();
   if (!c.examples.empty()) c.examples = (base / c.examples).lexically_normal().string();
+  for (auto& [name, weights] : c.beside) weights = (base / weights).lexically_normal().string();
   return c;
 }
 
 nlohmann::ordered_json toJson(const TrainConfig& c) {
+  nlohmann::ordered_json beside = nlohmann::ordered_json::object();
+  for (const auto& [name, weights] : c.beside) beside[name] = weights;
   return {{"data", c.data},
           {"examples", c.examples},
           {"shards", c.shards},
@@ -173,6 +189,7 @@ nlohmann::ordered_json toJson(const TrainConfig& c) {
           {"adversarialStart", c.adversarialStart},
           {"adversarialFull", c.adversarialFull},
           {"discriminatorRate", c.discriminatorRate},
+          {"beside", beside},
           {"precision", nameOf(c.precision, kPrecisions)},
           {"device", c.device}};
 }

@@ -4,6 +4,8 @@
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "odis/pixels/first_vertices.h"
 
@@ -49,6 +51,8 @@ struct TrainConfig {
   double adversarialWeight = 0;
   int adversarialStart = 1000, adversarialFull = 2000;
   double discriminatorRate = 4e-4;
+  // Names and files of weights of other networks at pixels, whose maps are drawn beside this one's.
+  std::vector<std::pair<std::string, std::string>> beside;
   Precision precision = Precision::single;
   std::string device = "auto";  // cpu, cuda, or auto: cuda where there is one
 };

@@ -70,6 +70,8 @@ class PixelLearner : public LearnerState {
   // A step of Adam of the network, and one of the discriminator before it if `adversarialWeight` is positive;
   // the losses of the batch before, over all processes.
   virtual Losses step(const PixelBatch& batch, double learningRate, double adversarialWeight) = 0;
+  // Takes over what another network of the same width has learned: its tensors().
+  virtual void take(const std::vector<core::Tensor>& tensors) = 0;
   // The shares of the texels, [count][row][column].
   virtual std::vector<float> predict(const PixelBatch& batch) = 0;
 };

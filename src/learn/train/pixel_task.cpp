@@ -4,6 +4,7 @@
 
 #include "learn/inspect/map_drawing.h"
 #include "learn/train/task.h"
+#include "odis/pixels/pixel_weights.h"
 #include "render/image/write.h"
 
 namespace odis::learn {
@@ -72,7 +73,9 @@ class PixelTask : public Task {
       : m_config(config),
         m_learner(makePixelLearner(config, processes)),
         m_examples(config, false),
-        m_heldOut(config, true) {}
+        m_heldOut(config, true) {
+    for (const auto& [name, file] : config.beside) m_beside.push_back({name, learnerOf(file, processes)});
+  }
 
   LearnerState& learner() override { return *m_learner; }
   const LearnerState& learner() const override { return *m_learner; }
@@ -132,36 +135,64 @@ class PixelTask : public Task {
             reference.crossEntropy / n};
   }
 
-  // maps.png: held-out targets, a row each: what near and far samples saw, histogram, network, reference.
+  // maps.png: held-out targets, a row each: what near and far samples saw, the maps of the histogram, of other
+  // networks and of this one, and the reference.
   void draw(const std::string& folder) override {
     const size_t rows = std::min(kDrawn, m_heldOut.size());
     if (rows == 0) return;
-    constexpr int kColumns = 5, kStep = kMapPixels + kGap;
-    Canvas canvas(kColumns * kStep + kGap, int(rows) * kStep + kTitle, kBackground);
-    static constexpr const char* kNames[kColumns] = {"near samples", "far samples", "histogram", "network",
-                                                     "reference"};
-    for (int c = 0; c < kColumns; ++c) canvas.write(kGap + c * kStep, 5, kMapPixels, kNames[c], kInk);
-    PixelBatch batch;
+    std::vector<std::string> names{"near samples", "far samples", "histogram"};
+    for (const auto& [name, learner] : m_beside) names.push_back(name);
+    names.insert(names.end(), {m_beside.empty() ? "network" : "this network", "reference"});
+    constexpr int kStep = kMapPixels + kGap;
+    Canvas canvas(int(names.size()) * kStep + kGap, int(rows) * kStep + kTitle, kBackground);
+    for (int c = 0; c < int(names.size()); ++c)
+      canvas.write(kGap + c * kStep, 5, kMapPixels, names[size_t(c)], kInk);
     for (size_t row = 0; row < rows; ++row) {
-      const size_t target = row * m_heldOut.size() / rows;
-      m_heldOut.take(target, 1, batch);
-      const auto energy = [&](size_t channel) {
-        const float* from = &batch.maps[channel * kMapTexels];
-        std::vector<float> values(from, from + kMapTexels);
-        for (float& value : values) value = std::expm1(value);
-        return values;
-      };
-      const std::vector<float> maps[kColumns] = {energy(core::kNearEnergy), energy(core::kFarEnergy),
-                                                 over(m_heldOut.histogram(target)),
-                                                 over(m_learner->predict(batch)), over(batch.mass)};
-      for (int c = 0; c < kColumns; ++c)
-        drawMap(canvas, {kGap + c * kStep, kTitle + int(row) * kStep}, kMapPixels, {kMapSize, maps[c]},
-                MapColors::stops);
+      const std::vector<std::vector<float>> maps = mapsOf(row * m_heldOut.size() / rows);
+      for (int c = 0; c < int(maps.size()); ++c)
+        drawMap(canvas, {kGap + c * kStep, kTitle + int(row) * kStep}, kMapPixels,
+                {kMapSize, maps[size_t(c)]}, MapColors::stops);
     }
     render::writePng(folder + "/maps.png", canvas.width, canvas.height, canvas.pixels.data(), 0);
   }
 
  private:
+  struct Beside {
+    std::string name;
+    std::unique_ptr<PixelLearner> learner;
+  };
+  // One that has learned.
+  std::unique_ptr<PixelLearner> learnerOf(const std::string& file, const Processes& processes) const {
+    try {
+      const core::Weights weights = core::Weights::load(file);
+      TrainConfig config = m_config;
+      config.width = int(core::PixelWeights::read(weights).width);
+      std::unique_ptr<PixelLearner> learner = makePixelLearner(config, processes);
+      learner->take(weights.tensors());
+      return learner;
+    } catch (const core::WeightsError& error) {
+      throw ConfigError(std::string("beside: ") + error.what());
+    }
+  }
+
+  // What is drawn of a held-out target, over even maps.
+  std::vector<std::vector<float>> mapsOf(size_t target) {
+    PixelBatch batch;
+    m_heldOut.take(target, 1, batch);
+    const auto energy = [&](size_t channel) {
+      const float* from = &batch.maps[channel * kMapTexels];
+      std::vector<float> values(from, from + kMapTexels);
+      for (float& value : values) value = std::expm1(value);
+      return values;
+    };
+    std::vector<std::vector<float>> maps{energy(core::kNearEnergy), energy(core::kFarEnergy),
+                                         over(m_heldOut.histogram(target))};
+    for (const Beside& other : m_beside) maps.push_back(over(other.learner->predict(batch)));
+    maps.push_back(over(m_learner->predict(batch)));
+    maps.push_back(over(batch.mass));
+    return maps;
+  }
+
   // Shares over an even map.
   static std::vector<float> over(std::vector<float> shares) {
     for (float& value : shares) value *= kMapTexels;
@@ -178,6 +209,7 @@ class PixelTask : public Task {
   std::unique_ptr<PixelLearner> m_learner;
   PixelExamples m_examples, m_heldOut;
   std::vector<std::string> m_heldOutOf;
+  std::vector<Beside> m_beside;
   PixelBatch m_batch;
 };
 
