@@ -135,8 +135,8 @@ class PixelTask : public Task {
             reference.crossEntropy / n};
   }
 
-  // maps.png: held-out targets, a row each: what near and far samples saw, the maps of the histogram, of other
-  // networks and of this one, and the reference.
+  // maps.png: held-out targets, a row each: what near and far samples saw, the maps of the histogram, of
+  // other networks and of this one, and the reference.
   void draw(const std::string& folder) override {
     const size_t rows = std::min(kDrawn, m_heldOut.size());
     if (rows == 0) return;
