@@ -104,8 +104,8 @@ class GuideBuilder {
   void setBounds(const Float3& lower, const Float3& upper);
   // Builds maps from all that was added, and BSDF sampling fractions from vertices that should be (a part
   // of) the same, without those of guided paths. `pixelValues`, indexed by PathVertex::pixel, are what the
-  // vertices' contributions are divided by; without them contributions are taken as they are. Throws
-  // std::out_of_range where a vertex has a pixel beyond them.
+  // vertices' contributions are divided by; without any, by the mean of all paths. Throws std::out_of_range
+  // where a vertex has a pixel beyond them.
   Guide build(VertexParts parts, ArrayView<const float> pixelValues = {}) const;
   Guide build(ArrayView<const PathVertex> vertices, ArrayView<const float> pixelValues = {}) const {
     return build(VertexParts(&vertices, 1), pixelValues);

@@ -223,7 +223,8 @@ TEST(Guide, DividesByPixelValues) {
   std::vector<PathVertex> vertices = floorUnderPatch(kBright, 20000, 7);
   GuideBuilder builder(byFormula());
   builder.add(vertices);
-  const Guide relative = builder.build(vertices);
+  const std::vector<float> ones(1, 1.0f);
+  const Guide relative = builder.build(vertices, ones);
   // Powers of two, so that dividing is exact.
   const std::vector<float> values = {4, 0.5f, 64};
   for (size_t i = 0; i < vertices.size(); ++i) vertices[i].indirect *= values[vertices[i].pixel = i % 3];
@@ -232,6 +233,27 @@ TEST(Guide, DividesByPixelValues) {
   EXPECT_TRUE(sameView(relative.view(), divided.view()));
   EXPECT_EQ(relative.predictedVarianceRatio(), divided.predictedVarianceRatio());
   EXPECT_NE(relative.predictedVarianceRatio(), builder.build(vertices).predictedVarianceRatio());
+}
+
+// Where pixels have no values the unit of radiance does not matter.
+TEST(Guide, DividesByTheMeanOfAllPathsWithoutPixelValues) {
+  std::vector<PathVertex> vertices = floorUnderPatch(kBright, 20000, 7);
+  std::vector<CellDecisions> decisions[2];
+  for (const float unit : {1.0f, 1.0f / 1024}) {
+    for (PathVertex& v : vertices) {
+      v.indirect *= unit;
+      v.radiance = v.radiance * unit;
+    }
+    GuideBuilder builder(byFormula());
+    builder.add(vertices);
+    const Guide guide = builder.build(vertices);
+    EXPECT_LT(bsdfFraction(guide.view(), int32_t(cellAt(guide, {0.5f, 0.5f, 0})), 1.0f), 0.5f);
+    const GuideView& view = guide.view();
+    decisions[unit < 1].assign(view.decisions, view.decisions + view.cellCount);
+  }
+  ASSERT_EQ(decisions[0].size(), decisions[1].size());
+  for (size_t c = 0; c < decisions[0].size(); ++c)
+    EXPECT_EQ(decisions[0][c].bsdfFraction[0], decisions[1][c].bsdfFraction[0]) << c;
 }
 
 TEST(Guide, RebuiltMapsAreThoseOfAllThatWasAdded) {

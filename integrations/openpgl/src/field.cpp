@@ -1,5 +1,6 @@
 #include "field.h"
 
+#include <algorithm>
 #include <cstdio>
 #include <cstring>
 #include <exception>
@@ -7,10 +8,12 @@
 
 namespace {
 
-// A guide is built again when it can know this many times as many vertices.
+// A guide is built again when it can know this many times as many vertices; until then as many more are kept.
 constexpr size_t kGrowth = 2;
 // With this many times the vertices of the first update it has learned what it can: the host need record no more.
 constexpr size_t kEnough = 8;
+// Of less there is no need to leave anything out.
+constexpr size_t kFewestKept = size_t(1) << 16;
 // What a host is told then: more than the training samples of any setting.
 constexpr size_t kTrained = 1u << 30;
 
@@ -35,7 +38,7 @@ PGLString copyOf(const std::string& text) {
 }  // namespace
 
 void Field::update(SampleStorage& samples) {
-  const std::vector<odis::PathVertex> vertices = samples.vertices();
+  const odis::ArrayView<const odis::PathVertex> vertices = samples.vertices();
   if (vertices.empty()) return;
   ++m_updates;
   const bool first = !m_builder;
@@ -48,6 +51,8 @@ void Field::update(SampleStorage& samples) {
   } else if (m_vertices >= kGrowth * m_builtFrom) {
     show(m_builder->rebuild(*m_guide));
   }
+  // Thinning out leaves between one half of this and all.
+  samples.keepAtMost(std::max(kGrowth * m_vertices, kFewestKept));
 }
 
 void Field::show(odis::Guide guide) {

@@ -10,7 +10,7 @@ using namespace odis::openpgl_interface;
 
 namespace {
 
-thread_local const PathSegmentStorage* t_prepared = nullptr;
+thread_local PathSegmentStorage* t_prepared = nullptr;
 
 pgl_vec3f times(const pgl_vec3f& a, const pgl_vec3f& b) {
   return {a.x * b.x, a.y * b.y, a.z * b.z};
@@ -33,6 +33,11 @@ uint64_t hashOf(const PGLPathSegmentData& segment) {
   }
   return hash;
 }
+// The density with which next-event estimation would have drawn a direction, by the power heuristic's weight of one
+// that was drawn with density `pdf`; 0 where it could not have.
+float lightPdf(float pdf, float misWeight) {
+  return misWeight > 0 && misWeight < 1 ? pdf * std::sqrt(1 / misWeight - 1) : 0;
+}
 float meanOf(const odis::Float3& v) {
   return (v.x + v.y + v.z) / 3;
 }
@@ -41,7 +46,7 @@ float meanOf(const odis::Float3& v) {
 
 namespace odis::openpgl_interface {
 
-const PathSegmentStorage* preparedLast() {
+PathSegmentStorage* preparedLast() {
   return t_prepared;
 }
 
@@ -95,6 +100,7 @@ void PathSegmentStorage::record(uint32_t path, size_t i) {
     odis::EmissionEvent emission;
     emission.radiance = toOdis(segment.directContribution);
     emission.misWeight = segment.miWeight;
+    if (before) emission.lightPdf = lightPdf(before->pdfDirectionIn, segment.miWeight);
     m_recorder.emission(path, emission);
   }
   if (!scatters(i) && isZero(segment.scatteredContribution)) return;
@@ -130,14 +136,16 @@ void PathSegmentStorage::addSampleOf(const odis::PathVertex& vertex) {
 size_t PathSegmentStorage::prepare() {
   m_samples = m_given;
   m_zeroSamples.clear();
+  m_vertices = {};
+  t_prepared = this;
   // Sums are ordered by these numbers: the same path has the same ones, whichever thread traces it.
   const uint64_t number = m_count > 0 ? hashOf(m_segments[0]) : 0;
+  if (m_thinning && !m_thinning->keeps(number)) return m_samples.size();
   const uint32_t path = m_recorder.begin({uint32_t(number >> 32), uint32_t(number)});
   for (size_t i = 0; i < m_count; ++i) record(path, i);
   m_vertices = m_recorder.finish();
   for (const odis::PathVertex& vertex : m_vertices)
     if (odis::isUsable(vertex)) addSampleOf(vertex);
-  t_prepared = this;
   return m_samples.size();
 }
 

@@ -7,9 +7,10 @@
 #include <vector>
 
 #include "openpgl/openpgl.h"
+#include "samples.h"
 
-// The type behind Open PGL's handle, which has no namespace.
-struct PathSegmentStorage {
+// The type behind Open PGL's handle, which has no namespace. Threads have one each, on cache lines of its own.
+struct alignas(64) PathSegmentStorage {
  public:
   // Hosts keep pointers to segments until the path is cleared. A segment that has no direction yet has the
   // density 0.
@@ -18,8 +19,10 @@ struct PathSegmentStorage {
   void addSample(const PGLSampleData& sample);
   void clear();
 
-  // Makes the path's vertices and samples; returns how many of the latter there are.
+  // Makes the path's vertices and samples, if it is to be kept; returns how many of the latter there are.
   size_t prepare();
+  // What decides from now on which paths are kept.
+  void follow(std::shared_ptr<const Thinning> thinning) { m_thinning = std::move(thinning); }
   // Valid until the next call of prepare().
   odis::ArrayView<const odis::PathVertex> vertices() const { return m_vertices; }
   const std::vector<PGLSampleData>& samples() const { return m_samples; }
@@ -41,6 +44,7 @@ struct PathSegmentStorage {
   std::vector<PGLSampleData> m_given;  // by the host, beside the path
   odis::PathRecorder m_recorder;
   odis::ArrayView<const odis::PathVertex> m_vertices;
+  std::shared_ptr<const Thinning> m_thinning;
   std::vector<PGLSampleData> m_samples;
   std::vector<PGLZeroValueSampleData> m_zeroSamples;
 };
@@ -48,6 +52,6 @@ struct PathSegmentStorage {
 namespace odis::openpgl_interface {
 
 // What was prepared last on this thread, so that samples that come back from the host are known to be these.
-const PathSegmentStorage* preparedLast();
+PathSegmentStorage* preparedLast();
 
 }  // namespace odis::openpgl_interface

@@ -29,28 +29,24 @@ SampleStorage::Shard& SampleStorage::ofThisThread() {
   return m_shards[std::hash<std::thread::id>()(std::this_thread::get_id()) % m_shards.size()];
 }
 
-bool SampleStorage::keeps(uint64_t number) const {
-  return (number & ((uint64_t(1) << m_thinning) - 1)) == 0;
-}
-
 void SampleStorage::add(odis::ArrayView<const odis::PathVertex> path) {
   if (path.empty()) return;
   const uint64_t number = uint64_t(path[0].pixel) << 32 | path[0].sample;
   Shard& shard = ofThisThread();
   {
     const std::lock_guard lock(shard.mutex);
-    if (!keeps(number)) return;
+    if (!m_thinning->keeps(number)) return;
     shard.paths.push_back({number, uint32_t(shard.vertices.size()), uint32_t(path.size())});
     shard.vertices.insert(shard.vertices.end(), path.begin(), path.end());
     m_count += path.size();
   }
-  if (m_count > kMostVertices) thinOut();
+  if (m_count > m_most) thinOut();
 }
 
 void SampleStorage::thinOut() {
   const std::lock_guard only(m_thinningMutex);
-  while (m_count > kMostVertices && m_thinning < 63) {
-    ++m_thinning;
+  while (m_count > m_most && !m_thinning->isOver()) {
+    m_thinning->halve();
     for (Shard& shard : m_shards) {
       const std::lock_guard lock(shard.mutex);
       m_count -= removeFrom(shard);
@@ -63,13 +59,13 @@ size_t SampleStorage::removeFrom(Shard& shard) const {
   const size_t before = shard.vertices.size();
   size_t end = 0;
   for (Path& path : shard.paths) {
-    if (!keeps(path.number)) continue;
+    if (!m_thinning->keeps(path.number)) continue;
     const auto begin = shard.vertices.begin() + path.begin;
     std::copy(begin, begin + path.count, shard.vertices.begin() + ptrdiff_t(end));
     path.begin = uint32_t(end);
     end += path.count;
   }
-  std::erase_if(shard.paths, [&](const Path& path) { return !keeps(path.number); });
+  std::erase_if(shard.paths, [&](const Path& path) { return !m_thinning->keeps(path.number); });
   shard.vertices.resize(end);
   return before - end;
 }
@@ -98,19 +94,19 @@ void SampleStorage::clear() {
     shard.paths.clear();
   }
   m_count = 0;
-  m_thinning = 0;
+  m_thinning->forget();
 }
 
-std::vector<odis::PathVertex> SampleStorage::vertices() {
+odis::ArrayView<const odis::PathVertex> SampleStorage::vertices() {
   std::vector<std::pair<uint64_t, odis::ArrayView<const odis::PathVertex>>> paths;
   for (const Shard& shard : m_shards)
     for (const Path& path : shard.paths)
       paths.push_back({path.number, {shard.vertices.data() + path.begin, path.count}});
   std::sort(paths.begin(), paths.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
-  std::vector<odis::PathVertex> all;
-  all.reserve(m_count);
-  for (const auto& [number, vertices] : paths) all.insert(all.end(), vertices.begin(), vertices.end());
-  return all;
+  m_sorted.clear();
+  for (const auto& [number, vertices] : paths)
+    m_sorted.insert(m_sorted.end(), vertices.begin(), vertices.end());
+  return m_sorted;
 }
 
 std::vector<PGLSampleData> SampleStorage::samples() {
@@ -127,8 +123,9 @@ namespace {
 
 // Adds samples that a host got from a path: the path's vertices know more.
 void addSamples(SampleStorage& storage, const PGLSampleData* data, size_t count) {
-  const PathSegmentStorage* path = preparedLast();
+  PathSegmentStorage* path = preparedLast();
   if (path && data == path->samples().data() && count == path->samples().size()) {
+    path->follow(storage.thinning());
     storage.add(path->vertices());
     return;
   }
@@ -209,7 +206,7 @@ bool pglSampleStorageValidate(PGLSampleStorage) {
   return true;  // what is not finite was left out
 }
 void pglSampleStorageMerge(PGLSampleStorage samples, PGLSampleStorage others) {
-  const std::vector<odis::PathVertex> vertices = others->vertices();
+  const odis::ArrayView<const odis::PathVertex> vertices = others->vertices();
   for (size_t begin = 0, end; begin < vertices.size(); begin = end) {
     for (end = begin + 1; end < vertices.size() && vertices[end].depth > vertices[end - 1].depth; ++end) {
     }

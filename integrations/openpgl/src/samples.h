@@ -5,16 +5,30 @@
 
 #include <array>
 #include <atomic>
+#include <memory>
 #include <mutex>
 #include <vector>
 
 #include "openpgl/openpgl.h"
 
+// Which paths are kept, by their numbers: one of a power of two. Paths under way know it from their storage, so that
+// nothing is made of those that are left out.
+class Thinning {
+ public:
+  bool keeps(uint64_t number) const { return (number & ((uint64_t(1) << m_halvings) - 1)) == 0; }
+  void halve() { ++m_halvings; }
+  bool isOver() const { return m_halvings >= 63; }
+  void forget() { m_halvings = 0; }
+
+ private:
+  std::atomic<uint32_t> m_halvings{0};
+};
+
 // The type behind Open PGL's handle. Any thread may add; what is kept does not depend on the order. About
-// kMostVertices are kept at most (188 bytes each): of more, paths are left out by their numbers.
+// kMostVertices are kept at most (188 bytes each), or as many as a field asks for: of more, paths are left out.
 struct SampleStorage {
  public:
-  static constexpr size_t kMostVertices = size_t(1) << 21;
+  static constexpr size_t kMostVertices = size_t(1) << 19;
 
   void add(odis::ArrayView<const odis::PathVertex> path);
   void add(const PGLSampleData& sample);
@@ -23,8 +37,11 @@ struct SampleStorage {
 
   // The number of vertices.
   size_t size() const { return m_count; }
-  // All vertices, path after path in the order of the paths' numbers.
-  std::vector<odis::PathVertex> vertices();
+  // From the next sample on.
+  void keepAtMost(size_t vertices) { m_most = vertices < kMostVertices ? vertices : kMostVertices; }
+  std::shared_ptr<const Thinning> thinning() const { return m_thinning; }
+  // All vertices, path after path in the order of the paths' numbers; until the next call.
+  odis::ArrayView<const odis::PathVertex> vertices();
   // What they say of radiance that arrives.
   std::vector<PGLSampleData> samples();
 
@@ -41,12 +58,12 @@ struct SampleStorage {
     std::vector<Path> paths;
   };
   Shard& ofThisThread();
-  bool keeps(uint64_t number) const;
   void thinOut();
   size_t removeFrom(Shard& shard) const;
 
   std::array<Shard, 64> m_shards;
-  std::atomic<size_t> m_count{0};
-  std::atomic<uint32_t> m_thinning{0};  // of 2 to the power of this many paths one is kept
+  std::atomic<size_t> m_count{0}, m_most{kMostVertices};
+  std::shared_ptr<Thinning> m_thinning = std::make_shared<Thinning>();
   std::mutex m_thinningMutex;
+  std::vector<odis::PathVertex> m_sorted;
 };

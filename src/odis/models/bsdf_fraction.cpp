@@ -1,5 +1,6 @@
 #include "odis/models/bsdf_fraction.h"
 
+#include <cmath>
 #include <numeric>
 #include <stdexcept>
 #include <string>
@@ -18,11 +19,31 @@ bool isChosen(const PathVertex& vertex, uint32_t stride) {
   return ((vertex.pixel * 0x9e3779b9u) >> 8) % stride == 0;
 }
 
-// What vertices' contributions are multiplied by.
+// What a path's first vertex adds to its pixel.
+float contributionOf(const PathVertex& v) {
+  const float emission = v.emission * (v.discrete ? 1.0f : powerHeuristic(v.pdf, v.emissionLightPdf));
+  const float light = v.lightPdf > 0 ? v.light * powerHeuristic(v.lightPdf, v.lightBsdfPdf) : v.light;
+  return v.indirect + emission + light;
+}
+
+// What vertices' contributions are multiplied by: one over their pixel's value or, where pixels have none,
+// over the mean of all paths.
 class PixelScale {
  public:
-  explicit PixelScale(ArrayView<const float> values) : m_values(values) {}
-  float operator()(const PathVertex& v) const { return m_values.empty() ? 1 : 1 / m_values[v.pixel]; }
+  explicit PixelScale(const FractionInputs& inputs) : m_values(inputs.pixelValues) {
+    if (!m_values.empty()) return;
+    double sum = 0, count = 0;
+    for (const ArrayView<const PathVertex>& part : inputs.parts)
+      for (const PathVertex& v : part) {
+        if (v.depth != 1 || !knowsContributions(v)) continue;
+        const float contribution = contributionOf(v);
+        if (!std::isfinite(contribution)) continue;
+        sum += contribution;
+        ++count;
+      }
+    if (sum > 0) m_perMean = float(count / sum);
+  }
+  float operator()(const PathVertex& v) const { return m_values.empty() ? m_perMean : 1 / m_values[v.pixel]; }
   // Throws where a vertex has no pixel value.
   void check(const PathVertex& v) const {
     if (!m_values.empty() && v.pixel >= m_values.size())
@@ -33,6 +54,7 @@ class PixelScale {
 
  private:
   ArrayView<const float> m_values;
+  float m_perMean = 1;
 };
 
 // The chosen vertices of a batch, their cells, and their part in what the whole image varies by.
@@ -44,9 +66,7 @@ struct ChosenVertices {
 
 // The image's variance and rays are those of the first vertices.
 void addToImage(ImageMoments& image, const PathVertex& v, float scale) {
-  const float emission = v.emission * (v.discrete ? 1.0f : powerHeuristic(v.pdf, v.emissionLightPdf));
-  const float light = v.lightPdf > 0 ? v.light * powerHeuristic(v.lightPdf, v.lightBsdfPdf) : v.light;
-  const double value = (v.indirect + emission + light) * scale;
+  const double value = contributionOf(v) * scale;
   const double variance = std::isfinite(value) ? std::min((value - 1) * (value - 1), 2500.0) : 0;
   ++image.count;
   image.variance += variance;
@@ -186,7 +206,7 @@ std::vector<float> chooseByMoments(std::vector<CellDecisions>& result, const Sor
 }  // namespace
 
 GuidingPrediction chooseFractions(std::vector<CellDecisions>& result, const FractionInputs& inputs) {
-  const PixelScale scale(inputs.pixelValues);
+  const PixelScale scale(inputs);
   const SortedVertices sorted(inputs, scale);
   GuidingPrediction prediction;
   prediction.image = sorted.image;

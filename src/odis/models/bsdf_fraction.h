@@ -17,7 +17,7 @@ struct GuidingPrediction {
 };
 
 // What the choice is made from. `parts` are (a part of) the vertices that the maps were made from; their
-// contributions are divided by `pixelValues`, if there are any.
+// contributions are divided by `pixelValues`; without any, by the mean of all paths.
 struct FractionInputs {
   const CellStore& store;
   std::span<const CellStatistics> cells;
