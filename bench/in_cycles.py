@@ -1,10 +1,11 @@
 #!/usr/bin/env python3
 """What a libopenpgl gains and costs in Cycles' own program: error and processor time beside unguided paths.
 
-    bench/in_cycles.py CYCLES SCENE... --guide NAME=FOLDER... [--spp 4,16] [--seeds 4] [--reference-spp 4096] [--cache DIR]
+    bench/in_cycles.py CYCLES SCENE... --guide NAME=FOLDER... [--stub] [--spp 4,16] [--seeds 4] [--reference-spp 4096] [--cache DIR]
 
 CYCLES is a program that links libopenpgl as a shared library, SCENE a folder that
-integrations/openpgl/convert_scene.py wrote, FOLDER one that holds a libopenpgl.so.0. Errors are 0.1 %-trimmed relMSE as
+integrations/openpgl/convert_scene.py wrote, FOLDER one that holds a libopenpgl.so.0. `--stub` adds a library that knows
+nothing, openpgl_stub.cpp: what Cycles' calls cost, and what its mixture does to its numbers. Errors are 0.1 %-trimmed relMSE as
 src/eval/metrics.h has it, to an unguided image of another seed; times are of all threads, without what an image of 8 x 8
 pixels takes (loading). Medians over seeds; ratios are to unguided paths. Needs `pip install mitsuba` to read OpenEXR.
 """
@@ -56,6 +57,14 @@ class Program:
         return after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime
 
 
+def build_stub(folder):
+    here = pathlib.Path(__file__).resolve().parent
+    subprocess.run([os.environ.get("CXX", "c++"), "-std=c++17", "-O2", "-shared", "-fPIC",
+                    f"-I{here.parent}/integrations/openpgl/include", "-Wl,-soname,libopenpgl.so.0",
+                    str(here / "openpgl_stub.cpp"), "-o", f"{folder}/libopenpgl.so.0"], check=True)
+    return folder
+
+
 def reference_of(program, scene, args):
     args.cache.mkdir(parents=True, exist_ok=True)
     file = args.cache / f"{scene.name}-{args.reference_spp}.exr"
@@ -81,20 +90,8 @@ def measure(program, scene, guides, spp, args):
     return found
 
 
-def main():
-    parser = argparse.ArgumentParser(description=__doc__.split("\n\n")[0])
-    parser.add_argument("cycles")
-    parser.add_argument("scenes", nargs="+", type=pathlib.Path)
-    parser.add_argument("--guide", action="append", required=True, metavar="NAME=FOLDER")
-    parser.add_argument("--spp", default="4,16")
-    parser.add_argument("--seeds", type=int, default=4)
-    parser.add_argument("--threads", type=int, default=os.cpu_count())
-    parser.add_argument("--reference-spp", type=int, default=4096)
-    parser.add_argument("--cache", type=pathlib.Path, default=pathlib.Path("cycles-references"))
-    args = parser.parse_args()
-    guides = dict(guide.split("=", 1) for guide in args.guide)
-    program, ratios = Program(args.cycles, args.threads, next(iter(guides.values()))), {}
-    guides = {"off": None, **guides}
+def compare(program, guides, args):
+    ratios = {}
     print("| scene | samples | guide | error | seconds | error ratio | time ratio | error × time |\n"
           "|---|--:|---|--:|--:|--:|--:|--:|", flush=True)
     for scene in args.scenes:
@@ -110,6 +107,27 @@ def main():
     for (spp, name), values in ratios.items():
         error, time = np.exp(np.log(values).mean(axis=0))
         print(f"| mean of {len(values)} | {spp} | {name} | | | {error:.2f} | {time:.2f} | {error * time:.2f} |")
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__.split("\n\n")[0])
+    parser.add_argument("cycles")
+    parser.add_argument("scenes", nargs="+", type=pathlib.Path)
+    parser.add_argument("--guide", action="append", required=True, metavar="NAME=FOLDER")
+    parser.add_argument("--stub", action="store_true")
+    parser.add_argument("--spp", default="4,16")
+    parser.add_argument("--seeds", type=int, default=4)
+    parser.add_argument("--threads", type=int, default=os.cpu_count())
+    parser.add_argument("--reference-spp", type=int, default=4096)
+    parser.add_argument("--cache", type=pathlib.Path, default=pathlib.Path("cycles-references"))
+    args = parser.parse_args()
+    guides = dict(guide.split("=", 1) for guide in args.guide)
+    program = Program(args.cycles, args.threads, next(iter(guides.values())))
+    with tempfile.TemporaryDirectory() as folder:
+        if args.stub:
+            guides["stub"] = build_stub(folder)
+        compare(program, {"off": None, **guides}, args)
+    return 0
 
 
 if __name__ == "__main__":

@@ -36,56 +36,92 @@ struct alignas(64) SurfaceSamplingDistribution {
     const float sign = std::copysign(1.0f, n.z), a = -1 / (sign + n.z), b = n.x * n.y * a;
     const float r = std::sqrt(u.x), x = r * std::cos(6.2831853f * u.y), y = r * std::sin(6.2831853f * u.y),
                 z = std::sqrt(std::max(1 - u.x, 0.0f));
-    return {(1 + sign * n.x * n.x * a) * x + b * y + n.x * z, sign * b * x + (sign + n.y * n.y * a) * y + n.y * z,
-            -sign * n.x * x - n.y * y + n.z * z};
+    return {(1 + sign * n.x * n.x * a) * x + b * y + n.x * z,
+            sign * b * x + (sign + n.y * n.y * a) * y + n.y * z, -sign * n.x * x - n.y * y + n.z * z};
   }
 };
 struct VolumeSamplingDistribution {};
 
 extern "C" {
 
-PGLDevice pglNewDevice(PGL_DEVICE_TYPE, size_t) { return new Device; }
-void pglReleaseDevice(PGLDevice device) { delete device; }
+PGLDevice pglNewDevice(PGL_DEVICE_TYPE, size_t) {
+  return new Device;
+}
+void pglReleaseDevice(PGLDevice device) {
+  delete device;
+}
 void pglFieldArgumentsSetDefaults(PGLFieldArguments& arguments, PGL_SPATIAL_STRUCTURE_TYPE spatial,
                                   PGL_DIRECTIONAL_DISTRIBUTION_TYPE directional, bool, size_t) {
   static PGLKDTreeArguments tree;
   static char directionalArguments[256];
   arguments = {spatial, &tree, directional, directionalArguments, true, {}};
 }
-PGLField pglDeviceNewField(PGLDevice, PGLFieldArguments) { return new Field; }
-void pglReleaseField(PGLField field) { delete field; }
-size_t pglFieldGetIteration(PGLField field) { return field->updates; }
-void pglFieldUpdate(PGLField field, PGLSampleStorage) { ++field->updates; }
-void pglFieldReset(PGLField field) { field->updates = 0; }
+PGLField pglDeviceNewField(PGLDevice, PGLFieldArguments) {
+  return new Field;
+}
+void pglReleaseField(PGLField field) {
+  delete field;
+}
+size_t pglFieldGetIteration(PGLField field) {
+  return field->updates;
+}
+void pglFieldUpdate(PGLField field, PGLSampleStorage) {
+  ++field->updates;
+}
+void pglFieldReset(PGLField field) {
+  field->updates = 0;
+}
 
-PGLPathSegmentStorage pglNewPathSegmentStorage() { return new PathSegmentStorage; }
-void pglReleasePathSegmentStorage(PGLPathSegmentStorage path) { delete path; }
+PGLPathSegmentStorage pglNewPathSegmentStorage() {
+  return new PathSegmentStorage;
+}
+void pglReleasePathSegmentStorage(PGLPathSegmentStorage path) {
+  delete path;
+}
 void pglPathSegmentStorageReserve(PGLPathSegmentStorage, size_t) {}
-void pglPathSegmentStorageClear(PGLPathSegmentStorage path) { path->count = 0; }
-PGLPathSegmentData* pglPathSegmentStorageNextSegment(PGLPathSegmentStorage path) { return path->next(); }
+void pglPathSegmentStorageClear(PGLPathSegmentStorage path) {
+  path->count = 0;
+}
+PGLPathSegmentData* pglPathSegmentStorageNextSegment(PGLPathSegmentStorage path) {
+  return path->next();
+}
 void pglPathSegmentStorageAddSegment(PGLPathSegmentStorage path, PGLPathSegmentData segment) {
   *path->next() = segment;
 }
-size_t pglPathSegmentStoragePrepareSamples(PGLPathSegmentStorage path, bool, bool, bool) { return path->count > 0; }
+size_t pglPathSegmentStoragePrepareSamples(PGLPathSegmentStorage path, bool, bool, bool) {
+  return path->count > 0;
+}
 const PGLSampleData* pglPathSegmentStorageGetSamples(PGLPathSegmentStorage path, size_t& count) {
   count = path->count > 0;
   return &path->sample;
 }
 
-PGLSampleStorage pglNewSampleStorage() { return new SampleStorage; }
-void pglReleaseSampleStorage(PGLSampleStorage samples) { delete samples; }
+PGLSampleStorage pglNewSampleStorage() {
+  return new SampleStorage;
+}
+void pglReleaseSampleStorage(PGLSampleStorage samples) {
+  delete samples;
+}
 void pglSampleStorageAddSamples(PGLSampleStorage, const PGLSampleData*, size_t) {}
-void pglSampleStorageClear(PGLSampleStorage samples) { samples->count = 0; }
+void pglSampleStorageClear(PGLSampleStorage samples) {
+  samples->count = 0;
+}
 // Enough for any host to update its field.
-size_t pglSampleStorageGetSizeSurface(PGLSampleStorage) { return 1 << 20; }
-size_t pglSampleStorageGetSizeVolume(PGLSampleStorage) { return 0; }
+size_t pglSampleStorageGetSizeSurface(PGLSampleStorage) {
+  return 1 << 20;
+}
+size_t pglSampleStorageGetSizeVolume(PGLSampleStorage) {
+  return 0;
+}
 
 PGLSurfaceSamplingDistribution pglFieldNewSurfaceSamplingDistribution(PGLField) {
   return new SurfaceSamplingDistribution;
 }
-void pglReleaseSurfaceSamplingDistribution(PGLSurfaceSamplingDistribution distribution) { delete distribution; }
-bool pglFieldInitSurfaceSamplingDistribution(PGLField field, PGLSurfaceSamplingDistribution, pgl_point3f, float*,
-                                             bool) {
+void pglReleaseSurfaceSamplingDistribution(PGLSurfaceSamplingDistribution distribution) {
+  delete distribution;
+}
+bool pglFieldInitSurfaceSamplingDistribution(PGLField field, PGLSurfaceSamplingDistribution, pgl_point3f,
+                                             float*, bool) {
   return field->updates > 0;
 }
 void pglSurfaceSamplingDistributionApplyCosineProduct(PGLSurfaceSamplingDistribution distribution,
@@ -107,14 +143,23 @@ float pglSurfaceSamplingDistributionIncomingRadiancePDF(PGLSurfaceSamplingDistri
 PGLVolumeSamplingDistribution pglFieldNewVolumeSamplingDistribution(PGLField) {
   return new VolumeSamplingDistribution;
 }
-void pglReleaseVolumeSamplingDistribution(PGLVolumeSamplingDistribution distribution) { delete distribution; }
-bool pglFieldInitVolumeSamplingDistribution(PGLField, PGLVolumeSamplingDistribution, pgl_point3f, float*, bool) {
+void pglReleaseVolumeSamplingDistribution(PGLVolumeSamplingDistribution distribution) {
+  delete distribution;
+}
+bool pglFieldInitVolumeSamplingDistribution(PGLField, PGLVolumeSamplingDistribution, pgl_point3f, float*,
+                                            bool) {
   return false;
 }
-float pglVolumeSamplingDistributionPDF(PGLVolumeSamplingDistribution, pgl_vec3f) { return 0; }
-float pglVolumeSamplingDistributionSamplePDF(PGLVolumeSamplingDistribution, pgl_point2f, pgl_vec3f&) { return 0; }
-float pglVolumeSamplingDistributionIncomingRadiancePDF(PGLVolumeSamplingDistribution, pgl_vec3f) { return 0; }
-void pglVolumeSamplingDistributionApplySingleLobeHenyeyGreensteinProduct(PGLVolumeSamplingDistribution, pgl_vec3f,
-                                                                         float) {}
+float pglVolumeSamplingDistributionPDF(PGLVolumeSamplingDistribution, pgl_vec3f) {
+  return 0;
+}
+float pglVolumeSamplingDistributionSamplePDF(PGLVolumeSamplingDistribution, pgl_point2f, pgl_vec3f&) {
+  return 0;
+}
+float pglVolumeSamplingDistributionIncomingRadiancePDF(PGLVolumeSamplingDistribution, pgl_vec3f) {
+  return 0;
+}
+void pglVolumeSamplingDistributionApplySingleLobeHenyeyGreensteinProduct(PGLVolumeSamplingDistribution,
+                                                                         pgl_vec3f, float) {}
 
 }  // extern "C"

@@ -10,8 +10,9 @@ namespace {
 
 // A guide is built again when it can know this many times as many vertices; until then as many more are kept.
 constexpr size_t kGrowth = 2;
-// With this many times the vertices of the first update it has learned what it can: the host need record no more.
-constexpr size_t kEnough = 8;
+// With so many vertices, or as many times those of the first update, it has learned what it can: the host need record
+// no more.
+constexpr size_t kEnough = 8, kEnoughVertices = size_t(1) << 20;
 // Of less there is no need to leave anything out.
 constexpr size_t kFewestKept = size_t(1) << 16;
 // What a host is told then: more than the training samples of any setting.
@@ -66,7 +67,9 @@ void Field::reset() {
 }
 
 size_t Field::iteration() const {
-  return m_firstVertices > 0 && m_vertices >= kEnough * m_firstVertices ? kTrained : m_updates;
+  const bool trained =
+      m_firstVertices > 0 && m_vertices >= std::min(kEnough * m_firstVertices, kEnoughVertices);
+  return trained ? kTrained : m_updates;
 }
 
 void Field::save(const char* file) const {
