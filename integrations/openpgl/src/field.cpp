@@ -48,7 +48,8 @@ void Field::update(SampleStorage& samples) {
   m_vertices += vertices.size();
   if (first) {
     m_firstVertices = m_vertices;
-    show(m_builder->build(vertices));
+    show(m_builder->build(
+        odis::ArrayView<const odis::PathVertex>()));  // nobody asks for BSDF sampling fractions
   } else if (m_vertices >= kGrowth * m_builtFrom) {
     show(m_builder->rebuild(*m_guide));
   }

@@ -19,8 +19,6 @@ using namespace odis::openpgl_interface;
 namespace {
 
 constexpr float kPi = 3.14159265358979f;
-// The host samples its BSDF this often, and the distribution otherwise: Cycles' default.
-constexpr float kBsdfShareOfHost = 0.5f;
 constexpr float kUniform = 1 / (4 * kPi);
 constexpr float kTexelsPerSteradian = odis::kMapTexels / (4 * kPi);
 
@@ -34,9 +32,9 @@ odis::Float3 cosineDirection(const odis::Float3& n, float u, float v) {
 
 }  // namespace
 
-// The type behind Open PGL's handle: the map of a vertex's cell times its cosine, mixed with the cosine alone where
-// the guide would rather leave directions to the BSDF than the host, whose share of them is fixed. Threads have one
-// each, on cache lines of its own.
+// The type behind Open PGL's handle: the map of a vertex's cell times its cosine, or the cosine alone where nothing was
+// learned. How often the host asks for it is the host's decision: mixing in the cosine where the guide would rather
+// leave directions to the BSDF gives nothing back. Threads have one each, on cache lines of its own.
 struct alignas(64) SurfaceSamplingDistribution {
  public:
   bool init(const Field& field, const pgl_point3f& position);
@@ -56,16 +54,14 @@ struct alignas(64) SurfaceSamplingDistribution {
   odis::Float3 m_position, m_normal;
   uint32_t m_cell = odis::kNoCell;
   odis::VertexMap<float> m_map;
-  float m_mapShare = 0;
-  bool m_hasNormal = false;
+  bool m_hasNormal = false, m_guides = false;
 };
 
 bool SurfaceSamplingDistribution::init(const Field& field, const pgl_point3f& position) {
   m_view = field.view().cellCount > 0 ? &field.view() : nullptr;
   m_position = toOdis(position);
   m_cell = odis::kNoCell;
-  m_hasNormal = false;
-  m_mapShare = 0;
+  m_hasNormal = m_guides = false;
   return m_view;
 }
 
@@ -77,27 +73,24 @@ ODIS_FLATTENED void SurfaceSamplingDistribution::applyCosine(const pgl_vec3f& no
   if (m_cell == odis::kNoCell) return;
   odis::prefetchCell(*m_view, m_cell);
   m_map.prepare(m_view->maps, int32_t(m_cell), m_normal, 0);
-  if (!m_map.sampleable()) return;
-  const float ofBsdf = odis::bsdfFraction(*m_view, int32_t(m_cell), 1.0f);
-  m_mapShare = std::min((1 - ofBsdf) / (1 - kBsdfShareOfHost), 1.0f);
+  m_guides = m_map.sampleable();
 }
 
 ODIS_FLATTENED float SurfaceSamplingDistribution::sample(const pgl_point2f& u, pgl_vec3f& direction) const {
-  if (m_hasNormal && u.x < m_mapShare) {
-    const auto [wi, mapPdf] = m_map.sample(u.x / m_mapShare, u.y);
+  if (m_guides) {
+    const auto [wi, pdf] = m_map.sample(u.x, u.y);
     direction = fromOdis(wi);
-    return (1 - m_mapShare) * cosinePdf(wi) + m_mapShare * mapPdf;
+    return pdf;
   }
-  direction = fromOdis(m_hasNormal ? cosineDirection(m_normal, (u.x - m_mapShare) / (1 - m_mapShare), u.y)
-                                   : odis::squareToDirection(odis::Vector2<float>{u.x, u.y}));
-  return pdf(direction);
+  const odis::Float3 wi = m_hasNormal ? cosineDirection(m_normal, u.x, u.y)
+                                      : odis::squareToDirection(odis::Vector2<float>{u.x, u.y});
+  direction = fromOdis(wi);
+  return m_hasNormal ? cosinePdf(wi) : kUniform;
 }
 
 ODIS_FLATTENED float SurfaceSamplingDistribution::pdf(const pgl_vec3f& direction) const {
   const odis::Float3 wi = toOdis(direction);
-  if (!m_hasNormal) return kUniform;
-  const float ofCosine = (1 - m_mapShare) * cosinePdf(wi);
-  return m_mapShare > 0 ? ofCosine + m_mapShare * m_map.pdf(wi) : ofCosine;
+  return m_guides ? m_map.pdf(wi) : m_hasNormal ? cosinePdf(wi) : kUniform;
 }
 
 float SurfaceSamplingDistribution::radiancePdf(const pgl_vec3f& direction) const {
