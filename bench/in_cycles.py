@@ -1,13 +1,17 @@
 #!/usr/bin/env python3
 """What a libopenpgl gains and costs in Cycles' own program: error and processor time beside unguided paths.
 
-    bench/in_cycles.py CYCLES SCENE... --guide NAME=FOLDER... [--stub] [--spp 4,16] [--seeds 4] [--reference-spp 4096] [--cache DIR]
+    bench/in_cycles.py CYCLES SCENE... --guide NAME=FOLDER... [--stub] [--denoise ODIS] [--spp 4,16] [--seeds 4]
+                       [--reference-spp 4096] [--cache DIR]
 
 CYCLES is a program that links libopenpgl as a shared library, SCENE a folder that
 integrations/openpgl/convert_scene.py wrote, FOLDER one that holds a libopenpgl.so.0. `--stub` adds a library that knows
-nothing, openpgl_stub.cpp: what Cycles' calls cost, and what its mixture does to its numbers. Errors are 0.1 %-trimmed relMSE as
-src/eval/metrics.h has it, to an unguided image of another seed; times are of all threads, without what an image of 8 x 8
-pixels takes (loading). Medians over seeds; ratios are to unguided paths. Needs `pip install mitsuba` to read OpenEXR.
+nothing, openpgl_stub.cpp: what Cycles' calls cost, and what its mixture does to its numbers. `--denoise` gives the
+program `odis`, and images are compared after Open Image Denoise as well, by their colours alone.
+
+Errors are 0.1 %-trimmed relMSE as src/eval/metrics.h has it, to an unguided image of another seed; times are of all
+threads, without what an image of 8 x 8 pixels takes (loading). Medians over seeds; ratios are to unguided paths. Needs
+`pip install mitsuba` to read OpenEXR.
 """
 import argparse
 import os
@@ -27,7 +31,8 @@ REFERENCE_SEED = 1 << 20
 
 
 def read(file):
-    return np.array(mi.Bitmap(str(file)).convert(mi.Bitmap.PixelFormat.RGB, mi.Struct.Type.Float32), np.float64)
+    colors = dict(mi.Bitmap(str(file)).split())["<root>"]
+    return np.array(colors.convert(mi.Bitmap.PixelFormat.RGB, mi.Struct.Type.Float32), np.float64)
 
 
 class Program:
@@ -75,51 +80,65 @@ def reference_of(program, scene, args):
     return read(file)
 
 
+def denoised(image, odis):
+    target = image.with_name(f"denoised-{image.name}")
+    subprocess.run([odis, "denoise", str(image), "-o", str(target), "--quiet"], check=True)
+    return read(target)
+
+
 def measure(program, scene, guides, spp, args):
-    """For each guide, unguided first: errors and seconds, [seed]."""
+    """For each guide, unguided first, a list over seeds: error, seconds, and the error after denoising, if any."""
     reference = reference_of(program, scene, args)
     loading = np.median([program.render(scene, 1, 0, size=(8, 8)) for _ in range(3)])
-    found = {name: ([], []) for name in guides}
+    found = {name: [] for name in guides}
     for seed in range(args.seeds):
         for name, library in guides.items():
             with tempfile.TemporaryDirectory() as folder:
                 image = pathlib.Path(folder) / "image.exr"
                 seconds = program.render(scene, spp, seed, library, image) - loading
-                found[name][0].append(trimmed_relative_error(read(image), reference))
-                found[name][1].append(max(seconds, 1e-3))
-    return found
+                row = [trimmed_relative_error(read(image), reference), max(seconds, 1e-3)]
+                if args.denoise:
+                    row.append(trimmed_relative_error(denoised(image, args.denoise), reference))
+                found[name].append(row)
+    return {name: np.median(rows, axis=0) for name, rows in found.items()}
+
+
+def print_row(cells):
+    print(f"| {' | '.join(cells)} |", flush=True)
 
 
 def compare(program, guides, args):
     ratios = {}
-    print("| scene | samples | guide | error | seconds | error ratio | time ratio | error × time |\n"
-          "|---|--:|---|--:|--:|--:|--:|--:|", flush=True)
+    columns = ["error", "seconds", *(["denoised"] if args.denoise else [])]
+    print_row(["scene", "samples", "guide", *columns, *(f"{c} ratio" for c in columns), "error × time"])
+    print_row(["---", "--:", "---", *["--:"] * (2 * len(columns) + 1)])
     for scene in args.scenes:
         for spp in map(int, args.spp.split(",")):
             found = measure(program, scene, guides, spp, args)
-            off = [np.median(values) for values in found["off"]]
             for name, values in found.items():
-                error, seconds = map(np.median, values)
-                ratio = error / off[0], seconds / off[1]
+                ratio = values / found["off"]
                 ratios.setdefault((spp, name), []).append(ratio)
-                print(f"| {scene.name} | {spp} | {name} | {error:.4g} | {seconds:.2f} | {ratio[0]:.2f} | {ratio[1]:.2f} | "
-                      f"{ratio[0] * ratio[1]:.2f} |", flush=True)
+                print_row([scene.name, str(spp), name, *(f"{v:.4g}" for v in values), *(f"{r:.2f}" for r in ratio),
+                           f"{ratio[0] * ratio[1]:.2f}"])
     for (spp, name), values in ratios.items():
-        error, time = np.exp(np.log(values).mean(axis=0))
-        print(f"| mean of {len(values)} | {spp} | {name} | | | {error:.2f} | {time:.2f} | {error * time:.2f} |")
+        mean = np.exp(np.log(values).mean(axis=0))
+        print_row([f"mean of {len(values)}", str(spp), name, *[""] * len(columns), *(f"{r:.2f}" for r in mean),
+                   f"{mean[0] * mean[1]:.2f}"])
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__.split("\n\n")[0])
-    parser.add_argument("cycles")
-    parser.add_argument("scenes", nargs="+", type=pathlib.Path)
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("cycles", metavar="CYCLES")
+    parser.add_argument("scenes", nargs="+", type=pathlib.Path, metavar="SCENE")
     parser.add_argument("--guide", action="append", required=True, metavar="NAME=FOLDER")
     parser.add_argument("--stub", action="store_true")
-    parser.add_argument("--spp", default="4,16")
+    parser.add_argument("--denoise", metavar="ODIS")
+    parser.add_argument("--spp", default="4,16", help="samples per pixel, with commas (4,16)")
     parser.add_argument("--seeds", type=int, default=4)
     parser.add_argument("--threads", type=int, default=os.cpu_count())
     parser.add_argument("--reference-spp", type=int, default=4096)
-    parser.add_argument("--cache", type=pathlib.Path, default=pathlib.Path("cycles-references"))
+    parser.add_argument("--cache", type=pathlib.Path, default=pathlib.Path("cycles-references"),
+                        help="keeps references there")
     args = parser.parse_args()
     guides = dict(guide.split("=", 1) for guide in args.guide)
     program = Program(args.cycles, args.threads, next(iter(guides.values())))

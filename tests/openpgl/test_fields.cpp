@@ -147,6 +147,26 @@ TEST_F(PglFields, StopAskingForSamplesWhenTheyHaveEnough) {
   EXPECT_EQ(field->GetIteration(), 0u);
 }
 
+TEST_F(PglFields, KeepNoMoreThanTwiceWhatTheyKnow) {
+  const auto field = newField();
+  const PglHost host(room);
+  pgl::SampleStorage samples;
+  host.traceAndAdd(nullptr, samples, 1, 20000);
+  const size_t known = samples.GetSizeSurface();
+  field->Update(samples);
+  // Kept are the same paths, whichever came first: halves of them are left out until there are few enough.
+  size_t kept[2];
+  for (const bool backwards : {false, true}) {
+    samples.Clear();
+    for (uint64_t i = 0; i < 10; ++i)
+      host.traceAndAdd(nullptr, samples, 100001 + 10000 * (backwards ? 9 - i : i), 10000);
+    kept[backwards] = samples.GetSizeSurface();
+    EXPECT_LE(kept[backwards], 2 * known);
+    EXPECT_GT(kept[backwards], known / 2);
+  }
+  EXPECT_EQ(kept[0], kept[1]);
+}
+
 TEST_F(PglFields, AreStoredAndLoaded) {
   const TemporaryFolder folder;
   const std::string file = folder.path("field");
