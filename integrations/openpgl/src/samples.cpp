@@ -25,6 +25,44 @@ odis::PathVertex vertexOf(const pgl_point3f& position, const pgl_vec3f& directio
 
 }  // namespace
 
+odis::PathVertex* SampleStorage::Paths::makeRoom(size_t vertices) {
+  constexpr size_t kBlock = 4096;
+  for (; m_current < m_blocks.size(); ++m_current) {
+    Block& block = m_blocks[m_current];
+    if (block.size + vertices > block.capacity) continue;
+    block.size += vertices;
+    return block.vertices.get() + block.size - vertices;
+  }
+  const size_t capacity = std::max(vertices, kBlock);
+  m_blocks.push_back({std::make_unique_for_overwrite<odis::PathVertex[]>(capacity), vertices, capacity});
+  return m_blocks.back().vertices.get();
+}
+
+void SampleStorage::Paths::add(uint64_t number, odis::ArrayView<const odis::PathVertex> vertices) {
+  odis::PathVertex* room = makeRoom(vertices.size());
+  std::copy(vertices.begin(), vertices.end(), room);
+  m_paths.push_back({number, {room, vertices.size()}});
+}
+
+void SampleStorage::Paths::clear() {
+  for (Block& block : m_blocks) block.size = 0;
+  m_current = 0;
+  m_paths.clear();
+}
+
+size_t SampleStorage::Paths::thinOut(const Thinning& thinning) {
+  const std::vector<Path> before = std::move(m_paths);
+  clear();
+  size_t removed = 0;
+  // What is kept never moves beyond where it was: it goes to the same blocks in the same order.
+  for (const Path& path : before)
+    if (thinning.keeps(path.number))
+      add(path.number, path.vertices);
+    else
+      removed += path.vertices.size();
+  return removed;
+}
+
 SampleStorage::Shard& SampleStorage::ofThisThread() {
   return m_shards[std::hash<std::thread::id>()(std::this_thread::get_id()) % m_shards.size()];
 }
@@ -36,8 +74,7 @@ void SampleStorage::add(odis::ArrayView<const odis::PathVertex> path) {
   {
     const std::lock_guard lock(shard.mutex);
     if (!m_thinning->keeps(number)) return;
-    shard.paths.push_back({number, uint32_t(shard.vertices.size()), uint32_t(path.size())});
-    shard.vertices.insert(shard.vertices.end(), path.begin(), path.end());
+    shard.paths.add(number, path);
     m_count += path.size();
   }
   if (m_count > m_most) thinOut();
@@ -49,25 +86,9 @@ void SampleStorage::thinOut() {
     m_thinning->halve();
     for (Shard& shard : m_shards) {
       const std::lock_guard lock(shard.mutex);
-      m_count -= removeFrom(shard);
+      m_count -= shard.paths.thinOut(*m_thinning);
     }
   }
-}
-
-// Removes what is not kept any more; returns the number of vertices.
-size_t SampleStorage::removeFrom(Shard& shard) const {
-  const size_t before = shard.vertices.size();
-  size_t end = 0;
-  for (Path& path : shard.paths) {
-    if (!m_thinning->keeps(path.number)) continue;
-    const auto begin = shard.vertices.begin() + path.begin;
-    std::copy(begin, begin + path.count, shard.vertices.begin() + ptrdiff_t(end));
-    path.begin = uint32_t(end);
-    end += path.count;
-  }
-  std::erase_if(shard.paths, [&](const Path& path) { return !m_thinning->keeps(path.number); });
-  shard.vertices.resize(end);
-  return before - end;
 }
 
 void SampleStorage::add(const PGLSampleData& sample) {
@@ -90,7 +111,6 @@ void SampleStorage::add(const PGLZeroValueSampleData& sample) {
 void SampleStorage::clear() {
   for (Shard& shard : m_shards) {
     const std::lock_guard lock(shard.mutex);
-    shard.vertices.clear();
     shard.paths.clear();
   }
   m_count = 0;
@@ -98,12 +118,12 @@ void SampleStorage::clear() {
 }
 
 odis::ArrayView<const odis::PathVertex> SampleStorage::vertices() {
-  std::vector<std::pair<uint64_t, odis::ArrayView<const odis::PathVertex>>> paths;
+  std::vector<Paths::Path> paths;
   for (const Shard& shard : m_shards)
-    for (const Path& path : shard.paths)
-      paths.push_back({path.number, {shard.vertices.data() + path.begin, path.count}});
-  std::sort(paths.begin(), paths.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
+    paths.insert(paths.end(), shard.paths.all().begin(), shard.paths.all().end());
+  std::sort(paths.begin(), paths.end(), [](const auto& a, const auto& b) { return a.number < b.number; });
   m_sorted.clear();
+  m_sorted.reserve(m_count);
   for (const auto& [number, vertices] : paths)
     m_sorted.insert(m_sorted.end(), vertices.begin(), vertices.end());
   return m_sorted;

@@ -46,20 +46,39 @@ struct SampleStorage {
   std::vector<PGLSampleData> samples();
 
  private:
-  // The vertices of a path in its shard.
-  struct Path {
-    uint64_t number;
-    uint32_t begin, count;
+  // Paths one after another, in blocks that stay where they are: memory that grows by copying costs as much as all
+  // that is recorded.
+  class Paths {
+   public:
+    struct Path {
+      uint64_t number;
+      odis::ArrayView<const odis::PathVertex> vertices;
+    };
+    void add(uint64_t number, odis::ArrayView<const odis::PathVertex> vertices);
+    void clear();
+    // Removes the paths that are not kept; returns the number of their vertices.
+    size_t thinOut(const Thinning& thinning);
+    const std::vector<Path>& all() const { return m_paths; }
+
+   private:
+    // Room for so many vertices, one after another.
+    odis::PathVertex* makeRoom(size_t vertices);
+
+    struct Block {
+      std::unique_ptr<odis::PathVertex[]> vertices;
+      size_t size = 0, capacity = 0;
+    };
+    std::vector<Block> m_blocks;
+    size_t m_current = 0;
+    std::vector<Path> m_paths;
   };
   // Threads add to different shards, mostly.
   struct Shard {
     std::mutex mutex;
-    std::vector<odis::PathVertex> vertices;
-    std::vector<Path> paths;
+    Paths paths;
   };
   Shard& ofThisThread();
   void thinOut();
-  size_t removeFrom(Shard& shard) const;
 
   std::array<Shard, 64> m_shards;
   std::atomic<size_t> m_count{0}, m_most{kMostVertices};
