@@ -50,6 +50,19 @@ TEST_P(Models, SmoothSamplesFollowTheGuidableDensity) {
   }
 }
 
+TEST_P(Models, LobesAreChosenOnlyBySomeThatSaySo) {
+  if (bsdf().traits().choosesLobes) GTEST_SKIP() << "chooses lobes";
+  Uniform uniform(11);
+  for (const Vec3& wo : outgoing(GetParam()))
+    for (int i = 0; i < 200; ++i) {
+      const Vec2 u = uniform.next2();
+      const BsdfSample a = bsdf().sample(m_at, wo, 0, u), b = bsdf().sample(m_at, wo, uniform.next(), u);
+      EXPECT_EQ(a.wi, b.wi);
+      EXPECT_EQ(a.weight, b.weight);
+      EXPECT_EQ(a.lobe, b.lobe);
+    }
+}
+
 TEST_P(Models, WeightIsValueOverDensity) {
   Uniform uniform(7);
   for (const Vec3& wo : outgoing(GetParam()))

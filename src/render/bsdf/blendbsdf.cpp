@@ -13,6 +13,7 @@ class Blend final : public Bsdf {
   Blend(BsdfPtr first, BsdfPtr second, ScalarParameter weight)
       : m_nested{std::move(first), std::move(second)}, m_weight(std::move(weight)) {
     m_traits = m_nested[0]->traits() | m_nested[1]->traits();
+    m_traits.choosesLobes = true;
   }
 
   BsdfSample sample(const SurfacePoint& at, const Vec3& wo, float uLobe, const Vec2& u) const override {

@@ -54,11 +54,13 @@ struct BsdfTraits {
   bool evaluable = true;      // has smooth or nearDelta lobes somewhere, so next-event estimation makes sense
   bool transmissive = false;  // may scatter to the other side (null included)
   bool tangents = false;      // needs dpdu, dpdv and a shading frame along them; others take any frame
+  bool choosesLobes = true;   // whether sample() reads uLobe
 };
 
 // Of a BSDF that passes its directions on to either of two.
 inline BsdfTraits operator|(const BsdfTraits& a, const BsdfTraits& b) {
-  return {a.evaluable || b.evaluable, a.transmissive || b.transmissive, a.tangents || b.tangents};
+  return {a.evaluable || b.evaluable, a.transmissive || b.transmissive, a.tangents || b.tangents,
+          a.choosesLobes || b.choosesLobes};
 }
 
 class Bsdf {

@@ -17,7 +17,10 @@ namespace {
 
 class Coating final : public Bsdf {
  public:
-  explicit Coating(CoatingBase base) : m_base(std::move(base)) { m_traits = m_base.nested->traits(); }
+  explicit Coating(CoatingBase base) : m_base(std::move(base)) {
+    m_traits = m_base.nested->traits();
+    m_traits.choosesLobes = true;
+  }
 
   BsdfSample sample(const SurfacePoint& at, const Vec3& wo, float uLobe, const Vec2& u) const override {
     const float entering = transmittance(wo), p = m_base.specularProbability(entering);

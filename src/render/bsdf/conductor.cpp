@@ -14,7 +14,7 @@ namespace {
 class Conductor final : public Bsdf {
  public:
   Conductor(ComplexIor ior, RgbParameter specular) : m_ior(std::move(ior)), m_specular(std::move(specular)) {
-    m_traits.evaluable = false;
+    m_traits.evaluable = m_traits.choosesLobes = false;
   }
 
   BsdfSample sample(const SurfacePoint& at, const Vec3& wo, float, const Vec2&) const override {

@@ -12,7 +12,9 @@ namespace {
 
 class Diffuse final : public Bsdf {
  public:
-  explicit Diffuse(RgbParameter reflectance) : m_reflectance(std::move(reflectance)) {}
+  explicit Diffuse(RgbParameter reflectance) : m_reflectance(std::move(reflectance)) {
+    m_traits.choosesLobes = false;
+  }
 
   BsdfSample sample(const SurfacePoint& at, const Vec3& wo, float, const Vec2& u) const override {
     const Vec3 wi = squareToCosineHemisphere(u);

@@ -12,6 +12,7 @@ class Mask final : public Bsdf {
  public:
   Mask(BsdfPtr nested, ScalarParameter opacity) : m_nested(std::move(nested)), m_opacity(std::move(opacity)) {
     m_traits = m_nested->traits();
+    m_traits.choosesLobes = true;
     m_traits.transmissive = true;
   }
 

@@ -18,7 +18,7 @@ class RoughCoating final : public Bsdf {
   RoughCoating(CoatingBase base, const Microfacet& facets, const RoughTransmittance& transmittance)
       : m_base(std::move(base)), m_facets(facets), m_transmittance(transmittance) {
     m_traits = m_base.nested->traits();
-    m_traits.evaluable = true;
+    m_traits.evaluable = m_traits.choosesLobes = true;
   }
 
   BsdfSample sample(const SurfacePoint& at, const Vec3& wo, float uLobe, const Vec2& u) const override {

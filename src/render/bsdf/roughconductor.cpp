@@ -17,6 +17,7 @@ class RoughConductor final : public Bsdf {
   RoughConductor(ComplexIor ior, RgbParameter specular, RoughnessParameters roughness)
       : m_ior(std::move(ior)), m_specular(std::move(specular)), m_roughness(std::move(roughness)) {
     m_traits.tangents = m_roughness.anisotropic;
+    m_traits.choosesLobes = false;
   }
 
   BsdfSample sample(const SurfacePoint& at, const Vec3& wo, float, const Vec2& u) const override {

@@ -14,7 +14,9 @@ namespace {
 class RoughDiffuse final : public Bsdf {
  public:
   RoughDiffuse(RgbParameter reflectance, ScalarParameter alpha, bool fast)
-      : m_reflectance(std::move(reflectance)), m_alpha(std::move(alpha)), m_fast(fast) {}
+      : m_reflectance(std::move(reflectance)), m_alpha(std::move(alpha)), m_fast(fast) {
+    m_traits.choosesLobes = false;
+  }
 
   BsdfSample sample(const SurfacePoint& at, const Vec3& wo, float, const Vec2& u) const override {
     const Vec3 wi = squareToCosineHemisphere(u);

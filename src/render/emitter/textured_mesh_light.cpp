@@ -89,10 +89,11 @@ LightBounds TexturedMeshLight::bounds(uint32_t part) const {
 
 EmitterSample TexturedMeshLight::sample(uint32_t part, const Vec3& ref, const Vec2& u) const {
   const Cell cell = cellOf(part);
-  const SurfacePoint at =
-      m_mesh.pointOn(cell.triangle, pointInSubdivision(cell.n, cell.index, squareToTriangle(u)));
+  const auto draw = [&] {
+    return m_mesh.pointOn(cell.triangle, pointInSubdivision(cell.n, cell.index, squareToTriangle(u)));
+  };
   return emitterSample(
-      uniformAreaSample(ref, at, m_mesh.triangleArea(cell.triangle) / float(cell.n * cell.n)));
+      uniformAreaSample(ref, draw, m_mesh.triangleArea(cell.triangle) / float(cell.n * cell.n)));
 }
 
 uint32_t TexturedMeshLight::part(const SurfacePoint& at) const {

@@ -78,7 +78,11 @@ float GuidedBsdf::pdf(const BsdfValue& bsdf, const Vec3& wiWorld) const {
 }
 
 BsdfSample GuidedBsdf::sample(const Vertex& vertex, Sampler& sampler) const {
-  const float uLobe = sampler.get1D();
+  float uLobe = 0;
+  if (vertex.at.shape->bsdf().traits().choosesLobes)
+    uLobe = sampler.get1D();
+  else
+    sampler.skip(1);
   const Vec2 u = sampler.get2D();
   const BsdfHost host{vertex, uLobe};
   if (m_rival) return m_mixture.sample(RivalMap{*m_rival}, u.x, u.y, host);

@@ -40,7 +40,11 @@ void playRouletteOnDeparture(const PathSettings& settings, Bounces bounces) {
     bounce.weight = bounce.next.weight;
     bounce.survival = 1;
     path.eta *= bounce.next.eta;
-    path.uSurvival = path.sampler.get1D();
+    // Read where roulette is played: here or, where it was learned, where the path arrives.
+    if (settings.learnedRoulette || bounce.depth >= settings.rrDepth)
+      path.uSurvival = path.sampler.get1D();
+    else
+      path.sampler.skip(1);
     bounce.survives = bounce.next.lobe != Lobe::none && !isBlack(bounce.weight);
     const bool learned = settings.learnedRoulette && bounce.cell != kNoCell;
     if (bounce.survives && bounce.depth >= settings.rrDepth && !learned) {

@@ -85,7 +85,8 @@ SurfacePoint Cylinder::surfacePoint(const Ray& ray, const RawHit& hit) const {
 
 ShapeSample Cylinder::sample(const Vec3& ref, const Vec2& u) const {
   const double phi = 2 * M_PI * u.y;
-  return uniformAreaSample(ref, pointAt(std::cos(phi), std::sin(phi), u.x), area());
+  return uniformAreaSample(
+      ref, [&] { return pointAt(std::cos(phi), std::sin(phi), u.x); }, area());
 }
 
 float Cylinder::pdf(const Vec3& ref, const SurfacePoint& at) const {

@@ -67,7 +67,8 @@ SurfacePoint Disk::surfacePoint(const Ray& ray, const RawHit& hit) const {
 
 ShapeSample Disk::sample(const Vec3& ref, const Vec2& u) const {
   const Vec2 on = squareToDisk(u);
-  return uniformAreaSample(ref, pointAt(on.x, on.y), m_area);
+  return uniformAreaSample(
+      ref, [&] { return pointAt(on.x, on.y); }, m_area);
 }
 
 float Disk::pdf(const Vec3& ref, const SurfacePoint& at) const {

@@ -209,7 +209,8 @@ SurfacePoint Mesh::pointOverArea(const Vec2& u) const {
 
 ShapeSample Mesh::sample(const Vec3& ref, const Vec2& u) const {
   if (!(m_area > 0)) return {};
-  return uniformAreaSample(ref, pointOverArea(u), m_area);
+  return uniformAreaSample(
+      ref, [&] { return pointOverArea(u); }, m_area);
 }
 
 float Mesh::pdf(const Vec3& ref, const SurfacePoint& at) const {
@@ -247,7 +248,8 @@ PrimitiveExtent Mesh::extent(uint32_t triangle) const {
 }
 
 ShapeSample Mesh::samplePrimitive(uint32_t triangle, const Vec3& ref, const Vec2& u) const {
-  return uniformAreaSample(ref, pointOn(triangle, squareToTriangle(u)), triangleArea(triangle));
+  return uniformAreaSample(
+      ref, [&] { return pointOn(triangle, squareToTriangle(u)); }, triangleArea(triangle));
 }
 
 float Mesh::primitivePdf(const Vec3& ref, const SurfacePoint& at) const {

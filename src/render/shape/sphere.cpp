@@ -86,7 +86,9 @@ double Sphere::coneHeight(const Vec3& ref) const {
 
 ShapeSample Sphere::sample(const Vec3& ref, const Vec2& u) const {
   const double height = coneHeight(ref);
-  if (height < 0) return uniformAreaSample(ref, pointToward(Vec3d(squareToSphere(u))), area());
+  if (height < 0)
+    return uniformAreaSample(
+        ref, [&] { return pointToward(Vec3d(squareToSphere(u))); }, area());
 
   // Draw a direction in the cone, and find where it enters the sphere: the angle at the centre follows from
   // the two sides of the triangle and the angle at the reference point.

@@ -37,16 +37,16 @@ inline float uniformAreaPdf(const Vec3& ref, const SurfacePoint& at, float area)
   return std::isfinite(pdf) ? pdf : 0.0f;
 }
 
-// Completes the sample of a point that was drawn uniformly over `area`.
-inline ShapeSample uniformAreaSample(const Vec3& ref, const SurfacePoint& at, float area) {
-  ShapeSample sample;
-  sample.at = at;
-  const Vec3 d = at.p - ref;
+// Completes the sample of the point that `draw` returns, drawn uniformly over `area`; without a copy of it.
+template <class Draw>
+ShapeSample uniformAreaSample(const Vec3& ref, const Draw& draw, float area) {
+  ShapeSample sample{draw(), {}, 0, 0};
+  const Vec3 d = sample.at.p - ref;
   const float squared = lengthSquared(d);
   sample.distance = std::sqrt(squared);
   if (!(sample.distance > 0)) return sample;
   sample.wi = d * (1 / sample.distance);
-  const float pdf = squared / (absDot(at.ng, sample.wi) * area);
+  const float pdf = squared / (absDot(sample.at.ng, sample.wi) * area);
   if (std::isfinite(pdf)) sample.pdf = pdf;
   return sample;
 }
