@@ -18,7 +18,7 @@ using render::Rgb;
 namespace {
 
 constexpr int kWidth = 640, kPanel = 220, kMargin = 44;
-const Rgb kPaper{1, 1, 1}, kInk{0.02f, 0.02f, 0.02f}, kGrid{0.8f, 0.8f, 0.8f};
+const Rgb kPaper{1, 1, 1}, kLetters{0.02f, 0.02f, 0.02f}, kGrid{0.8f, 0.8f, 0.8f};
 
 using Points = std::vector<std::pair<double, double>>;
 
@@ -32,7 +32,7 @@ void drawPanel(Canvas& canvas, int y, const std::string& title,
       high = std::max(high, value);
       last = std::max(last, step);
     }
-  canvas.write(kMargin, y + 6, kWidth - kMargin, title, kInk);
+  canvas.write(kMargin, y + 6, kWidth - kMargin, title, kLetters);
   if (!(low <= high)) return;
   if (high - low < 1e-9) high = low + 1e-9;
   const int top = y + 22, bottom = y + kPanel - 22, right = kWidth - 12;
@@ -41,10 +41,10 @@ void drawPanel(Canvas& canvas, int y, const std::string& title,
   for (int i = 0; i <= 4; ++i) {
     const double value = low + (high - low) * i / 4;
     canvas.fill(kMargin, down(value), right - kMargin, 1, kGrid);
-    canvas.write(2, down(value) - 3, kMargin - 2, fmt::format("{:.4g}", value), kInk);
+    canvas.write(2, down(value) - 3, kMargin - 2, fmt::format("{:.4g}", value), kLetters);
   }
-  canvas.write(kMargin, bottom + 8, 60, "step 0", kInk);
-  canvas.write(right - 60, bottom + 8, 60, fmt::format("{:.0f}", last), kInk);
+  canvas.write(kMargin, bottom + 8, 60, "step 0", kLetters);
+  canvas.write(right - 60, bottom + 8, 60, fmt::format("{:.0f}", last), kLetters);
   for (const auto& [points, color] : series)
     for (size_t i = 0; i < points.size(); ++i) {
       const auto [step, value] = points[i];
