@@ -19,19 +19,6 @@ namespace {
 
 using dnnl::memory;
 
-// The texel where a square of `side` continues at (x, y), at most one step outside.
-uint16_t wrapped(int x, int y, int side) {
-  if (x < 0 || x >= side) {
-    x = x < 0 ? 0 : side - 1;
-    y = side - 1 - y;
-  }
-  if (y < 0 || y >= side) {
-    y = y < 0 ? 0 : side - 1;
-    x = side - 1 - x;
-  }
-  return uint16_t(y * side + x);
-}
-
 // Where each texel of a square with a border comes from: in a square of the same side, in one of half the
 // side, and, of the four in one of twice the side, the first.
 struct BorderTable {
@@ -40,8 +27,9 @@ struct BorderTable {
   explicit BorderTable(int side) {
     for (int y = -1; y <= side; ++y)
       for (int x = -1; x <= side; ++x) {
-        const int texel = wrapped(x, y, side), column = texel % side, row = texel / side;
-        same.push_back(uint16_t(texel));
+        int column = x, row = y;
+        wrapTexel(column, row, side);
+        same.push_back(uint16_t(row * side + column));
         half.push_back(uint16_t(row / 2 * (side / 2) + column / 2));
         twice.push_back(uint16_t(2 * row * 2 * side + 2 * column));
       }

@@ -38,7 +38,7 @@ FirstVertices floorTowards(int width, int height, const Float3& source) {
   return vertices;
 }
 
-// Of a texel of a sampling map.
+// The far energy of a texel, which is given by its index in a sampling map.
 float farEnergy(const Neighbourhood& seen, int texel) {
   for (int t = 0; t < kMapTexels; ++t)
     if (texelAt(t % kMapSize, t / kMapSize) == texel) return seen.sums[t][kFarEnergy];

@@ -10,10 +10,10 @@ namespace {
 
 // A guide is built again when it can know this many times as many vertices; until then as many more are kept.
 constexpr size_t kGrowth = 2;
-// With so many vertices, or as many times those of the first update, it has learned what it can: the host need record
-// no more.
+// Training is over when this many vertices are known, or this many times those of the first update: the host need
+// not record any more.
 constexpr size_t kEnough = 8, kEnoughVertices = size_t(1) << 20;
-// Of less there is no need to leave anything out.
+// Up to this many vertices are kept between two updates, however few are known.
 constexpr size_t kFewestKept = size_t(1) << 16;
 // What a host is told then: more than the training samples of any setting.
 constexpr size_t kTrained = 1u << 30;
@@ -48,8 +48,8 @@ void Field::update(SampleStorage& samples) {
   m_vertices += vertices.size();
   if (first) {
     m_firstVertices = m_vertices;
-    show(m_builder->build(
-        odis::ArrayView<const odis::PathVertex>()));  // nobody asks for BSDF sampling fractions
+    // Without vertices to choose BSDF sampling fractions from: nobody asks for these.
+    show(m_builder->build(odis::ArrayView<const odis::PathVertex>()));
   } else if (m_vertices >= kGrowth * m_builtFrom) {
     show(m_builder->rebuild(*m_guide));
   }

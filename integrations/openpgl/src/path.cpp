@@ -33,11 +33,6 @@ uint64_t hashOf(const PGLPathSegmentData& segment) {
   }
   return hash;
 }
-// The density with which next-event estimation would have drawn a direction, by the power heuristic's weight of one
-// that was drawn with density `pdf`; 0 where it could not have.
-float lightPdf(float pdf, float misWeight) {
-  return misWeight > 0 && misWeight < 1 ? pdf * std::sqrt(1 / misWeight - 1) : 0;
-}
 float meanOf(const odis::Float3& v) {
   return (v.x + v.y + v.z) / 3;
 }
@@ -100,7 +95,6 @@ void PathSegmentStorage::record(uint32_t path, size_t i) {
     odis::EmissionEvent emission;
     emission.radiance = toOdis(segment.directContribution);
     emission.misWeight = segment.miWeight;
-    if (before) emission.lightPdf = lightPdf(before->pdfDirectionIn, segment.miWeight);
     m_recorder.emission(path, emission);
   }
   if (!scatters(i) && isZero(segment.scatteredContribution)) return;

@@ -11,8 +11,8 @@
 
 #include "openpgl/openpgl.h"
 
-// Which paths are kept, by their numbers: one of a power of two. Paths under way know it from their storage, so that
-// nothing is made of those that are left out.
+// Decides by a path's number whether the path is kept: one path in 2^halvings is. A storage shares it with the paths
+// under way, so that no vertices are made of paths that it would drop.
 class Thinning {
  public:
   bool keeps(uint64_t number) const { return (number & ((uint64_t(1) << m_halvings) - 1)) == 0; }
@@ -61,7 +61,7 @@ struct SampleStorage {
     const std::vector<Path>& all() const { return m_paths; }
 
    private:
-    // Room for so many vertices, one after another.
+    // Returns contiguous memory for this many vertices.
     odis::PathVertex* makeRoom(size_t vertices);
 
     struct Block {

@@ -77,15 +77,10 @@ ODIS_FLATTENED void SurfaceSamplingDistribution::applyCosine(const pgl_vec3f& no
 }
 
 ODIS_FLATTENED float SurfaceSamplingDistribution::sample(const pgl_point2f& u, pgl_vec3f& direction) const {
-  if (m_guides) {
-    const auto [wi, pdf] = m_map.sample(u.x, u.y);
-    direction = fromOdis(wi);
-    return pdf;
-  }
-  const odis::Float3 wi = m_hasNormal ? cosineDirection(m_normal, u.x, u.y)
-                                      : odis::squareToDirection(odis::Vector2<float>{u.x, u.y});
-  direction = fromOdis(wi);
-  return m_hasNormal ? cosinePdf(wi) : kUniform;
+  direction = fromOdis(m_guides      ? m_map.sample(u.x, u.y).wi
+                       : m_hasNormal ? cosineDirection(m_normal, u.x, u.y)
+                                     : odis::squareToDirection(odis::Vector2<float>{u.x, u.y}));
+  return pdf(direction);
 }
 
 ODIS_FLATTENED float SurfaceSamplingDistribution::pdf(const pgl_vec3f& direction) const {

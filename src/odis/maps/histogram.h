@@ -11,14 +11,14 @@ using Histogram = std::array<float, kMapTexels>;
 
 // Where a texel in column x and row y is found that may lie one step outside: the octahedral map continues
 // across an edge mirrored about the edge's middle.
-inline void wrapTexel(int& x, int& y) {
-  if (x < 0 || x >= kMapSize) {
-    x = x < 0 ? 0 : kMapSize - 1;
-    y = kMapSize - 1 - y;
+inline void wrapTexel(int& x, int& y, int side = kMapSize) {
+  if (x < 0 || x >= side) {
+    x = x < 0 ? 0 : side - 1;
+    y = side - 1 - y;
   }
-  if (y < 0 || y >= kMapSize) {
-    y = y < 0 ? 0 : kMapSize - 1;
-    x = kMapSize - 1 - x;
+  if (y < 0 || y >= side) {
+    y = y < 0 ? 0 : side - 1;
+    x = side - 1 - x;
   }
 }
 inline int wrappedTexel(int x, int y) {

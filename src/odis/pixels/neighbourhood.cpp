@@ -7,6 +7,7 @@
 
 #include "odis/maps/fast_log2.h"
 #include "odis/maps/instruction_sets.h"
+#include "odis/maps/texel_directions.h"
 
 namespace odis::core {
 
@@ -239,14 +240,6 @@ float inverse(float x) {
   return x > 0 ? 1 / x : 0;
 }
 
-// Those of the texels' centres, row by row.
-std::vector<Float3> squareDirections() {
-  std::vector<Float3> directions;
-  for (int t = 0; t < kMapTexels; ++t)
-    directions.push_back(texelDirection(texelAt(t % kMapSize, t / kMapSize)));
-  return directions;
-}
-
 }  // namespace
 
 void look(const FirstVertices& vertices, const PixelPlace& place, Neighbourhood& result) {
@@ -284,10 +277,10 @@ ODIS_WIDE void describe(const Neighbourhood& n, const Float3& normal, std::span<
   const float nearShare = kMapTexels * inverse(sums[kNearEnergy]),
               farShare = kMapTexels * inverse(sums[kFarEnergy]),
               toMean = sums[kFarCount] * inverse(sums[kFarRadiance]);
-  static const std::vector<Float3> directions = squareDirections();
+  const Histogram cosines = cosinesTo(normal);
   constexpr float kMost = 1e30f, kLn2 = 0.6931472f;
   float* to = maps.data();
-  for (size_t t = 0; t < kMapTexels; ++t, to += kPixelChannels) {
+  for (int t = 0; t < kMapTexels; ++t, to += kPixelChannels) {
     const float* of = n.sums[t];
     const float perNear = of[kNearCount] > 0 ? toMean / of[kNearCount] : 0,
                 perFar = of[kFarCount] > 0 ? toMean / of[kFarCount] : 0;
@@ -296,7 +289,7 @@ ODIS_WIDE void describe(const Neighbourhood& n, const Float3& normal, std::span<
       const float x = of[c] * factors[c];
       to[c] = kLn2 * fastLog2(1 + (x < kMost ? x : kMost));  // ln(1 + x)
     }
-    to[kCosine] = dot(directions[t], normal);
+    to[kCosine] = cosines[size_t(texelAt(t % kMapSize, t / kMapSize))];
     to[kNearness] = of[kFarCount] > 0 ? of[kNearness] / of[kFarCount] : 0;
   }
   std::copy_n(n.scalars, kPixelScalars, scalars.begin());
