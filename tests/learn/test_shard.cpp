@@ -231,10 +231,13 @@ TEST(Shard, HeadersThatLieAreErrors) {
   expectArray("shape", {1ull << 27, 2}, "words: is larger than any array may be");
   expectArray("shape", {1ull << 32, 1ull << 32}, "words: is larger");
   expectArray("shape", {1ull << 63, 2, 12}, "words: is larger");
-  expectArray("shape", {-12}, "words: is larger");
+  expectArray("shape", {-12}, "expected a whole number, found -12");
+  expectArray("shape", {1e300}, "expected a whole number, found 1e+300");
   expectArray("shape", "many", "not as expected");
   expectArray("bytes", ~0ull, "words: is cut off");
-  expectArray("bytes", -1, "words: is cut off");
+  expectArray("bytes", -1, "expected a whole number, found -1");
+  expectArray("bytes", 1e300, "expected a whole number, found 1e+300");
+  expectArray("offset", 1e300, "expected a whole number, found 1e+300");
   expectArray("offset", ~0ull, "words: is cut off");
   expectArray("offset", bytes.size(), "words: is cut off");
   expectArray("offset", ~0ull - 20, "words: is cut off");

@@ -15,10 +15,10 @@ struct Totals {
   uint64_t scenes = 0, views = 0, vertices = 0, targets = 0, bytes = 0;
   void add(const nlohmann::ordered_json& shard) {
     ++scenes;
-    views += shard.at("views").get<uint64_t>();
-    vertices += shard.at("vertices").get<uint64_t>();
-    targets += shard.at("targets").get<uint64_t>();
-    bytes += shard.at("bytes").get<uint64_t>();
+    views += render::wholeNumber(shard.at("views"));
+    vertices += render::wholeNumber(shard.at("vertices"));
+    targets += render::wholeNumber(shard.at("targets"));
+    bytes += render::wholeNumber(shard.at("bytes"));
   }
 };
 
@@ -56,9 +56,9 @@ std::string shardText(const ShardHeader& shard) {
                         header.at("split").get<std::string>(), header.at("software").get<std::string>());
     for (const nlohmann::json& view : header.at("views"))
       text += fmt::format("{}: {} x {} pixels, {} pilots, {} targets, {} groups of lights\n",
-                          view.at("file").get<std::string>(), view.at("width").get<int>(),
-                          view.at("height").get<int>(), view.at("pilots").get<int>(),
-                          view.at("targets").get<int>(), view.at("lightGroups").size());
+                          view.at("file").get<std::string>(), render::wholeNumber(view.at("width")),
+                          render::wholeNumber(view.at("height")), render::wholeNumber(view.at("pilots")),
+                          render::wholeNumber(view.at("targets")), view.at("lightGroups").size());
   } catch (const nlohmann::json::exception& e) {
     throw ShardError(
         fmt::format("{}: the header is not as expected: {}", shard.path(), render::jsonReason(e)));

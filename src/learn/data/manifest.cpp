@@ -44,9 +44,9 @@ Json describe(const ShardReader& shard, const std::string& bytes) {
   uint64_t vertices = 0, targets = 0, pixels = 0;
   const nlohmann::json& views = header.at("views");
   for (size_t view = 0; view < views.size(); ++view) {
-    pixels += views[view].at("width").get<uint64_t>() * views[view].at("height").get<uint64_t>();
-    targets += views[view].at("targets").get<uint64_t>();
-    for (size_t pilot = 0; pilot < views[view].at("pilots").get<size_t>(); ++pilot)
+    pixels += render::wholeNumber(views[view].at("width")) * render::wholeNumber(views[view].at("height"));
+    targets += render::wholeNumber(views[view].at("targets"));
+    for (size_t pilot = 0; pilot < render::wholeNumber(views[view].at("pilots")); ++pilot)
       vertices += shard.shape(pilotPrefix(view, pilot) + "pdf").at(0);
   }
   return {{"name", header.at("name")},   {"seed", header.at("seed")},
@@ -175,7 +175,7 @@ FolderReport checkShards(const std::string& folder, const CountProgress& progres
   for (const Json& shard : shards) known.insert(shard.at("name").get<std::string>());
   forAll(shards.size(), progress, [&](size_t i) {
     const std::string path = shardFile(folder, shards[i].at("name"));
-    const auto size = shards[i].at("bytes").get<uint64_t>();
+    const auto size = render::wholeNumber(shards[i].at("bytes"));
     if (!fs::exists(path)) {
       faults[i] = fmt::format("{}: is missing", path);
       return;

@@ -61,9 +61,9 @@ struct ViewData {
       name = fmt::format("{} {}", shard.header().at("name").get<std::string>(),
                          json.at("file").get<std::string>());
       frame = viewFrame(shard, view);
-      json.at("width").get_to(width);
-      json.at("height").get_to(height);
-      for (size_t i = 0; i < json.at("pilots").get<size_t>(); ++i)
+      width = int(render::wholeNumber(json.at("width")));
+      height = int(render::wholeNumber(json.at("height")));
+      for (size_t i = 0; i < render::wholeNumber(json.at("pilots")); ++i)
         pilots.push_back(readColumns(shard, pilotPrefix(view, i), frame));
     } catch (const nlohmann::json::exception& e) {
       throw ShardError(

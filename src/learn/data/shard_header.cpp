@@ -95,9 +95,10 @@ void ShardHeader::parseArrays(uint64_t size) {
   for (const auto& [name, json] : m_header.at("arrays").items()) {
     Array array;
     json.at("type").get_to(array.type);
-    json.at("shape").get_to(array.shape);
-    json.at("offset").get_to(array.offset);
-    json.at("bytes").get_to(array.bytes);
+    for (const nlohmann::json& n : json.at("shape").get_ref<const nlohmann::json::array_t&>())
+      array.shape.push_back(render::wholeNumber(n));
+    array.offset = render::wholeNumber(json.at("offset"));
+    array.bytes = render::wholeNumber(json.at("bytes"));
     array.elementSize = sizeOfElement(array.type);
     array.elements = elementCount(array.shape);
     if (array.elementSize == 0)

@@ -93,7 +93,7 @@ void checkSame(const fs::path& folder, const Assets& assets) {
   } catch (const render::ReadError&) {
     // Refused below: a scene that was not made by the generator has no such file.
   }
-  if (!json.is_object() || json.value("version", 0) != kVersion ||
+  if (!json.is_object() || json.value("version", nlohmann::json()) != kVersion ||
       json.value("assets", "?") != assets.fingerprint())
     throw GenerateError(
         fmt::format("\"{}\" was made with other --hdri, --textures or --furniture, or by another "

@@ -11,6 +11,7 @@
 #include "learn/scenes/random.h"
 #include "odis/maps/texel_directions.h"
 #include "odis/weights/weights.h"
+#include "render/files/read_json.h"
 
 namespace odis::learn {
 
@@ -38,9 +39,9 @@ std::vector<ViewExamples> ExamplePool::load(const std::string& shardFile, std::s
   if (fs::exists(kept)) {
     const ShardReader reader(kept.string());
     if (reader.header().value("origin", nlohmann::json()) == nlohmann::json(origin) &&
-        reader.header().value("format", 1u) == kExampleFormat &&
-        reader.header().value("features", 0u) == core::kFeatureVersion) {
-      for (size_t v = 0; v < reader.header().at("views").get<size_t>(); ++v)
+        reader.header().value("format", nlohmann::json(1)) == kExampleFormat &&
+        reader.header().value("features", nlohmann::json()) == core::kFeatureVersion) {
+      for (size_t v = 0; v < render::wholeNumber(reader.header().at("views")); ++v)
         views.push_back(readExamples(reader, viewPrefix(v)));
       return views;
     }

@@ -8,6 +8,7 @@
 #include "learn/data/make_shard.h"
 #include "learn/data/targets.h"
 #include "odis/maps/texel_directions.h"
+#include "render/files/read_json.h"
 
 namespace odis::learn {
 
@@ -138,7 +139,7 @@ std::vector<ViewExamples> makeExamples(const ShardReader& shard) {
   std::vector<ViewExamples> views;
   const nlohmann::json& headers = shard.header().at("views");
   for (size_t view = 0; view < headers.size(); ++view)
-    views.push_back(examplesOf(shard, view, headers[view].at("pilots").get<size_t>()));
+    views.push_back(examplesOf(shard, view, render::wholeNumber(headers[view].at("pilots"))));
   return views;
 }
 

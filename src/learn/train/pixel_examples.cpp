@@ -11,6 +11,7 @@
 #include "learn/data/make_shard.h"
 #include "learn/scenes/random.h"
 #include "odis/files/crc32.h"
+#include "render/files/read_json.h"
 
 namespace odis::learn {
 
@@ -91,7 +92,7 @@ class PixelExampleMaker {
     const nlohmann::json& header = shard.header().at("views").at(view);
     m_width = header.at("width");
     m_size = shard.header().at("settings").at("windowSize");
-    for (size_t i = 0; i < header.at("pilots").get<size_t>(); ++i)
+    for (size_t i = 0; i < render::wholeNumber(header.at("pilots")); ++i)
       m_pilots.push_back(readColumns(shard, pilotPrefix(view, i), m_frame));
     m_windowX = shard.read<uint16_t>(windowPrefix(view) + "x");
     m_windowY = readColumn<uint16_t>(shard, windowPrefix(view) + "y", m_windowX.size());

@@ -9,6 +9,7 @@
 
 #include "learn/data/make_shard.h"
 #include "odis/models/model.h"
+#include "render/files/read_json.h"
 
 namespace odis::learn {
 
@@ -46,7 +47,7 @@ double varianceOf(const ShardReader& shard, size_t view,
   const nlohmann::json& header = shard.header().at("views").at(view);
   const ViewFrame frame = viewFrame(shard, view);
   std::vector<Pilot> pilots;
-  for (size_t i = 0; i < header.at("pilots").get<size_t>(); ++i)
+  for (size_t i = 0; i < render::wholeNumber(header.at("pilots")); ++i)
     pilots.push_back(readColumns(shard, pilotPrefix(view, i), frame));
   if (pilots.size() < 2) return 1;
   const std::vector<float> values = pixelValues(pilots, header.at("width"));

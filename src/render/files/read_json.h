@@ -3,6 +3,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include <cstdint>
 #include <string>
 #include <string_view>
 
@@ -33,6 +34,15 @@ Json parseJson(std::string_view text) {
 template <class Json>
 Json readJson(const std::string& path) {
   return parseJson<Json>(readFile(path));
+}
+
+// The whole number, zero or more, that a value must hold: nlohmann's own conversions cast a fraction
+// or a negative number to whatever type is asked for. Throws Json::type_error.
+template <class Json>
+uint64_t wholeNumber(const Json& json) {
+  if (!json.is_number_unsigned() && !(json.is_number_integer() && json >= 0))
+    throw Json::type_error::create(302, "expected a whole number, found " + json.dump(), &json);
+  return json.template get<uint64_t>();
 }
 
 }  // namespace odis::render

@@ -97,8 +97,8 @@ void restore(RenderJob& job, const odis::Frame& frame, const std::string& file) 
   RenderStats& stats = job.stats;
   try {
     requireSame(header.at("subject").get<std::string>(), job.options().saving.subject, file);
-    stats.rays = header.at("rays").get<uint64_t>();
-    stats.shadowRays = header.at("shadowRays").get<uint64_t>();
+    stats.rays = wholeNumber(header.at("rays"));
+    stats.shadowRays = wholeNumber(header.at("shadowRays"));
     stats.secondsPilot = header.at("secondsPilot").get<double>();
     stats.secondsBuild = header.at("secondsBuild").get<double>();
     stats.secondsGuided = header.at("secondsGuided").get<double>();
