@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstring>
 
 #include "odis/guide.h"
 #include "odis/maps/pack.h"
@@ -82,6 +83,26 @@ TEST(Neighbourhood, OtherSurfacesDoNotCount) {
   EXPECT_EQ(farEnergy(seen, texelOf(Float3{-1, 0, 0})), 0);
   EXPECT_EQ(brightest(histogramOf(seen)),
             size_t(texelOf(normalized(Float3{0.9f, 0.5f, 1} - place.position))));
+}
+
+// A map that knew the samples of its own pixels would depend on the points that their other samples share.
+TEST(Neighbourhood, ATilesOwnSamplesAreLeftOut) {
+  const FirstVertices vertices = floorTowards(40, 40, {0.9f, 0.5f, 1});
+  FirstVertices others = vertices;
+  for (int y = 20; y < 22; ++y)
+    for (int x = 20; x < 22; ++x) {
+      others.at(x, y).radiance = 100;
+      others.at(x, y).wi = {-1, 0, 0};
+    }
+  Neighbourhood seen[2];
+  for (int size = 2; size > 0; --size) {
+    const PixelPlace place{vertices.at(20, 20).position, kUp, 1, 0.5f, 20, 20, size};
+    look(vertices, place, seen[0]);
+    look(others, place, seen[1]);
+    const bool same = std::memcmp(seen[0].sums, seen[1].sums, sizeof seen[0].sums) == 0 &&
+                      std::memcmp(seen[0].scalars, seen[1].scalars, sizeof seen[0].scalars) == 0;
+    EXPECT_EQ(same, size == 2) << "a tile of " << size << " x " << size;
+  }
 }
 
 TEST(Neighbourhood, AnEmptyOneKnowsNothing) {

@@ -92,14 +92,14 @@ Window around(const PixelPlace& place, int margin) {
 }
 
 // Calls use(vertex, near) for the vertices of a neighbourhood: all that are near, and of the others those in
-// every second column of every second row.
+// every second column of every second row, the tile's own left out.
 template <class Use>
 void forEachAround(const FirstVertices& vertices, const PixelPlace& place, const Use& use) {
-  const Window near = around(place, kNearMargin), far = around(place, kFarMargin);
+  const Window own = around(place, 0), near = around(place, kNearMargin), far = around(place, kFarMargin);
   for (int y = std::max(far.y0, 0); y < std::min(far.y1, vertices.height()); ++y)
     for (int x = std::max(far.x0, 0); x < std::min(far.x1, vertices.width()); ++x) {
       const bool isNear = near.contains(x, y);
-      if (!isNear && ((x | y) & 1)) continue;
+      if (own.contains(x, y) || (!isNear && ((x | y) & 1))) continue;
       const FirstVertex& v = vertices.at(x, y);
       if (v.there) use(v, isNear);
     }
