@@ -20,9 +20,9 @@ constexpr uint32_t kOracleFractionPasses = 2;
 
 // A sampler that stratifies draws all samples of a pixel from one set of points. Given the first of them the
 // others are not uniform, and the guide is made from the first: it is not independent of the points that it
-// guides. One pixel's share in what a cell knows makes this too small to measure, and maps at pixels leave out
-// the pixel's own sample (pixels/neighbourhood.h); but in images of fewer pixels than these every guide has
-// numbers of its own.
+// guides. One pixel's share in what a cell knows makes this too small to measure, and maps at pixels leave
+// out the pixel's own sample (pixels/neighbourhood.h); but in images of fewer pixels than these every guide
+// has numbers of its own.
 constexpr size_t kFewPixels = 16384;
 constexpr uint64_t kGuideSeed = 0x9e3779b97f4a7c15ull;
 

@@ -24,9 +24,9 @@ enum PixelChannel {
 inline constexpr int kPixelScalars = 12;
 
 // A place that a map is made for, and the square of pixels around it that is near: those of a tile and of
-// kNearMargin pixels around it; what is far goes kFarMargin pixels around the tile. The tile's own pixels are
-// left out: a map must not depend on the pilot's samples of pixels that it guides, since a stratifying sampler
-// draws their other samples from the same set of points.
+// kNearMargin pixels around it; what is far goes kFarMargin pixels around the tile. The tile's own pixels
+// are left out: a map must not depend on the pilot's samples of pixels that it guides, since a stratifying
+// sampler draws their other samples from the same set of points.
 struct PixelPlace {
   Float3 position, normal;
   float roughness = 1, albedo = 0;
