@@ -54,7 +54,7 @@ struct Maps {
   float& at(uint32_t c, int x, int y) {
     return values[(size_t(c) * size_t(side) + size_t(y)) * size_t(side) + size_t(x)];
   }
-  // Beyond the border the octahedral square continues, mirrored.
+  // Beyond the border the octahedral square continues, mirrored: not by wrapTexel, which is judged by this.
   float beyond(uint32_t c, int x, int y) {
     if (x < 0 || x >= side) {
       x = x < 0 ? 0 : side - 1;

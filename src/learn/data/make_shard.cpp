@@ -218,6 +218,14 @@ ViewFrame viewFrame(const ShardReader& shard, size_t view) {
   return {{origin.at(0), origin.at(1), origin.at(2)}, json.at("edge"), json.at("unit")};
 }
 
+std::vector<Pilot> readPilots(const ShardReader& shard, size_t view) {
+  const uint64_t count = render::wholeNumber(shard.header().at("views").at(view).at("pilots"));
+  const ViewFrame frame = viewFrame(shard, view);
+  std::vector<Pilot> pilots;
+  for (size_t i = 0; i < count; ++i) pilots.push_back(readColumns(shard, pilotPrefix(view, i), frame));
+  return pilots;
+}
+
 void removeAbandoned(const std::string& folder) {
   const auto clear = [](const fs::path& from, const std::string& before) {
     const std::string mine = before + render::hostName() + "-";

@@ -55,6 +55,8 @@ void removeAbandoned(const std::string& folder);
 
 // The frame of a view of a shard, by its header. Throws ShardError.
 ViewFrame viewFrame(const ShardReader& shard, size_t view);
+// The pilots of a view, as many as its header says. Throws ShardError, nlohmann::json::exception.
+std::vector<Pilot> readPilots(const ShardReader& shard, size_t view);
 // What the names of a view's arrays begin with, and those of one of its pilots or its targets.
 std::string pilotPrefix(size_t view, size_t pilot);
 std::string targetPrefix(size_t view);

@@ -63,8 +63,7 @@ struct ViewData {
       frame = viewFrame(shard, view);
       width = int(render::wholeNumber(json.at("width")));
       height = int(render::wholeNumber(json.at("height")));
-      for (size_t i = 0; i < render::wholeNumber(json.at("pilots")); ++i)
-        pilots.push_back(readColumns(shard, pilotPrefix(view, i), frame));
+      pilots = readPilots(shard, view);
     } catch (const nlohmann::json::exception& e) {
       throw ShardError(
           fmt::format("{}: the header is not as expected: {}", shard.path(), render::jsonReason(e)));

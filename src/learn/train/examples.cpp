@@ -8,7 +8,6 @@
 #include "learn/data/make_shard.h"
 #include "learn/data/targets.h"
 #include "odis/maps/texel_directions.h"
-#include "render/files/read_json.h"
 
 namespace odis::learn {
 
@@ -95,11 +94,10 @@ void addInput(const core::CellStore& store, std::span<const core::CellStatistics
   }
 }
 
-ViewExamples examplesOf(const ShardReader& shard, size_t view, size_t pilotCount) {
+ViewExamples examplesOf(const ShardReader& shard, size_t view) {
   const ViewFrame frame = viewFrame(shard, view);
   const std::vector<Target> targets = readTargets(shard, targetPrefix(view), frame);
-  std::vector<Pilot> pilots;
-  for (size_t i = 0; i < pilotCount; ++i) pilots.push_back(readColumns(shard, pilotPrefix(view, i), frame));
+  const std::vector<Pilot> pilots = readPilots(shard, view);
 
   ViewExamples examples;
   examples.count = targets.size();
@@ -137,9 +135,8 @@ std::vector<ViewExamples> makeExamples(const ShardReader& shard) {
       settings != shard.header().end() && settings->value("kind", "cells") != "cells")
     throw ShardError(shard.path() + ": is of another kind of data set, expected one of cells");
   std::vector<ViewExamples> views;
-  const nlohmann::json& headers = shard.header().at("views");
-  for (size_t view = 0; view < headers.size(); ++view)
-    views.push_back(examplesOf(shard, view, render::wholeNumber(headers[view].at("pilots"))));
+  for (size_t view = 0; view < shard.header().at("views").size(); ++view)
+    views.push_back(examplesOf(shard, view));
   return views;
 }
 

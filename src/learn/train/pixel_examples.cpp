@@ -90,10 +90,9 @@ class PixelExampleMaker {
                     PixelExamples::Made& made)
       : m_config(config), m_histograms(histograms), m_made(made), m_frame(viewFrame(shard, view)) {
     const nlohmann::json& header = shard.header().at("views").at(view);
-    m_width = header.at("width");
-    m_size = shard.header().at("settings").at("windowSize");
-    for (size_t i = 0; i < render::wholeNumber(header.at("pilots")); ++i)
-      m_pilots.push_back(readColumns(shard, pilotPrefix(view, i), m_frame));
+    m_width = int(render::wholeNumber(header.at("width")));
+    m_size = int(render::wholeNumber(shard.header().at("settings").at("windowSize")));
+    m_pilots = readPilots(shard, view);
     m_windowX = shard.read<uint16_t>(windowPrefix(view) + "x");
     m_windowY = readColumn<uint16_t>(shard, windowPrefix(view) + "y", m_windowX.size());
     m_targets = readTargets(shard, targetPrefix(view), m_frame);

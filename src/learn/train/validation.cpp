@@ -45,12 +45,9 @@ std::vector<float> pixelValues(const std::vector<Pilot>& pilots, uint32_t width)
 double varianceOf(const ShardReader& shard, size_t view,
                   const std::shared_ptr<const core::DirectionModel>& model) {
   const nlohmann::json& header = shard.header().at("views").at(view);
-  const ViewFrame frame = viewFrame(shard, view);
-  std::vector<Pilot> pilots;
-  for (size_t i = 0; i < render::wholeNumber(header.at("pilots")); ++i)
-    pilots.push_back(readColumns(shard, pilotPrefix(view, i), frame));
+  const std::vector<Pilot> pilots = readPilots(shard, view);
   if (pilots.size() < 2) return 1;
-  const std::vector<float> values = pixelValues(pilots, header.at("width"));
+  const std::vector<float> values = pixelValues(pilots, int(render::wholeNumber(header.at("width"))));
   OdisModelImpl handle({model, nullptr, nullptr});
   OdisGuideOptions options;
   options.model = &handle;
