@@ -44,8 +44,9 @@ std::vector<float> turnedMap(const std::vector<float>& map, int turn) {
   std::vector<float> result(map.size());
   for (int t = 0; t < kMapTexels; ++t)
     for (int i = 0; i < kPoints * kPoints; ++i) {
-      const Float2 at{(float(t % kMapSize) + (float(i % kPoints) + 0.5f) / kPoints) / kMapSize,
-                      (float(t / kMapSize) + (float(i / kPoints) + 0.5f) / kPoints) / kMapSize};
+      const int column = t % kMapSize, row = t / kMapSize, x = i % kPoints, y = i / kPoints;
+      const Float2 at{(float(column) + (float(x) + 0.5f) / kPoints) / kMapSize,
+                      (float(row) + (float(y) + 0.5f) / kPoints) / kMapSize};
       result[size_t(t)] +=
           map[size_t(squareTexel(turnedBack(squareToDirection(at), turn)))] / (kPoints * kPoints);
     }
@@ -60,8 +61,8 @@ void normalize(std::vector<float>& map) {
 }
 
 Float3 directionOfTexel(int t) {
-  return squareToDirection(
-      Float2{(float(t % kMapSize) + 0.5f) / kMapSize, (float(t / kMapSize) + 0.5f) / kMapSize});
+  const int column = t % kMapSize, row = t / kMapSize;
+  return squareToDirection(Float2{(float(column) + 0.5f) / kMapSize, (float(row) + 0.5f) / kMapSize});
 }
 
 }  // namespace
