@@ -1,5 +1,6 @@
-// What a host looks up at every vertex in a guide (odis/view.h), inline, on the CPU or in CUDA. Cells are
-// known by their index.
+// What a host looks up in a guide (odis/view.h) at every vertex, inline, on the CPU or in CUDA. Cells are
+// known by their index. Vertices with delta lobes only, on mirrors and glass, have none: what they return
+// depends on one direction, of which a cell knows nothing.
 //
 //   const uint32_t cell = odis::findCell(view, {position, normal, pixel, sample, first});
 //   if (cell != odis::kNoCell) {

@@ -272,7 +272,8 @@ ODIS_API float odisGetMapPdf(const OdisGuideView* view, uint32_t cell, const Odi
 ODIS_API float odisGetMixturePdf(float bsdfPdf, float guidablePdf, float guidableProbability,
                                  float bsdfFraction, float mapPdf);
 // The probability, in (0, 1], with which a path should go on from a vertex in this cell; `throughput` is that
-// of the path over the pixel's value, both as luminance.
+// of the path over the pixel's value, both as luminance. Not to be asked for at vertices with delta lobes
+// only (mirrors, glass), of which cells know nothing.
 ODIS_API float odisGetSurvivalProbability(const OdisGuideView* view, uint32_t cell, float throughput);
 // The probability, in (0, 1], with which a shadow ray should be traced for light that, if nothing hides it,
 // adds `contribution` to the pixel, over the pixel's value, as luminance.

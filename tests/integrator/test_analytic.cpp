@@ -136,6 +136,26 @@ TEST_P(AnalyticTest, IrradianceOfShapes) {
                kPi, 0.02);
 }
 
+// A bright screen behind three panes that let all light pass, between dark strips: a path that meets the
+// panes brings the screen's radiance and nothing else, however little comes back from what stands around.
+TEST_P(AnalyticTest, PanesAreSeenThroughWithoutNoise) {
+  const auto upright = [](const std::string& scale, const std::string& place, const std::string& what) {
+    return "<shape type=\"rectangle\"><transform name=\"to_world\"><scale " + scale + "/><translate " +
+           place + "/></transform>" + what + "</shape>";
+  };
+  const std::string black = "<bsdf type=\"diffuse\"><rgb name=\"reflectance\" value=\"0.02\"/></bsdf>";
+  std::string text = test::indirectRoom(64) +
+                     upright("value=\"0.12\"", "z=\"-0.2\"",
+                             "<emitter type=\"area\"><rgb name=\"radiance\" value=\"500\"/></emitter>");
+  for (const std::string z : {"0.2", "0.4", "0.6"})
+    text += upright("value=\"0.15\"", "z=\"" + z + "\"", "<bsdf type=\"null\"/>") +
+            upright("x=\"0.15\" y=\"0.5\"", "x=\"-0.3\" z=\"" + z + "\"", black) +
+            upright("x=\"0.15\" y=\"0.5\"", "x=\"0.3\" z=\"" + z + "\"", black);
+  const RenderResult result = test::renderScene(*test::loadScene(text), options(8));
+  for (int y = 30; y < 34; ++y)
+    for (int x = 30; x < 34; ++x) EXPECT_NEAR(luminance(result.image.color[size_t(y * 64 + x)]), 500, 0.01);
+}
+
 INSTANTIATE_TEST_SUITE_P(Integrators, AnalyticTest,
                          ::testing::Values(Kind{"path", IntegratorKind::path, GuideKind::histogram, 0},
                                            Kind{"odis", IntegratorKind::odis, GuideKind::histogram, 0},

@@ -186,7 +186,8 @@ def trace(scene, camera, settings, known, tables, recorder, samples):
         cell, survival_on_arrival = mi.UInt32(odis.NO_CELL), mi.Float(1)
         fraction, learned_lights = mi.Float(1), mi.Float(0)
         if dr.hint(tables is not None, mode="scalar"):
-            cell = guide_tables.find_cell(tables, si.p, normal, active)
+            # Of what mirrors and glass return a cell knows nothing.
+            cell = guide_tables.find_cell(tables, si.p, normal, active & ((flags & SMOOTH) != 0))
             if dr.hint(has_pixel_maps, mode="scalar"):
                 own = dr.gather(mi.UInt32, tables.pixel_cells, pixel, active & first)
                 cell = dr.select(active & first & (own != odis.NO_CELL), own, cell)
@@ -268,7 +269,10 @@ def trace(scene, camera, settings, known, tables, recorder, samples):
         eta *= dr.select(from_map, 1, sampled.eta)
         most = dr.max(throughput * weight)
         plays = active & (depth >= settings.rr_depth) & (cell == odis.NO_CELL)
-        survival = dr.select(plays, dr.minimum(most * eta * eta, 0.95), 1)
+        survival = dr.minimum(most * eta * eta, 0.95)
+        if dr.hint(tables is not None, mode="scalar"):
+            survival = dr.maximum(survival, tables.least_survival)  # as on arrival
+        survival = dr.select(plays, survival, 1)
         goes_on = active & (most > 0) & (rng.next() < survival)
         weight = dr.select(goes_on, weight / survival, 0)
 

@@ -23,6 +23,7 @@ struct Arrival {
   uint32_t index;        // of the path in the batch
   const Vertex* vertex;  // without a shape where the ray left the scene
   uint32_t cell;         // of the guide, or kNoCell
+  float guidable;        // Bsdf::guidableProbability() of the vertex, where anybody asks
   int depth;             // 1 for the first vertex
   bool scatters;         // whether the path goes on to be scattered here
 };
@@ -72,6 +73,10 @@ using Bounces = std::span<Bounce>;
 // Adds the emission that rays met, weighted against next-event estimation where that could have found it
 // too. Paths go on where they met a surface and are not too deep.
 void meetEmission(const PathSettings& settings, Batch& batch, Bounces bounces);
+// Finds out how often the BSDFs draw from lobes that may be guided. Vertices with delta lobes only, on
+// mirrors and glass, have no cell: what they return depends on the one direction that the path came from, of
+// which a cell knows nothing.
+void findGuidableLobes(const PathSettings& settings, Batch& batch, Bounces bounces);
 // Ends paths with the cached radiance of where they arrive, if the guide may (odis::cachedRadiance).
 void endInCache(const PathSettings& settings, Batch& batch, Bounces bounces);
 // Lets paths go on by what is known to come back from here. Paths that end add the cell's mean outgoing
@@ -83,7 +88,7 @@ Bounces keepScattered(Bounces bounces);
 // Finds out what directions are sampled from.
 void prepareDirections(const PathSettings& settings, Bounces bounces);
 // Counts the vertices of each path that may be guided, this one included.
-void countGuidable(const PathSettings& settings, Bounces bounces);
+void countGuidable(Bounces bounces);
 // Chooses a light and a point on it, and weighs what it gives against sampling directions.
 void estimateDirectLight(const PathSettings& settings, Bounces bounces);
 void sampleDirections(Bounces bounces);

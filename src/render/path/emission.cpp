@@ -75,13 +75,24 @@ constexpr float kLeastCachedRoughness = 0.2f;
 // light of more bounces than max_depth allows. Below this max_depth that light is too bright to be ignored.
 constexpr int kLeastCachedMaxDepth = 8;
 
-bool scattersEvenly(const Vertex& vertex) {
-  const Bsdf& bsdf = vertex.at.shape->bsdf();
-  return bsdf.guidableProbability(vertex.at, vertex.wo) >= 1 &&
-         bsdf.roughness(vertex.at, vertex.wo) >= kLeastCachedRoughness;
+bool scattersEvenly(const Bounce& bounce) {
+  const Vertex& vertex = *bounce.vertex;
+  return bounce.guidable >= 1 &&
+         vertex.at.shape->bsdf().roughness(vertex.at, vertex.wo) >= kLeastCachedRoughness;
 }
 
 }  // namespace
+
+void findGuidableLobes(const PathSettings& settings, Batch& batch, Bounces bounces) {
+  const bool asked = settings.guide || settings.rival || batch.recording;
+  for (Bounce& bounce : bounces) {
+    bounce.guidable = 0;
+    if (!asked || !bounce.scatters) continue;
+    const Vertex& vertex = *bounce.vertex;
+    bounce.guidable = vertex.at.shape->bsdf().guidableProbability(vertex.at, vertex.wo);
+    if (!vertex.at.shape->bsdf().traits().evaluable) bounce.cell = kNoCell;
+  }
+}
 
 void endInCache(const PathSettings& settings, Batch& batch, Bounces bounces) {
   if (!settings.guide || !settings.guide->cached) return;
@@ -97,7 +108,7 @@ void endInCache(const PathSettings& settings, Batch& batch, Bounces bounces) {
     const CachedRadiance* cached =
         cachedRadiance(*settings.guide, {{}, {}, path.identity.pixel, path.identity.sample}, bounce.cell,
                        luminance(path.throughput) / path.pixelValue, path.footprint);
-    if (!cached || !scattersEvenly(vertex)) continue;
+    if (!cached || !scattersEvenly(bounce)) continue;
     const Float3& radiance = cached->radiance;
     path.radiance += path.throughput * Rgb(radiance.x, radiance.y, radiance.z);
     bounce.scatters = false;

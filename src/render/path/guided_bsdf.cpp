@@ -48,15 +48,13 @@ struct BsdfHost {
 
 }  // namespace
 
-void GuidedBsdf::prepare(const PathSettings& settings, const Path& path, const Vertex& vertex,
-                         uint32_t cell) {
+void GuidedBsdf::prepare(const PathSettings& settings, const Path& path, const Vertex& vertex, uint32_t cell,
+                         float guidable) {
   m_mixture = {};
   m_rival = nullptr;
-  if (!guidesAt(settings, path)) return;
+  if (!(guidable > 0) || !guidesAt(settings, path)) return;
   if (!settings.rival && (cell == kNoCell || !guidesDirections(settings.guide->decisions[cell]))) return;
   const Bsdf& bsdf = vertex.at.shape->bsdf();
-  const float guidable = bsdf.guidableProbability(vertex.at, vertex.wo);
-  if (!(guidable > 0)) return;
   const Vec3 normal = facingNormal(vertex.at, vertex.wo);
   const bool transmissive = bsdf.traits().transmissive;
   if (settings.rival) {

@@ -10,8 +10,9 @@ namespace odis::render {
 
 class GuidedBsdf {
  public:
-  // `cell` is kNoCell where the guide knows nothing.
-  void prepare(const PathSettings& settings, const Path& path, const Vertex& vertex, uint32_t cell);
+  // `cell` is kNoCell where the guide knows nothing; `guidable`: Bsdf::guidableProbability().
+  void prepare(const PathSettings& settings, const Path& path, const Vertex& vertex, uint32_t cell,
+               float guidable);
 
   // The BSDF sampling fraction: 1 where nothing is guided.
   float bsdfFraction() const { return m_mixture.bsdfFraction(); }

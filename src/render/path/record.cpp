@@ -59,7 +59,7 @@ void recordBounces(const PathSettings& settings, Batch& batch, Bounces bounces) 
     event.weight = toOdis(bounce.weight);
     event.pdf = next.pdf;
     event.guidablePdf = next.guidablePdf;
-    event.guidableProbability = bsdf.guidableProbability(at, wo);
+    event.guidableProbability = bounce.guidable;
     event.survival = bounce.survival;
     event.cosine = std::abs(next.wi.z);
     event.roughness = bsdf.roughness(at, wo);

@@ -14,16 +14,12 @@ Bounces keepScattered(Bounces bounces) {
 }
 
 void prepareDirections(const PathSettings& settings, Bounces bounces) {
-  for (Bounce& bounce : bounces) bounce.bsdf.prepare(settings, *bounce.path, *bounce.vertex, bounce.cell);
+  for (Bounce& bounce : bounces)
+    bounce.bsdf.prepare(settings, *bounce.path, *bounce.vertex, bounce.cell, bounce.guidable);
 }
 
-void countGuidable(const PathSettings& settings, Bounces bounces) {
-  // Nobody else asks.
-  if (settings.guideBounces < 0 && !(settings.guide && settings.guide->pixelCells)) return;
-  for (Bounce& bounce : bounces) {
-    const Vertex& vertex = *bounce.vertex;
-    bounce.path->guidable += vertex.at.shape->bsdf().guidableProbability(vertex.at, vertex.wo) > 0;
-  }
+void countGuidable(Bounces bounces) {
+  for (Bounce& bounce : bounces) bounce.path->guidable += bounce.guidable > 0;
 }
 
 void sampleDirections(Bounces bounces) {
@@ -49,6 +45,9 @@ void playRouletteOnDeparture(const PathSettings& settings, Bounces bounces) {
     const bool learned = settings.learnedRoulette && bounce.cell != kNoCell;
     if (bounce.survives && bounce.depth >= settings.rrDepth && !learned) {
       bounce.survival = std::min(maxComponent(path.throughput * bounce.weight) * sqr(path.eta), 0.95f);
+      // Where roulette is learned no path should weigh more for it than there.
+      if (settings.learnedRoulette)
+        bounce.survival = std::max(bounce.survival, settings.guide->rules.leastSurvival);
       bounce.survives = path.uSurvival < bounce.survival;
       path.uSurvival /= bounce.survival;  // as good as new, should the path survive
       bounce.weight /= bounce.survival;

@@ -45,11 +45,12 @@ void findGuidingCells(const PathSettings& settings, std::span<const Path> paths,
 // Takes some paths through all steps of a bounce; returns those that were scattered.
 Bounces takeSteps(const PathSettings& settings, Batch& batch, Bounces bounces) {
   meetEmission(settings, batch, bounces);
+  findGuidableLobes(settings, batch, bounces);
   endInCache(settings, batch, bounces);
   playRouletteOnArrival(settings, batch, bounces);
   bounces = keepScattered(bounces);
   prepareDirections(settings, bounces);
-  countGuidable(settings, bounces);
+  countGuidable(bounces);
   estimateDirectLight(settings, bounces);
   sampleDirections(bounces);
   describeFirstHits(settings, bounces);
