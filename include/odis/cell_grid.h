@@ -47,7 +47,7 @@ class CellGrid {
   }
 
   // The key of the cell around a cell, one level coarser.
-  static uint64_t parent(uint64_t key) {
+  ODIS_HOST_DEVICE static uint64_t parent(uint64_t key) {
     return pack(unpacked(key, 0) >> 1, unpacked(key, kBits) >> 1, unpacked(key, 2 * kBits) >> 1, axisOf(key),
                 levelOf(key) + 1);
   }
@@ -69,13 +69,14 @@ class CellGrid {
   // 0 to 5: +x, -x, +y, -y, +z, -z.
   ODIS_HOST_DEVICE static uint32_t dominantAxis(const Float3& n) {
     const float x = abs(n.x), y = abs(n.y), z = abs(n.z);
-    if (x >= y && x >= z) return n.x >= 0 ? 0 : 1;
-    if (y >= z) return n.y >= 0 ? 2 : 3;
-    return n.z >= 0 ? 4 : 5;
+    // Without branches, which would often be mispredicted.
+    const bool isX = (x >= y) & (x >= z), isY = !isX & (y >= z);
+    const float along = isX ? n.x : isY ? n.y : n.z;
+    return (isX ? 0u : isY ? 2u : 4u) + uint32_t(!(along >= 0));
   }
   ODIS_HOST_DEVICE static uint64_t packed(int value) { return uint64_t(value + kMiddle) & kMask; }
-  static int unpacked(uint64_t key, int shift) { return int((key >> shift) & kMask) - kMiddle; }
-  static uint32_t axisOf(uint64_t key) { return uint32_t(key >> 57) & 7; }
+  ODIS_HOST_DEVICE static int unpacked(uint64_t key, int shift) { return int((key >> shift) & kMask) - kMiddle; }
+  ODIS_HOST_DEVICE static uint32_t axisOf(uint64_t key) { return uint32_t(key >> 57) & 7; }
   ODIS_HOST_DEVICE static uint64_t pack(int x, int y, int z, uint32_t axis, int level) {
     return packed(x) | packed(y) << kBits | packed(z) << (2 * kBits) | uint64_t(axis) << 57 |
            uint64_t(level) << 60;

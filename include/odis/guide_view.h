@@ -31,13 +31,21 @@ ODIS_HOST_DEVICE inline uint32_t pixelCell(const GuideView& view, const Place& p
   return place.first && place.pixel < view.pixelCount ? view.pixelCells[place.pixel] : kNoCell;
 }
 
+// The finest cell that there is of those around a key of the finest level; kNoCell where there is none.
+ODIS_HOST_DEVICE inline uint32_t findAround(const GuideView& view, uint64_t key) {
+  uint32_t cell = findSlot(view.slots, view.slotMask, key);
+  for (int level = 1; level < kCellLevels && cell == kNoCell; ++level) {
+    key = CellGrid::parent(key);
+    cell = findSlot(view.slots, view.slotMask, key);
+  }
+  return cell;
+}
+
 // The finest cell that there is for a vertex; kNoCell where the guide has seen nothing at all.
 ODIS_HOST_DEVICE inline uint32_t findCell(const GuideView& view, const Place& place) {
-  const CellGrid grid(view.grid);
-  uint32_t cell = pixelCell(view, place);
-  for (int level = 0; level < kCellLevels && cell == kNoCell; ++level)
-    cell = findSlot(view.slots, view.slotMask, grid.key(place.position, place.normal, level));
-  return cell;
+  const uint32_t cell = pixelCell(view, place);
+  if (cell != kNoCell) return cell;
+  return findAround(view, CellGrid(view.grid).key(place.position, place.normal, 0));
 }
 
 // Finds the cells of many vertices, which is faster: cells lie all over memory, and here no look-up waits
@@ -61,8 +69,7 @@ inline void findCells(const GuideView& view, const Place* places, size_t count, 
       // coarser cells, too.
       const bool same =
           i > begin && keys[i - begin] == keys[i - begin - 1] && !(view.pixelCells && places[i - 1].first);
-      cells[i] = same ? cells[i - 1] : findSlot(view.slots, view.slotMask, keys[i - begin]);
-      if (cells[i] == kNoCell) cells[i] = findCell(view, places[i]);
+      cells[i] = same ? cells[i - 1] : findAround(view, keys[i - begin]);
     }
   }
 }
@@ -78,9 +85,8 @@ inline void prefetchCell(const GuideView& view, uint32_t cell) {
   fetch(view.maps.sums + size_t(cell) * kSumsPerMap, kSumsPerMap * sizeof(float));
   fetch(view.maps.texels + size_t(cell) * kMapTexels, kMapTexels * sizeof(uint16_t));
   if (view.lightGroups == 0) return;
-  const float* table = view.lightTables + size_t(cell) * (view.lightGroups + 1);
-  __builtin_prefetch(table);
-  __builtin_prefetch(table + view.lightGroups);
+  const size_t groupBounds = view.lightGroups + 1;
+  fetch(view.lightTables + cell * groupBounds, groupBounds * sizeof(float));
 }
 
 // The class of a roughness: 0 for diffuse, 1 for rough, 2 for glossy.
@@ -157,8 +163,8 @@ ODIS_HOST_DEVICE inline Real segmentFootprint(Real distance, Real pdf, Real cosi
 
 // The cached radiance that a path which arrives in a cell may end with in place of what it would find; null
 // where it has to go on. `throughput` as for survivalProbability; `footprint`: the sum over its segments.
-// Only vertices whose lobes are all guidable, diffuse or rough should end paths: what they scatter differs
-// little from direction to direction.
+// Only vertices that are diffuse or rough and scatter mostly by lobes that may be guided should end paths:
+// what they scatter differs little from direction to direction.
 ODIS_HOST_DEVICE inline const CachedRadiance* cachedRadiance(const GuideView& view, const Place& place,
                                                              uint32_t cell, float throughput,
                                                              float footprint) {

@@ -18,12 +18,12 @@ using VertexParts = ArrayView<const ArrayView<const PathVertex>>;
 
 // Whether a vertex can be learned from, or why not: an entry of VertexCounts each.
 enum class VertexState : uint8_t { usable, discrete, notFinite, noDensity, notUnit, noDepth };
-inline VertexState checkVertex(const PathVertex& v) {
+// The state of a vertex, whichever lobe `wi` is of.
+inline VertexState checkNumbers(const PathVertex& v) {
   // Zero if everything is finite, otherwise not a number.
   const auto nothing = [](const Float3& w) { return 0 * w.x + 0 * w.y + 0 * w.z; };
   // Interpolated normals and directions from half floats are a little off.
   const auto isUnit = [](const Float3& w) { return dot(w, w) > 0.9f && dot(w, w) < 1.1f; };
-  if (v.discrete) return VertexState::discrete;
   const float cosine = std::isnan(v.cosine) ? 0 : v.cosine;
   if (!(nothing(v.position) + nothing(v.normal) + nothing(v.wi) + nothing(v.radiance) + 0 * v.pdf +
             0 * cosine ==
@@ -32,6 +32,9 @@ inline VertexState checkVertex(const PathVertex& v) {
   if (!(v.pdf > 0 && v.survival > 0)) return VertexState::noDensity;
   if (!isUnit(v.normal) || !isUnit(v.wi)) return VertexState::notUnit;
   return v.depth > 0 ? VertexState::usable : VertexState::noDepth;
+}
+inline VertexState checkVertex(const PathVertex& v) {
+  return v.discrete ? VertexState::discrete : checkNumbers(v);
 }
 inline bool isUsable(const PathVertex& vertex) {
   return checkVertex(vertex) == VertexState::usable;

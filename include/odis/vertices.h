@@ -75,7 +75,9 @@ typedef struct OdisPathVertex {
   uint32_t sample ODIS_DEFAULT(0);  // of the pixel
   uint16_t depth ODIS_DEFAULT(0);   // 1 for the first vertex
 
-  bool discrete ODIS_DEFAULT(false);  // optional: a delta lobe, from which there is nothing to learn
+  // Optional: `wi` is of a delta lobe. Where guidableProbability is above 0, as on a coat, the vertex tells
+  // what its surface scatters back; else there is nothing to learn from it.
+  bool discrete ODIS_DEFAULT(false);
   // Optional: the BSDF scatters to both sides of the surface. Without it nothing is guided below.
   bool scattersBothSides ODIS_DEFAULT(false);
 } OdisPathVertex;

@@ -3,6 +3,8 @@
 
 #include <random>
 
+#include "odis/cells/samples.h"
+#include "odis/floor_under_patch.h"
 #include "odis/guide.h"
 #include "odis/models/cached_radiance.h"
 #include "odis/record/recorder.h"
@@ -72,6 +74,28 @@ TEST(CachedRadiance, OfCellsWithoutVerticesIsNotTrusted) {
   const std::vector<CachedRadiance> cached = cacheRadiance(*libraryTasks(), cells);
   EXPECT_LT(cached[0].error, INFINITY);
   for (size_t i = 1; i < cached.size(); ++i) EXPECT_EQ(cached[i].error, INFINITY) << i;
+}
+
+// A quarter of a coat's paths are mirrored: the cell's mean is that of all its paths. Mirrors have no part in
+// it.
+TEST(CachedRadiance, HoldsWhatCoatsMirror) {
+  std::vector<PathVertex> vertices = floorUnderPatch({0, 0, 1}, 3, 1);
+  for (PathVertex& v : vertices) {
+    v.direct = v.radiance = v.weight = {1, 1, 1};
+    v.guidableProbability = 0.75f;
+  }
+  vertices[1].discrete = true;
+  vertices[1].radiance = {7, 7, 7};
+  vertices[2].discrete = true;
+  vertices[2].guidableProbability = 0;
+  const BatchSamples taken = takeSamples({vertices}, CellGrid({0, 0, 0}, 1));
+  ASSERT_EQ(taken.samples.size(), 2u);
+  EXPECT_EQ(taken.samples[0].outgoing.x, 2);
+  EXPECT_EQ(taken.samples[1].outgoing.x, 8);
+  EXPECT_GT(taken.samples[0].value, 0);
+  EXPECT_EQ(taken.samples[1].value, 0) << "a mirrored direction tells nothing of directions";
+  EXPECT_EQ(taken.counts.accepted, 1u);
+  EXPECT_EQ(taken.counts.discrete, 2u);
 }
 
 TEST(CachedRadiance, HalvesArePathsAndAboutAsMany) {

@@ -19,6 +19,12 @@ float lightSquare(const PathVertex& v) {
   return v.lightGroup < kMaxLightGroups && std::isfinite(result) ? result : 0;
 }
 
+// Whether a vertex tells what its surface scatters back, though nothing of directions: its surface has other
+// lobes, and the path took a delta lobe, as of a coat. Of mirrors nothing is learned.
+bool tellsWhatReturns(const PathVertex& v) {
+  return v.discrete && v.guidableProbability > 0 && checkNumbers(v) == VertexState::usable;
+}
+
 }  // namespace
 
 float sampleValue(const PathVertex& v) {
@@ -42,11 +48,11 @@ BatchSamples takeSamples(const VertexBatch& batch, const CellGrid& grid) {
     for (const PathVertex& v : piece) {
       const VertexState state = checkVertex(v);
       countVertex(result.counts, state);
-      if (state != VertexState::usable) continue;
+      if (state != VertexState::usable && !tellsWhatReturns(v)) continue;
       const uint64_t key = grid.key(v.position, v.normal, 0);
       const uint32_t cell = index.insert(key);
       if (cell == result.cells.size()) result.cells.push_back({key});
-      const float value = sampleValue(v);
+      const float value = v.discrete ? 0 : sampleValue(v);
       ++result.cells[cell].count;
       result.cells[cell].value += value;
       result.cellOf.push_back(cell);

@@ -16,7 +16,8 @@ float sampleValue(const PathVertex& vertex);
 // What the vertex scatters back along the path, next-event estimation included: not negative, finite.
 Float3 returnedRadiance(const PathVertex& vertex);
 
-// A usable vertex. 72 bytes.
+// A usable vertex or, with the value 0, one whose path took a delta lobe of a surface that has others. 72
+// bytes.
 struct CellSample {
   Float3 position, normal, wi;
   float distance;

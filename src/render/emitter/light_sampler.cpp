@@ -25,6 +25,13 @@ float usable(float weight) {
   return weight > 0 ? std::min(weight, kMostWeight) : 0.0f;
 }
 
+// The group whose piece of [0, 1) holds u. Bounds are counted: the branches of a search would be mispredicted.
+uint32_t groupAt(std::span<const float> cdf, float u) {
+  uint32_t group = 0;
+  for (size_t bound = 1; bound + 1 < cdf.size(); ++bound) group += uint32_t(cdf[bound] <= u);
+  return group;
+}
+
 // Regions of an environment that turns would lie elsewhere at every moment.
 bool isDivisible(const Emitter& emitter) {
   return emitter.invertible() && !emitter.motion();
@@ -199,7 +206,7 @@ LightSampler::Choice LightSampler::sample(const LightReference& ref, float uChoi
   if (uChoice < learned.fraction) {
     const std::span<const float> cdf(learned.cdf, groupCount() + 1);
     uChoice = std::min(uChoice / learned.fraction, kOneMinusEpsilon);
-    const uint32_t group = findCell(cdf, uChoice);
+    const uint32_t group = groupAt(cdf, uChoice);
     const float rest = (uChoice - cdf[group]) / (cdf[group + 1] - cdf[group]);
     choice = drawFromGroup(ref, group, std::min(rest, kOneMinusEpsilon), within);
   } else {

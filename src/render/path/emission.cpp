@@ -69,15 +69,16 @@ void meetEmission(const PathSettings& settings, Batch& batch, Bounces bounces) {
 
 namespace {
 
-// Smoother surfaces end no paths: what they scatter depends too much on the direction.
-constexpr float kLeastCachedRoughness = 0.2f;
+// Smoother surfaces end no paths: what they scatter depends too much on the direction. The same is true of
+// those that scatter mostly by lobes that may not be guided.
+constexpr float kLeastCachedRoughness = 0.2f, kLeastCachedGuidable = 0.5f;
 // Cached radiance holds what comes back from vertices of any depth, so that paths that end with it may bring
 // light of more bounces than max_depth allows. Below this max_depth that light is too bright to be ignored.
 constexpr int kLeastCachedMaxDepth = 8;
 
 bool scattersEvenly(const Bounce& bounce) {
   const Vertex& vertex = *bounce.vertex;
-  return bounce.guidable >= 1 &&
+  return bounce.guidable >= kLeastCachedGuidable &&
          vertex.at.shape->bsdf().roughness(vertex.at, vertex.wo) >= kLeastCachedRoughness;
 }
 
