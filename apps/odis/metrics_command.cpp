@@ -34,20 +34,17 @@ static int runMetrics(const MetricsArguments& arguments) {
     throw eval::ImageError(fmt::format("{}: {}", arguments.reference, error.what()));
   }
   if (arguments.json) {
-    const nlohmann::ordered_json json = {{"relMse", m.relMse},
-                                         {"trimmedRelMse", m.trimmedRelMse},
-                                         {"smape", m.smape},
-                                         {"flip", m.flip},
-                                         {"ssim", m.ssim},
-                                         {"mse", m.mse},
-                                         {"nonFinitePixels", m.nonFinitePixels}};
+    const nlohmann::ordered_json json = {{"relMse", m.relMse}, {"trimmedRelMse", m.trimmedRelMse},
+                                         {"smape", m.smape},   {"flip", m.flip},
+                                         {"ssim", m.ssim},     {"mse", m.mse},
+                                         {"mean", m.mean},     {"nonFinitePixels", m.nonFinitePixels}};
     fmt::print("{}\n", json.dump(2));
     return kOk;
   }
   fmt::print(
       "relMSE          {:.6g}\ntrimmed relMSE  {:.6g}\nSMAPE           {:.6g}\nMSE             {:.6g}\n"
-      "FLIP            {:.6g}\nSSIM            {:.6g}\n",
-      m.relMse, m.trimmedRelMse, m.smape, m.mse, m.flip, m.ssim);
+      "FLIP            {:.6g}\nSSIM            {:.6g}\nmean            {:.6g}\n",
+      m.relMse, m.trimmedRelMse, m.smape, m.mse, m.flip, m.ssim, m.mean);
   if (m.nonFinitePixels > 0) fmt::print("not finite      {} pixels\n", m.nonFinitePixels);
   return kOk;
 }
@@ -59,6 +56,7 @@ Command addMetricsCommand(CLI::App& parent) {
       "  relMSE  (I - R)^2 / (R^2 + 0.01); trimmed: without the worst 0.1 % of the pixels\n"
       "  SMAPE   |I - R| / ((|I| + |R|) / 2 + 0.01)\n"
       "  MSE     (I - R)^2\n"
+      "  mean    luminance of I; 1 for the REFERENCE itself\n"
       "FLIP is LDR-FLIP at 67 pixels per degree of both images as a screen shows them: exposed so that the\n"
       "log-average luminance of REFERENCE is 0.18, highlights rolled off as in the PNGs of `odis render`. "
       "SSIM\n"

@@ -75,7 +75,9 @@ class CellGrid {
     return (isX ? 0u : isY ? 2u : 4u) + uint32_t(!(along >= 0));
   }
   ODIS_HOST_DEVICE static uint64_t packed(int value) { return uint64_t(value + kMiddle) & kMask; }
-  ODIS_HOST_DEVICE static int unpacked(uint64_t key, int shift) { return int((key >> shift) & kMask) - kMiddle; }
+  ODIS_HOST_DEVICE static int unpacked(uint64_t key, int shift) {
+    return int((key >> shift) & kMask) - kMiddle;
+  }
   ODIS_HOST_DEVICE static uint32_t axisOf(uint64_t key) { return uint32_t(key >> 57) & 7; }
   ODIS_HOST_DEVICE static uint64_t pack(int x, int y, int z, uint32_t axis, int level) {
     return packed(x) | packed(y) << kBits | packed(z) << (2 * kBits) | uint64_t(axis) << 57 |

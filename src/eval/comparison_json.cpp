@@ -42,6 +42,7 @@ static Json toJson(const ComparisonRow& row) {
                {"seeds", row.seeds},
                {"samples", row.samples},
                {"errorRatio", toJson(row.errorRatio)},
+               {"untrimmedRatio", toJson(row.untrimmedRatio)},
                {"errorTimeRatio", toJson(row.errorTimeRatio)},
                {"errorRaysRatio", toJson(row.errorRaysRatio)},
                {"secondsRatio", row.secondsRatio},
@@ -52,6 +53,7 @@ static Json toJson(const ComparisonRow& row) {
                {"relMse", row.error.relMse},
                {"smape", row.error.smape},
                {"mse", row.error.mse},
+               {"mean", toJson(row.mean)},
                {"flip", row.error.flip},
                {"ssim", row.error.ssim},
                {"nonFinitePixels", row.error.nonFinitePixels},
@@ -88,8 +90,12 @@ Json comparisonJson(const Comparison& comparison, const std::vector<ComparisonRo
   json["denoiser"] = nullptr;
   if (provenance.denoiser) json["denoiser"] = *provenance.denoiser;
   json["error"] = "ratios: relMSE without the worst 0.1 % of the pixels, median over seeds";
-  json["intervals"] = fmt::format("[value, low, high]: {:.0f} %, bootstrap over seeds, {} resamples",
-                                  100 * kConfidence, kResamples);
+  json["untrimmed"] = "ratios: relMSE of all pixels, mean over seeds";
+  json["mean"] = "luminance of the image over the reference's, mean over seeds";
+  json["intervals"] = fmt::format(
+      "[value, low, high]: {:.0f} %, bootstrap over seeds, {} resamples; of `mean` "
+      "by Student's t",
+      100 * kConfidence, kResamples);
   for (const char* list : {"methods", "scenes", "rows", "runs"}) json[list] = Json::array();
   for (const Method& method : methods)
     json["methods"].push_back({{"name", method.name}, {"options", method.text}});

@@ -57,13 +57,15 @@ std::vector<std::string> rowCells(const ComparisonRow& row) {
       row.equalTime ? fmt::format("{:.3g} in time of {}", row.samples, row.spp) : fmt::format("{}", row.spp);
   std::vector<std::string> cells{row.scene, row.method, samples};
   if (row.isMean())
-    cells.insert(cells.end(), {"", "", "", "", ""});
+    cells.insert(cells.end(), {"", "", "", "", "", ""});
   else
-    cells.insert(cells.end(), {fmt::format("{:.3g}", row.error.trimmedRelMse),
-                               fmt::format("{:.3f}", row.error.flip), fmt::format("{:.3f}", row.error.ssim),
-                               fmt::format("{:.2f}", row.seconds), fmt::format("{:.1f}", row.rays * 1e-6)});
-  cells.insert(cells.end(), {intervalText(row.errorRatio), intervalText(row.errorTimeRatio),
-                             intervalText(row.errorRaysRatio), neededText(row.needed)});
+    cells.insert(cells.end(),
+                 {fmt::format("{:.3g}", row.error.trimmedRelMse), fmt::format("{:.3f}", row.error.flip),
+                  fmt::format("{:.3f}", row.error.ssim), intervalText(row.mean),
+                  fmt::format("{:.2f}", row.seconds), fmt::format("{:.1f}", row.rays * 1e-6)});
+  cells.insert(cells.end(),
+               {intervalText(row.errorRatio), intervalText(row.untrimmedRatio),
+                intervalText(row.errorTimeRatio), intervalText(row.errorRaysRatio), neededText(row.needed)});
   return cells;
 }
 
@@ -97,9 +99,9 @@ std::string referencesTable(const std::vector<ComparisonRow>& rows, const std::v
 // One table, of the images as they were rendered or of the denoised ones.
 std::string rowsTable(const std::vector<ComparisonRow>& rows, bool denoised) {
   const std::string needed = rows.empty() ? "first method needs" : rows.front().method + " needs";
-  std::vector<std::vector<std::string>> cells{{"scene", "method", "spp", "error", "FLIP", "SSIM", "seconds",
-                                               "Mrays", "error ratio", "error x time", "error x rays",
-                                               needed}};
+  std::vector<std::vector<std::string>> cells{{"scene", "method", "spp", "error", "FLIP", "SSIM", "mean",
+                                               "seconds", "Mrays", "error ratio", "untrimmed", "error x time",
+                                               "error x rays", needed}};
   for (const ComparisonRow& row : rows)
     if (row.denoised == denoised) cells.push_back(rowCells(row));
   return layOut(cells, 2);

@@ -99,6 +99,7 @@ ErrorMetrics compareImages(const ColorImage& image, const ColorImage& reference)
       result.mse = result.smape = std::numeric_limits<double>::infinity();
       continue;
     }
+    result.mean += scale * render::luminance(image.pixels[i]);
     for (int channel = 0; channel < 3; ++channel) {
       const double value = scale * image.pixels[i][channel], truth = scale * reference.pixels[i][channel];
       result.mse += (value - truth) * (value - truth) / 3;
@@ -106,6 +107,7 @@ ErrorMetrics compareImages(const ColorImage& image, const ColorImage& reference)
     }
   }
   result.mse /= count;
+  result.mean /= std::max(count - double(result.nonFinitePixels), 1.0);
   result.relMse /= count;
   result.smape /= count;
   result.trimmedRelMse = trimmedMean(relative, kTrimmedShare);

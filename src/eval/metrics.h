@@ -7,7 +7,9 @@
 //   relMse          (I - R)^2 / (R^2 + 0.01)
 //   trimmedRelMse   relMse without the worst 0.1 % of the pixels, which are fireflies more often than not
 //   smape           |I - R| / ((|I| + |R|) / 2 + 0.01)
-// A pixel of the image that is not finite has an infinite error; only the trimmed metric can forget it.
+//   mean            luminance of I: 1 where no light is lost or made up
+// A pixel of the image that is not finite has an infinite error, which only the trimmed metric can forget,
+// and is left out of `mean`.
 //
 //   flip            mean of LDR-FLIP (flip.h) at 67 pixels per degree, of both images as `displayed` shows
 //                   them (exposure.h) at the exposure of the reference; in [0, 1], pixels that are not
@@ -27,7 +29,7 @@ inline constexpr double kSmapeEpsilon = 0.01;
 inline constexpr double kTrimmedShare = 0.001;
 
 struct ErrorMetrics {
-  double mse = 0, relMse = 0, trimmedRelMse = 0, smape = 0, flip = 0, ssim = 0;
+  double mse = 0, relMse = 0, trimmedRelMse = 0, smape = 0, mean = 0, flip = 0, ssim = 0;
   uint64_t nonFinitePixels = 0;  // of the image
 };
 

@@ -28,6 +28,7 @@ static Measurement fromJson(const nlohmann::json& json) {
   m.error.relMse = numberOrInfinity(json.at("relMse"));
   m.error.trimmedRelMse = numberOrInfinity(json.at("trimmedRelMse"));
   m.error.smape = numberOrInfinity(json.at("smape"));
+  m.error.mean = json.at("mean");
   m.error.flip = json.at("flip");
   m.error.ssim = json.at("ssim");
   m.error.nonFinitePixels = json.at("nonFinitePixels");
@@ -51,6 +52,7 @@ nlohmann::ordered_json measurementJson(const Measurement& m) {
           {"trimmedRelMse", m.error.trimmedRelMse},
           {"smape", m.error.smape},
           {"mse", m.error.mse},
+          {"mean", m.error.mean},
           {"flip", m.error.flip},
           {"ssim", m.error.ssim},
           {"nonFinitePixels", m.error.nonFinitePixels},

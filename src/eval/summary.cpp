@@ -16,6 +16,9 @@ using Field = std::function<double(const Measurement&)>;
 double errorOf(const Measurement& m) {
   return m.error.trimmedRelMse;
 }
+double untrimmedOf(const Measurement& m) {
+  return m.error.relMse;
+}
 double errorTimeOf(const Measurement& m) {
   return errorOf(m) * m.seconds;
 }
@@ -33,11 +36,12 @@ double medianOf(const Runs& runs, const Field& field) {
 struct Entry {
   ComparisonRow row;
   Runs runs;
-  std::vector<double> error, errorTime, errorRays;
+  std::vector<double> error, untrimmed, errorTime, errorRays;
 };
 
 // The ratio of `field` of the seeds that both have.
-Interval ratioOf(const Runs& runs, const Runs& base, const Field& field, std::vector<double>& resamples) {
+Interval ratioOf(const Runs& runs, const Runs& base, const Field& field, Middle middle,
+                 std::vector<double>& resamples) {
   std::vector<double> a, b;
   for (const Measurement* run : runs) {
     const auto same = std::find_if(base.begin(), base.end(), [&](auto* m) { return m->seed == run->seed; });
@@ -46,8 +50,8 @@ Interval ratioOf(const Runs& runs, const Runs& base, const Field& field, std::ve
     b.push_back(field(**same));
   }
   constexpr uint64_t kSeed = 1;
-  resamples = a.empty() ? std::vector<double>(kResamples, NAN) : resampledRatios(a, b, kSeed);
-  return intervalOf(a.empty() ? NAN : median(a) / median(b), resamples);
+  resamples = a.empty() ? std::vector<double>(kResamples, NAN) : resampledRatios(a, b, kSeed, middle);
+  return intervalOf(a.empty() ? NAN : middle(a) / middle(b), resamples);
 }
 
 void fillRow(Entry& entry) {
@@ -66,6 +70,9 @@ void fillRow(Entry& entry) {
   row.error.smape = medianBy([](const Measurement& m) { return m.error.smape; });
   row.error.flip = medianBy([](const Measurement& m) { return m.error.flip; });
   row.error.ssim = medianBy([](const Measurement& m) { return m.error.ssim; });
+  std::vector<double> means;
+  for (const Measurement* run : entry.runs) means.push_back(run->error.mean);
+  row.mean = meanWithInterval(means);
   for (const Measurement* run : entry.runs) row.error.nonFinitePixels += run->error.nonFinitePixels;
   row.seconds = medianBy([](const Measurement& m) { return m.seconds; });
   row.cpuSeconds = medianBy([](const Measurement& m) { return m.cpuSeconds; });
@@ -77,9 +84,10 @@ void fillRow(Entry& entry) {
 
 void fillRatios(Entry& entry, const Entry& base) {
   ComparisonRow& row = entry.row;
-  row.errorRatio = ratioOf(entry.runs, base.runs, errorOf, entry.error);
-  row.errorTimeRatio = ratioOf(entry.runs, base.runs, errorTimeOf, entry.errorTime);
-  row.errorRaysRatio = ratioOf(entry.runs, base.runs, errorRaysOf, entry.errorRays);
+  row.errorRatio = ratioOf(entry.runs, base.runs, errorOf, median, entry.error);
+  row.untrimmedRatio = ratioOf(entry.runs, base.runs, untrimmedOf, mean, entry.untrimmed);
+  row.errorTimeRatio = ratioOf(entry.runs, base.runs, errorTimeOf, median, entry.errorTime);
+  row.errorRaysRatio = ratioOf(entry.runs, base.runs, errorRaysOf, median, entry.errorRays);
   row.secondsRatio = row.seconds / base.row.seconds;
   row.raysRatio = row.rays / base.row.rays;
 }
@@ -127,6 +135,7 @@ ComparisonRow meanOf(const std::vector<const Entry*>& entries) {
   row.denoised = first.denoised;
   row.seeds = first.seeds;
   row.errorRatio = geometricMean(entries, &ComparisonRow::errorRatio, &Entry::error);
+  row.untrimmedRatio = geometricMean(entries, &ComparisonRow::untrimmedRatio, &Entry::untrimmed);
   row.errorTimeRatio = geometricMean(entries, &ComparisonRow::errorTimeRatio, &Entry::errorTime);
   row.errorRaysRatio = geometricMean(entries, &ComparisonRow::errorRaysRatio, &Entry::errorRays);
   double seconds = 0, rays = 0, samples = 0, needed = 0;

@@ -20,7 +20,11 @@ struct ComparisonRow {
   int seeds = 0;
   ErrorMetrics error;
   double seconds = 0, cpuSeconds = 0, rays = 0, samples = 0;
-  Interval errorRatio, errorTimeRatio, errorRaysRatio;
+  // Of the image over the reference's, mean over seeds.
+  Interval mean;
+  // `untrimmedRatio` is of relMSE of all pixels, mean over seeds: it shows fireflies, which the others leave
+  // out.
+  Interval errorRatio, untrimmedRatio, errorTimeRatio, errorRaysRatio;
   double secondsRatio = 1, raysRatio = 1;
   SamplesNeeded needed;  // by the first method for the same error
   std::string image;     // of seed 0

@@ -35,6 +35,7 @@ TEST(ResultsLog, RemembersAndSkipsBrokenLines) {
   m.error.trimmedRelMse = 0.5;
   m.error.flip = 0.25;
   m.error.ssim = 0.75;
+  m.error.mean = 0.875;
   m.denoised = true;
   m.error.relMse = INFINITY;
   ResultsLog(path, false).add(m);
@@ -49,6 +50,7 @@ TEST(ResultsLog, RemembersAndSkipsBrokenLines) {
   EXPECT_EQ(log.find("k")->cpuSeconds, 3);
   EXPECT_EQ(log.find("k")->error.flip, 0.25);
   EXPECT_EQ(log.find("k")->error.ssim, 0.75);
+  EXPECT_EQ(log.find("k")->error.mean, 0.875);
   EXPECT_TRUE(log.find("k")->denoised);
   EXPECT_EQ(log.find("k")->error.trimmedRelMse, 0.5);
   EXPECT_TRUE(std::isinf(log.find("k")->error.relMse));

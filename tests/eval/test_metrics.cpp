@@ -35,6 +35,7 @@ TEST(Metrics, AgreeWithPaper) {
   EXPECT_NEAR(m.mse, 0.25 / 2, 1e-5);
   EXPECT_NEAR(m.relMse, 0.25 / 0.26 / 2, 1e-5);
   EXPECT_NEAR(m.smape, 0.5 / 0.76 / 2, 1e-5);
+  EXPECT_NEAR(m.mean, 1.25, 1e-5);
   EXPECT_NEAR(m.trimmedRelMse, m.relMse, 1e-12);  // two pixels: 0.1 % of them is none
 }
 
@@ -73,6 +74,7 @@ TEST(Metrics, PixelsThatAreNotFiniteAreInfinitelyWrong) {
   image[10].y = std::numeric_limits<float>::quiet_NaN();
   const ErrorMetrics m = compareImages(image, grey(1000, 1));
   EXPECT_EQ(m.nonFinitePixels, 1u);
+  EXPECT_NEAR(m.mean, 1, 1e-5);
   EXPECT_TRUE(std::isinf(m.relMse));
   EXPECT_TRUE(std::isinf(m.smape));
   EXPECT_EQ(m.trimmedRelMse, 0);

@@ -7,6 +7,7 @@
 
 #include "eval/comparison_json.h"
 #include "eval/markdown.h"
+#include "eval/median.h"
 
 using namespace odis::eval;
 
@@ -53,6 +54,41 @@ TEST(Summary, TakesMediansRatiosAndGeometricMeans) {
   EXPECT_NEAR(rows[5].errorRaysRatio.value, std::sqrt(0.25 * 4.0), 1e-12);
   EXPECT_NEAR(rows[5].raysRatio, std::sqrt(1.0 * 4.0), 1e-12);
   EXPECT_NEAR(rows[5].secondsRatio, std::sqrt(1.5 * 1.0), 1e-12);
+}
+
+// One firefly in three seeds leaves medians as they are, but not what is said to be untrimmed; means of
+// images are over seeds, too.
+TEST(Summary, ShowsFirefliesAndMeans) {
+  std::vector<Measurement> measurements;
+  for (uint64_t seed = 0; seed < 3; ++seed)
+    for (const char* method : {"path", "odis"}) {
+      measurements.push_back(run("a", method, 4, seed, 1));
+      const bool odis = method[0] == 'o';
+      measurements.back().error.relMse = odis && seed == 1 ? 28 : 1;
+      measurements.back().error.mean = odis ? 0.9 + 0.1 * double(seed) : 1;
+    }
+  const std::vector<ComparisonRow> rows = summarize(measurements);
+  ASSERT_EQ(rows.size(), 2u);
+  EXPECT_EQ(rows[1].errorRatio.value, 1);
+  EXPECT_NEAR(rows[1].untrimmedRatio.value, 10, 1e-12);
+  EXPECT_NEAR(rows[1].untrimmedRatio.low, 1, 1e-12);
+  EXPECT_NEAR(rows[1].untrimmedRatio.high, 28, 1e-12);  // one resample in 27 has it three times
+  EXPECT_NEAR(rows[1].mean.value, 1, 1e-12);
+  // Three values, 0.1 apart: 4.303 * 0.1 / sqrt(3).
+  EXPECT_NEAR(rows[1].mean.high, 1.2484, 1e-4);
+  EXPECT_NEAR(rows[1].mean.low, 0.7516, 1e-4);
+  EXPECT_EQ(rows[0].mean.low, rows[0].mean.high);
+  SceneRecord scene;
+  scene.name = "a";
+  EXPECT_NE(markdownTables(rows, {scene}).find("| 1.000 [0.752, 1.248] |"), std::string::npos);
+  EXPECT_NE(markdownTables(rows, {scene}).find("| 10.000 [1.000, 28.000] |"), std::string::npos);
+}
+
+TEST(Bootstrap, FewNumbersMakeWideIntervals) {
+  EXPECT_EQ(meanWithInterval({2}).low, meanWithInterval({2}).high);
+  EXPECT_NEAR(meanWithInterval({1, 3}).high, 2 + 12.706, 1e-9);
+  const Interval twelve = meanWithInterval({0, 2, 0, 2, 0, 2, 0, 2, 0, 2, 0, 2});
+  EXPECT_NEAR(twelve.high, 1 + 2.201 * std::sqrt(12.0 / 11 / 12), 0.01);
 }
 
 // Ratios at equal time are to the first method at the number of samples whose time it was.
@@ -134,7 +170,7 @@ TEST(SamplesNeeded, TakesTheLeastOfSeveral) {
 // Of two seeds with ratios 1 and 3 (over 1) the resampled medians are 1, 2 or 3 with probability 1/4, 1/2,
 // 1/4.
 TEST(Bootstrap, DrawsSeedsWithReplacement) {
-  const std::vector<double> ratios = resampledRatios({1, 3}, {1, 1}, 7);
+  const std::vector<double> ratios = resampledRatios({1, 3}, {1, 1}, 7, median);
   int counts[4] = {};
   for (const double ratio : ratios) ++counts[int(ratio)];
   ASSERT_EQ(counts[1] + counts[2] + counts[3], kResamples);
@@ -145,13 +181,13 @@ TEST(Bootstrap, DrawsSeedsWithReplacement) {
   EXPECT_EQ(interval.value, 2);
   EXPECT_EQ(interval.low, 1);
   EXPECT_EQ(interval.high, 3);
-  EXPECT_EQ(resampledRatios({1, 3}, {1, 1}, 7), ratios);  // the same draws again
+  EXPECT_EQ(resampledRatios({1, 3}, {1, 1}, 7, median), ratios);  // the same draws again
 }
 
 // Noise that both share is no reason for doubt.
 TEST(Bootstrap, DrawsBothMethodsTogether) {
   const std::vector<double> a{1, 2, 3, 4, 5}, b{2, 4, 6, 8, 10};
-  for (const double ratio : resampledRatios(a, b, 1)) EXPECT_EQ(ratio, 0.5);
+  for (const double ratio : resampledRatios(a, b, 1, median)) EXPECT_EQ(ratio, 0.5);
 }
 
 // 0, 1, ..., 1000: the middle 95 % are 25 to 975.

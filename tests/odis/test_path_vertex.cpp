@@ -150,7 +150,8 @@ TEST(VertexCounts, RefusedVerticesTeachNothing) {
   for (const Defect& defect : defects()) {
     refused.push_back(vertices[17]);
     defect.spoil(refused.back());
-    // Vertices of surfaces with other lobes tell what returns, though they are refused (HoldsWhatCoatsMirror).
+    // Vertices of surfaces with other lobes tell what returns, though they are refused
+    // (HoldsWhatCoatsMirror).
     if (refused.back().discrete) refused.back().guidableProbability = 0;
   }
   with.add(refused);

@@ -48,6 +48,12 @@ function ratioHtml([value, low, high]) {
   return `<span class="${kind}">${digits(value)}</span>${interval}`;
 }
 
+// A mean [value, low, high]: neither side of 1 is better.
+function meanHtml([value, low, high]) {
+  const interval = high > low ? `<small>${low.toFixed(3)} – ${high.toFixed(3)}</small>` : '';
+  return `<span>${Number.isFinite(value) ? value.toFixed(3) : '–'}</span>${interval}`;
+}
+
 function samplesText(row) {
   return row.equalTime ? `${number(row.samples)} in time of ${row.spp}` : String(row.spp);
 }
@@ -68,10 +74,13 @@ function columnsOf({scene, figures}) {
     {title: 'samples', help: 'per pixel', value: r => r.spp + (r.equalTime ? 0.5 : 0), html: r => escapeHtml(samplesText(r))},
     ...(figures ? [
       column('error', 'trimmedRelMse', 'relMSE without the worst 0.1 % of the pixels'), column('relMSE', 'relMse'),
-      column('SMAPE', 'smape'), column('FLIP', 'flip'), column('SSIM', 'ssim'), column('seconds', 'seconds', 'wall clock'),
+      column('SMAPE', 'smape'), column('FLIP', 'flip'), column('SSIM', 'ssim'),
+      {title: 'mean', help: 'luminance of the image over the reference\'s, mean over seeds', value: r => r.mean[0], html: r => meanHtml(r.mean)},
+      column('seconds', 'seconds', 'wall clock'),
       column('CPU s', 'cpuSeconds', 'of the process on all cores'),
       {title: 'Mrays', help: 'shadow rays included', value: r => r.rays * 1e-6}] : []),
     ratio('error ratio', 'errorRatio', `to ${first} with as many samples`),
+    ratio('untrimmed', 'untrimmedRatio', `relMSE of all pixels, mean over seeds, to ${first} with as many samples`),
     ratio('error × time', 'errorTimeRatio', `to ${first} with as many samples`),
     ratio('error × rays', 'errorRaysRatio', `to ${first} with as many samples`),
     {title: `${first} needs`, help: 'samples per pixel for the same error',

@@ -25,7 +25,8 @@ float usable(float weight) {
   return weight > 0 ? std::min(weight, kMostWeight) : 0.0f;
 }
 
-// The group whose piece of [0, 1) holds u. Bounds are counted: the branches of a search would be mispredicted.
+// The group whose piece of [0, 1) holds u. Bounds are counted, as the branches of a search would be
+// mispredicted.
 uint32_t groupAt(std::span<const float> cdf, float u) {
   uint32_t group = 0;
   for (size_t bound = 1; bound + 1 < cdf.size(); ++bound) group += uint32_t(cdf[bound] <= u);
