@@ -23,8 +23,8 @@ using Middle = double (*)(std::vector<double>);
 std::vector<double> resampledRatios(const std::vector<double>& a, const std::vector<double>& b, uint64_t seed,
                                     Middle middle);
 
-// The mean of independent numbers with Student's interval, which few numbers make wide; without one if there is
-// one number only.
+// The mean of independent numbers with Student's interval, which few numbers make wide; without one if there
+// is one number only.
 Interval meanWithInterval(const std::vector<double>& values);
 
 // The interval between the percentiles of the resamples, around `value`.
