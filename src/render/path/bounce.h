@@ -73,9 +73,7 @@ using Bounces = std::span<Bounce>;
 // Adds the emission that rays met, weighted against next-event estimation where that could have found it
 // too. Paths go on where they met a surface and are not too deep.
 void meetEmission(const PathSettings& settings, Batch& batch, Bounces bounces);
-// Finds out how often the BSDFs draw from lobes that may be guided. Vertices with delta lobes only, on
-// mirrors and glass, have no cell: what they return depends on the one direction that the path came from, of
-// which a cell knows nothing.
+// Finds out how often the BSDFs draw from lobes that may be guided.
 void findGuidableLobes(const PathSettings& settings, Batch& batch, Bounces bounces);
 // Ends paths with the cached radiance of where they arrive, if the guide may (odis::cachedRadiance).
 void endInCache(const PathSettings& settings, Batch& batch, Bounces bounces);

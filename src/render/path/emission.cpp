@@ -91,7 +91,6 @@ void findGuidableLobes(const PathSettings& settings, Batch& batch, Bounces bounc
     if (!asked || !bounce.scatters) continue;
     const Vertex& vertex = *bounce.vertex;
     bounce.guidable = vertex.at.shape->bsdf().guidableProbability(vertex.at, vertex.wo);
-    if (!vertex.at.shape->bsdf().traits().evaluable) bounce.cell = kNoCell;
   }
 }
 

@@ -24,7 +24,8 @@ void findVertices(const PathSettings& settings, std::span<const Path> paths, Bat
   }
 }
 
-// Finds the cells that guide the vertices.
+// Finds the cells that guide the vertices. Those with delta lobes only, on mirrors and glass, have none: what
+// they return depends on the one direction that the path came from, of which a cell knows nothing.
 void findGuidingCells(const PathSettings& settings, std::span<const Path> paths, Batch& batch) {
   batch.cells.assign(batch.vertices.size(), kNoCell);
   if (!settings.guide) return;
@@ -38,8 +39,11 @@ void findGuidingCells(const PathSettings& settings, std::span<const Path> paths,
     batch.places.back().normal = toOdis(facingNormal(vertex.at, vertex.wo));
   }
   findCells(*settings.guide, batch.places.data(), batch.places.size(), batch.cells.data());
-  for (size_t i = 0; i < batch.cells.size(); ++i)
-    if (!guidesAt(settings, paths[batch.active[i]])) batch.cells[i] = kNoCell;
+  for (size_t i = 0; i < batch.cells.size(); ++i) {
+    const Shape* shape = batch.vertices[i].at.shape;
+    const bool deltaOnly = shape && !shape->bsdf().traits().evaluable;
+    if (deltaOnly || !guidesAt(settings, paths[batch.active[i]])) batch.cells[i] = kNoCell;
+  }
 }
 
 // Takes some paths through all steps of a bounce; returns those that were scattered.
