@@ -26,10 +26,10 @@ double errorRaysOf(const Measurement& m) {
   return errorOf(m) * double(m.rays);
 }
 
-double medianOf(const Runs& runs, const Field& field) {
+std::vector<double> valuesOf(const Runs& runs, const Field& field) {
   std::vector<double> values;
   for (const Measurement* run : runs) values.push_back(field(*run));
-  return median(std::move(values));
+  return values;
 }
 
 // A row and the resamples of its ratios, from which those of means over scenes are made.
@@ -63,16 +63,14 @@ void fillRow(Entry& entry) {
   row.equalTime = first.equalTime;
   row.denoised = first.denoised;
   row.seeds = int(entry.runs.size());
-  const auto medianBy = [&](const Field& field) { return medianOf(entry.runs, field); };
+  const auto medianBy = [&](const Field& field) { return median(valuesOf(entry.runs, field)); };
   row.error.mse = medianBy([](const Measurement& m) { return m.error.mse; });
   row.error.relMse = medianBy([](const Measurement& m) { return m.error.relMse; });
   row.error.trimmedRelMse = medianBy(errorOf);
   row.error.smape = medianBy([](const Measurement& m) { return m.error.smape; });
   row.error.flip = medianBy([](const Measurement& m) { return m.error.flip; });
   row.error.ssim = medianBy([](const Measurement& m) { return m.error.ssim; });
-  std::vector<double> means;
-  for (const Measurement* run : entry.runs) means.push_back(run->error.mean);
-  row.mean = meanWithInterval(means);
+  row.mean = meanWithInterval(valuesOf(entry.runs, [](const Measurement& m) { return m.error.mean; }));
   for (const Measurement* run : entry.runs) row.error.nonFinitePixels += run->error.nonFinitePixels;
   row.seconds = medianBy([](const Measurement& m) { return m.seconds; });
   row.cpuSeconds = medianBy([](const Measurement& m) { return m.cpuSeconds; });

@@ -20,7 +20,7 @@ struct ComparisonRow {
   int seeds = 0;
   ErrorMetrics error;
   double seconds = 0, cpuSeconds = 0, rays = 0, samples = 0;
-  // Of the image over the reference's, mean over seeds.
+  // The luminance of the image over that of the reference: the mean over seeds.
   Interval mean;
   // `untrimmedRatio` is of relMSE of all pixels, mean over seeds: it shows fireflies, which the others leave
   // out.
