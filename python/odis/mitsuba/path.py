@@ -187,10 +187,11 @@ def trace(scene, camera, settings, known, tables, recorder, samples):
         fraction, learned_lights = mi.Float(1), mi.Float(0)
         if dr.hint(tables is not None, mode="scalar"):
             # Of what mirrors and glass return a cell knows nothing.
-            cell = guide_tables.find_cell(tables, si.p, normal, active & ((flags & SMOOTH) != 0))
+            known_here = active & ((flags & SMOOTH) != 0)
+            cell = guide_tables.find_cell(tables, si.p, normal, known_here)
             if dr.hint(has_pixel_maps, mode="scalar"):
-                own = dr.gather(mi.UInt32, tables.pixel_cells, pixel, active & first)
-                cell = dr.select(active & first & (own != odis.NO_CELL), own, cell)
+                own = dr.gather(mi.UInt32, tables.pixel_cells, pixel, known_here & first)
+                cell = dr.select(known_here & first & (own != odis.NO_CELL), own, cell)
                 first = first & ((flags & GUIDABLE) == 0)
             decisions = guide_tables.decisions_of(tables, cell, roughness, active)
             relative = mi.luminance(to_rgb(throughput, ray.wavelengths)) / pixel_value
