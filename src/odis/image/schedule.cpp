@@ -11,7 +11,7 @@ namespace {
 
 // A pilot of a quarter of a sample per pixel is for images of at least this many pixels and fewer samples
 // than that.
-constexpr size_t kManyPixels = 200000;
+constexpr size_t kManyPixels = 50000;
 constexpr uint32_t kManySamples = 32;
 // The least number of samples per pixel that are spread by what the first ones say.
 constexpr uint32_t kFewestToSpread = 4;
