@@ -10,6 +10,7 @@
 #include <string>
 
 #include "render/integrators/render.h"
+#include "viewer.h"
 
 namespace odis::app {
 
@@ -44,6 +45,12 @@ class ConsoleProgress : public render::Progress {
   void end() override;
   void warn(const std::string& message) override;
   bool cancelled() const override { return InterruptScope::interrupted(); }
+  // Pictures are shown there as long as it lives.
+  void setViewer(Viewer& viewer) { m_viewer = &viewer; }
+  bool wantsPicture() const override { return m_viewer && m_viewer->isDue(); }
+  void showPicture(int width, int height, std::vector<render::Rgb> colors) override {
+    m_viewer->show(width, height, std::move(colors));
+  }
   // Printed in front of the stage, on lines of its own if that is how progress is shown.
   void setTitle(const std::string& title) { m_title = title; }
 
@@ -51,6 +58,7 @@ class ConsoleProgress : public render::Progress {
   void show(uint64_t done, bool last);
 
   bool m_quiet, m_terminal;
+  Viewer* m_viewer = nullptr;
   std::string m_title, m_stage, m_unit;
   uint64_t m_total = 0, m_before = 0;  // of the stage, and what of it an earlier run did
   std::atomic<uint64_t> m_done{0}, m_nextShow{0};

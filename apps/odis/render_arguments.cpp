@@ -148,7 +148,7 @@ void RenderArguments::addTo(CLI::App& app) {
   app.add_flag("--stats", stats, "Print what it cost");
   app.add_option("--stats-json", statsFile, "Write what it cost");
   app.add_option("--records", recordsFile, "Write the pilot's vertices as a NumPy array, .npy");
-  app.add_option("--tev", tev, "Show the image in tev, at host:port");
+  app.add_option("--tev", tev, "Show the image in the viewer tev at host:port, while it is rendered");
   app.add_option("--replay", replay, "x,y,sample: print that one path instead of rendering");
   app.add_flag("-q,--quiet", quiet, "Print errors and what changes the picture only");
   app.add_flag("-v,--verbose", verbose, "Say what is done, and what in the scene has no effect");

@@ -13,11 +13,11 @@
 #include "numbers.h"
 #include "output.h"
 #include "records.h"
-#include "render/image/tev.h"
 #include "render_arguments.h"
 #include "saved_rendering.h"
 #include "scene_warnings.h"
 #include "stats.h"
+#include "viewer.h"
 
 namespace odis::app {
 
@@ -58,14 +58,6 @@ static int printReplay(const RenderArguments& a, const Scene& scene, const Rende
 
 static double secondsSince(std::chrono::steady_clock::time_point start) {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-}
-
-static void sendToTev(const RenderArguments& a, const RenderedImage& frame) {
-  try {
-    TevClient(TevAddress(a.tev)).send(a.output, frame.width, frame.height, frame.color.data());
-  } catch (const std::exception& error) {  // the image is written all the same
-    say(fmt::format("warning: {}\n", error.what()));
-  }
 }
 
 static Outputs outputsOf(const RenderArguments& a) {
@@ -124,7 +116,6 @@ static void writeOutputs(const RenderArguments& a, const RenderResult& result, c
   if (!a.png.empty()) writePreview(a.png, result.image, a.exposure);
   if (!a.recordsFile.empty()) writeRecords(a.recordsFile, result.records);
   stats.secondsWrite = secondsSince(start);
-  if (!a.tev.empty()) sendToTev(a, result.image);
   if (!a.statsFile.empty()) writeText(a.statsFile, statsJson(stats));
   if (a.stats) fmt::print("{}", statsTable(stats));
   if (a.verbose) say(fmt::format("{}: written\n", a.output));
@@ -158,6 +149,8 @@ static int runRender(RenderArguments& a) {
 
   const InterruptScope interruptible;
   ConsoleProgress progress(a.quiet);
+  std::optional<Viewer> viewer;
+  if (!a.tev.empty()) progress.setViewer(viewer.emplace(TevAddress(a.tev), a.output));
   RenderResult result = render::render(*scene, options, progress);
   if (result.stats.interrupted) tellOfSaved(a);
   if (!isWorthWriting(a, result.stats)) return InterruptScope::exitCode();
@@ -178,6 +171,7 @@ static int runRender(RenderArguments& a) {
   stats.integrator = a.method.integrator;
   stats.commandLine = a.commandLine;
   writeOutputs(a, result, scene->film(), layers, stats);
+  if (viewer) viewer->show(result.image.width, result.image.height, std::move(result.image.color));
   if (!result.stats.interrupted) removeSaved(a);
   if (failure) throw *failure;
   return InterruptScope::exitCode();

@@ -15,8 +15,9 @@ constexpr size_t kManyPixels = 50000;
 constexpr uint32_t kManySamples = 32;
 // The least number of samples per pixel that are spread by what the first ones say.
 constexpr uint32_t kFewestToSpread = 4;
-// The greatest number of samples per pixel in a pass, so that there is progress and an end in sight. The last
-// pass may have more in some pixels, but not on average.
+// The greatest number of samples per pixel in a pass, so that there is progress and an end in sight; the
+// first ones have fewer, so that there is soon a picture. The last pass may have more in some pixels, but not
+// on average.
 constexpr uint32_t kSamplesPerPass = 8;
 
 uint64_t mixBits(uint64_t x) {
@@ -78,11 +79,10 @@ SampleRange Schedule::remaining(uint32_t pixel, uint32_t begin, uint32_t end) co
 }
 
 uint32_t Schedule::passEnd(uint32_t done) const {
-  const uint32_t count = done < m_lastRefinement ? 1 : done < m_spreadAfter ? m_spreadAfter : kSamplesPerPass;
-  if (count == kSamplesPerPass && !m_counts.empty() &&
-      samplesAfter(done) <= kSamplesPerPass * m_counts.size())
-    return m_mostRemaining;
-  return std::min(m_mostRemaining, done + count);
+  if (done < m_lastRefinement) return done + 1;
+  if (done < m_spreadAfter) return m_spreadAfter;
+  if (!m_counts.empty() && samplesAfter(done) <= kSamplesPerPass * m_counts.size()) return m_mostRemaining;
+  return std::min(m_mostRemaining, done + std::clamp(done, 1u, kSamplesPerPass));
 }
 
 uint64_t Schedule::samplesAfter(uint32_t done) const {

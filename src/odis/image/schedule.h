@@ -27,8 +27,8 @@ class Schedule {
   SampleRange remaining(uint32_t pixel, uint32_t begin, uint32_t end) const;
 
   // Where a pass ends that begins when `done` of the samples that remain are taken in every pixel. Passes
-  // that something is decided after have as few samples as can be, others as many as there can be while
-  // there is progress to be seen.
+  // that something is decided after have as few samples as can be, others as many as were taken before,
+  // while there is progress to be seen.
   uint32_t passEnd(uint32_t done) const;
   // After how many of the samples that remain the guide is built for the last time: one less than a power
   // of two, and at least as many samples must be left. 0: after the pilot only.

@@ -1,5 +1,7 @@
 #include "render/integrators/frame_integrator.h"
 
+#include "render/image/fill_gaps.h"
+
 namespace odis::render {
 
 namespace {
@@ -64,7 +66,20 @@ Pass FrameIntegrator::passOf(const FramePass& framePass) {
   return pass;
 }
 
-// Traces a pass. It ends early to be saved, and goes on where it was.
+// Shows what there is; pixels without a sample as those around them.
+void FrameIntegrator::showPicture() {
+  std::vector<Rgb> colors;
+  std::vector<float> weights;
+  for (uint32_t pixel = 0; pixel < m_job.pixelCount(); ++pixel) {
+    const Float3 color = m_frame.mean(pixel).color;
+    colors.emplace_back(color.x, color.y, color.z);
+    weights.push_back(m_frame.sampleCount(pixel) > 0 ? 1 : 0);
+  }
+  fillGaps(m_job.crop().width, m_job.crop().height, weights, colors);
+  m_job.progress().showPicture(m_job.crop().width, m_job.crop().height, std::move(colors));
+}
+
+// Traces a pass. It pauses to be saved and to show a picture, and goes on where it was.
 void FrameIntegrator::trace(const FramePass& framePass) {
   RenderStats& stats = m_job.stats;
   double& seconds = framePass.kind == ODIS_PASS_PILOT    ? stats.secondsPilot
@@ -73,12 +88,15 @@ void FrameIntegrator::trace(const FramePass& framePass) {
   beginStage(framePass);
   for (bool complete = false; !complete;) {
     const Stopwatch tracing;
-    m_job.count(
-        runPass(passOf(framePass), m_job.progress(), [this] { return m_job.stop() || m_saver.isDue(); }));
+    m_job.count(runPass(passOf(framePass), m_job.progress(), [this] {
+      return m_job.stop() || m_saver.isDue() || m_job.progress().wantsPicture();
+    }));
     seconds += tracing.seconds();
-    const bool interrupted = m_job.stop(), due = m_saver.isDue();
-    complete = interrupted || !due;
-    if (interrupted || due) m_saver.save(m_frame);
+    const bool interrupted = m_job.stop(), saving = m_saver.isDue();
+    const bool showing = m_job.progress().wantsPicture();
+    complete = interrupted || !(saving || showing);
+    if (interrupted || saving) m_saver.save(m_frame);
+    if (showing && !interrupted) showPicture();
   }
 }
 

@@ -23,6 +23,7 @@ class FrameIntegrator : public Integrator {
 
  private:
   void trace(const FramePass& framePass);
+  void showPicture();
   void run(const FramePass& framePass);
   Pass passOf(const FramePass& framePass);
   void beginStage(const FramePass& framePass);

@@ -3,6 +3,9 @@
 
 #include <cstdint>
 #include <string>
+#include <vector>
+
+#include "render/math/vec.h"
 
 namespace odis::render {
 
@@ -19,6 +22,11 @@ class Progress {
   // Something that was asked for can't be done, but the work goes on.
   virtual void warn(const std::string& /*message*/) {}
   virtual bool cancelled() const { return false; }
+  // Whether a picture of the unfinished image should be shown. Asked by the rendering threads before each
+  // tile; all of them wait for the picture.
+  virtual bool wantsPicture() const { return false; }
+  // Shows linear colours, width * height of them, row 0 at the top.
+  virtual void showPicture(int /*width*/, int /*height*/, std::vector<Rgb> /*colors*/) {}
 };
 
 }  // namespace odis::render
