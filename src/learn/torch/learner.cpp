@@ -1,7 +1,6 @@
 // The learner on libtorch, a library of its own that `odis train` loads: nobody else waits for libtorch to
 // be loaded, and no other source for its headers.
 #include <mutex>
-#include <sstream>
 #include <thread>
 
 #include "learn/torch/processes.h"
@@ -210,38 +209,16 @@ class TorchLearner : public Learner {
     return result;
   }
 
-  std::string state() const override {
-    torch::serialize::OutputArchive archive, module, adam, lights, lightAdam;
-    m_modules.directions->save(module);
-    m_adam->save(adam);
-    m_modules.lights->save(lights);
-    m_lightAdam->save(lightAdam);
-    archive.write("module", module);
-    archive.write("adam", adam);
-    archive.write("lights", lights);
-    archive.write("lightAdam", lightAdam);
-    std::ostringstream stream;
-    archive.save_to(stream);
-    return stream.str();
-  }
-
-  void restore(const std::string& state) override {
-    std::istringstream stream(state);
-    torch::serialize::InputArchive archive, module, adam, lights, lightAdam;
-    archive.load_from(stream, m_device);
-    archive.read("module", module);
-    archive.read("adam", adam);
-    archive.read("lights", lights);
-    archive.read("lightAdam", lightAdam);
-    m_modules.directions->load(module);
-    m_adam->load(adam);
-    m_modules.lights->load(lights);
-    m_lightAdam->load(lightAdam);
-  }
+  std::string state() const override { return stateOf(trained()); }
+  void restore(const std::string& state) override { learn::restore(trained(), state, m_device); }
 
   std::string agree(const std::string& text) override { return m_together.agree(text); }
 
  private:
+  std::vector<Trained> trained() const {
+    return {{"directions", *m_modules.directions.ptr(), *m_adam},
+            {"lights", *m_modules.lights.ptr(), *m_lightAdam}};
+  }
   torch::Device m_device;
   TorchProcesses m_together;
   Modules m_modules;

@@ -1,6 +1,5 @@
 // The network at pixels on libtorch, and the discriminator that sharpens its maps.
 #include <mutex>
-#include <sstream>
 #include <thread>
 
 #include "learn/torch/processes.h"
@@ -248,38 +247,16 @@ class TorchPixelLearner : public PixelLearner {
     });
   }
 
-  std::string state() const override {
-    torch::serialize::OutputArchive archive, network, adam, discriminator, discriminatorAdam;
-    m_modules.network->save(network);
-    m_adam->save(adam);
-    m_modules.discriminator->save(discriminator);
-    m_discriminatorAdam->save(discriminatorAdam);
-    archive.write("network", network);
-    archive.write("adam", adam);
-    archive.write("discriminator", discriminator);
-    archive.write("discriminatorAdam", discriminatorAdam);
-    std::ostringstream stream;
-    archive.save_to(stream);
-    return stream.str();
-  }
-
-  void restore(const std::string& state) override {
-    std::istringstream stream(state);
-    torch::serialize::InputArchive archive, network, adam, discriminator, discriminatorAdam;
-    archive.load_from(stream, m_device);
-    archive.read("network", network);
-    archive.read("adam", adam);
-    archive.read("discriminator", discriminator);
-    archive.read("discriminatorAdam", discriminatorAdam);
-    m_modules.network->load(network);
-    m_adam->load(adam);
-    m_modules.discriminator->load(discriminator);
-    m_discriminatorAdam->load(discriminatorAdam);
-  }
+  std::string state() const override { return stateOf(trained()); }
+  void restore(const std::string& state) override { learn::restore(trained(), state, m_device); }
 
   std::string agree(const std::string& text) override { return m_together.agree(text); }
 
  private:
+  std::vector<Trained> trained() const {
+    return {{"network", *m_modules.network.ptr(), *m_adam},
+            {"discriminator", *m_modules.discriminator.ptr(), *m_discriminatorAdam}};
+  }
   struct Modules {
     PixelModule network;
     Discriminator discriminator;

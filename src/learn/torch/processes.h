@@ -1,4 +1,5 @@
-// What every learner on libtorch does: it finds its device, agrees with other processes, takes steps of Adam.
+// What every learner on libtorch does: it finds its device, keeps its state, agrees with other processes, takes
+// steps of Adam.
 #pragma once
 
 #include <torch/torch.h>
@@ -15,6 +16,7 @@
 
 #include <cstdlib>
 #include <cstring>
+#include <sstream>
 
 #include "learn/train/learner.h"
 
@@ -44,6 +46,43 @@ inline core::Tensor toTensor(const std::string& name, const torch::Tensor& tenso
   core::Tensor result{name, {}, {values.data_ptr<float>(), values.data_ptr<float>() + values.numel()}};
   for (const int64_t size : values.sizes()) result.shape.push_back(uint32_t(size));
   return result;
+}
+
+// A network and its optimizer, under a name of their own in a learner's state.
+struct Trained {
+  const char* name;
+  torch::nn::Module& module;
+  torch::optim::Adam& adam;
+
+  std::string adamName() const { return std::string(name) + ".adam"; }
+};
+
+// All that their next steps depend on, as bytes.
+inline std::string stateOf(const std::vector<Trained>& all) {
+  torch::serialize::OutputArchive archive;
+  for (const Trained& trained : all) {
+    torch::serialize::OutputArchive module, adam;
+    trained.module.save(module);
+    trained.adam.save(adam);
+    archive.write(trained.name, module);
+    archive.write(trained.adamName(), adam);
+  }
+  std::ostringstream stream;
+  archive.save_to(stream);
+  return stream.str();
+}
+
+inline void restore(const std::vector<Trained>& all, const std::string& state, const torch::Device& device) {
+  std::istringstream stream(state);
+  torch::serialize::InputArchive archive;
+  archive.load_from(stream, device);
+  for (const Trained& trained : all) {
+    torch::serialize::InputArchive module, adam;
+    archive.read(trained.name, module);
+    archive.read(trained.adamName(), adam);
+    trained.module.load(module);
+    trained.adam.load(adam);
+  }
 }
 
 class TorchProcesses {
