@@ -1,5 +1,5 @@
-// What every learner on libtorch does: it finds its device, keeps its state, agrees with other processes, takes
-// steps of Adam.
+// What every learner on libtorch does: it finds its device, keeps its state, agrees with other processes and
+// takes steps of Adam.
 #pragma once
 
 #include <torch/torch.h>
