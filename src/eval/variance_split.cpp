@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numeric>
 
+#include "eval/median.h"
 #include "eval/metrics.h"
 #include "render/integrators/sample_image.h"
 
@@ -77,9 +78,9 @@ Estimated jackknifedRatio(const std::vector<double>& a, const std::vector<double
   const auto n = double(a.size());
   std::vector<double> without;
   for (size_t i = 0; i < a.size(); ++i) without.push_back(sumB > b[i] ? (sumA - a[i]) / (sumB - b[i]) : 0);
-  const double mean = std::accumulate(without.begin(), without.end(), 0.0) / n;
+  const double middle = mean(without);
   double squares = 0;
-  for (const double value : without) squares += (value - mean) * (value - mean);
+  for (const double value : without) squares += (value - middle) * (value - middle);
   return {sumA / sumB, std::sqrt(squares * (n - 1) / n)};
 }
 
