@@ -15,7 +15,7 @@ inline double median(std::vector<double> values) {
 }
 
 // 0 if there are none.
-inline double mean(const std::vector<double>& values) {
+inline double mean(std::vector<double> values) {
   double sum = 0;
   for (const double value : values) sum += value;
   return values.empty() ? 0 : sum / double(values.size());

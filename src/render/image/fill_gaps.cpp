@@ -1,5 +1,7 @@
 #include "render/image/fill_gaps.h"
 
+#include <algorithm>
+
 namespace odis::render {
 
 namespace {
@@ -37,6 +39,7 @@ void fillPixel(const std::vector<Level>& levels, int x, int y, Rgb& color) {
 }  // namespace
 
 void fillGaps(int width, int height, const std::vector<float>& weights, std::vector<Rgb>& colors) {
+  if (std::find(weights.begin(), weights.end(), 0) == weights.end()) return;
   std::vector<Rgb> sums = colors;
   for (size_t i = 0; i < sums.size(); ++i) sums[i] *= weights[i];
   std::vector<Level> levels{{width, height, std::move(sums), weights}};

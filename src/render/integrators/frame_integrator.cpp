@@ -1,5 +1,8 @@
 #include "render/integrators/frame_integrator.h"
 
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+
 #include "render/image/fill_gaps.h"
 
 namespace odis::render {
@@ -68,13 +71,15 @@ Pass FrameIntegrator::passOf(const FramePass& framePass) {
 
 // Shows what there is; pixels without a sample as those around them.
 void FrameIntegrator::showPicture() {
-  std::vector<Rgb> colors;
-  std::vector<float> weights;
-  for (uint32_t pixel = 0; pixel < m_job.pixelCount(); ++pixel) {
-    const Float3 color = m_frame.mean(pixel).color;
-    colors.emplace_back(color.x, color.y, color.z);
-    weights.push_back(m_frame.sampleCount(pixel) > 0 ? 1 : 0);
-  }
+  std::vector<Rgb> colors(m_job.pixelCount());
+  std::vector<float> weights(m_job.pixelCount());
+  tbb::parallel_for(tbb::blocked_range<size_t>(0, colors.size()), [&](const auto& range) {
+    for (size_t pixel = range.begin(); pixel < range.end(); ++pixel) {
+      const Float3 color = m_frame.mean(uint32_t(pixel)).color;
+      colors[pixel] = Rgb(color.x, color.y, color.z);
+      weights[pixel] = m_frame.sampleCount(uint32_t(pixel)) > 0 ? 1 : 0;
+    }
+  });
   fillGaps(m_job.crop().width, m_job.crop().height, weights, colors);
   m_job.progress().showPicture(m_job.crop().width, m_job.crop().height, std::move(colors));
 }
