@@ -45,7 +45,7 @@ class ConsoleProgress : public render::Progress {
   void end() override;
   void warn(const std::string& message) override;
   bool cancelled() const override { return InterruptScope::interrupted(); }
-  // Pictures are shown there as long as it lives.
+  // Pictures are shown there from now on. It must outlive this.
   void setViewer(Viewer& viewer) { m_viewer = &viewer; }
   bool wantsPicture() const override { return m_viewer && m_viewer->isDue(); }
   void showPicture(int width, int height, std::vector<render::Rgb> colors) override {

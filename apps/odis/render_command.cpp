@@ -148,8 +148,8 @@ static int runRender(RenderArguments& a) {
                     durationText(stats.secondsLoad)));
 
   const InterruptScope interruptible;
-  ConsoleProgress progress(a.quiet);
   std::optional<Viewer> viewer;
+  ConsoleProgress progress(a.quiet);
   if (!a.tev.empty()) progress.setViewer(viewer.emplace(TevAddress(a.tev), a.output));
   RenderResult result = render::render(*scene, options, progress);
   if (result.stats.interrupted) tellOfSaved(a);
