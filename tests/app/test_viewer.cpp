@@ -23,10 +23,6 @@ std::string bytesOf(const Rgb& color) {
   std::memcpy(bytes.data(), &color, sizeof color);
   return bytes;
 }
-std::string closedPort() {
-  const Listener listener;  // a port that was free a moment ago, and is closed again
-  return listener.address();
-}
 
 TEST(Viewer, SendsTheLastPictureBeforeItEnds) {
   Listener listener;
@@ -55,7 +51,7 @@ TEST(Viewer, WaitsLongerAndLonger) {
 TEST(Viewer, AsksForNothingWhereTevIsNot) {
   testing::internal::CaptureStderr();
   {
-    Viewer viewer(TevAddress(closedPort()), "a");
+    Viewer viewer(TevAddress(test::closedAddress()), "a");
     std::this_thread::sleep_for(std::chrono::milliseconds(200));
     EXPECT_FALSE(viewer.isDue());
     viewer.show(1, 1, {Rgb(1)});
@@ -77,7 +73,7 @@ TEST_F(Command, ShowsTheImageThatItWrites) {
 }
 
 TEST_F(Command, WritesTheImageWhereTevIsNot) {
-  const test::Outcome outcome = run("render room.xml -q -o a.exr --tev " + closedPort());
+  const test::Outcome outcome = run("render room.xml -q -o a.exr --tev " + test::closedAddress());
   EXPECT_EQ(outcome.code, 0) << outcome.text;
   EXPECT_NE(outcome.text.find("is it running?"), std::string::npos) << outcome.text;
   EXPECT_TRUE(exists("a.exr"));

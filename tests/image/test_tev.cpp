@@ -90,11 +90,7 @@ TEST(TevClient, CreatesThenUpdates) {
 }
 
 TEST(TevClient, SaysWhyItCannotConnect) {
-  std::string address;
-  {
-    const Listener listener;  // a port that was free a moment ago, and is closed again
-    address = listener.address();
-  }
+  const std::string address = test::closedAddress();
   try {
     TevClient client{TevAddress(address)};
     FAIL() << "connected to nobody";

@@ -51,4 +51,10 @@ class Listener {
   std::string m_received;
 };
 
+// An address where nobody listens: that of a port that was free a moment ago, and is closed again.
+inline std::string closedAddress() {
+  const Listener listener;
+  return listener.address();
+}
+
 }  // namespace odis::test
