@@ -2,18 +2,20 @@
 """What `odis` gains and costs in Mitsuba 3: error and time beside Mitsuba's `path`, as the table of docs/mitsuba.md.
 
     bench/in_mitsuba.py SCENE.xml... [--variant llvm_ad_rgb] [--pixels 230400] [--spp 4,16] [--seeds 4] [--cache DIR]
-                        [--preset paper-fast]
+    bench/in_mitsuba.py SCENE.xml... --methods "odis=,cached=--cached,paper=--preset paper-fast --set map-cosine=on"
 
-Needs `pip install ".[mitsuba]"`. Both integrators run in one process and take turns, with max_depth 13, rr_depth 5,
+Needs `pip install ".[mitsuba]"`. All methods run in one process and take turns, with max_depth 13, rr_depth 5,
 independent samples and a box filter. Times are wall clock and processor time without Dr.Jit's code generation and
 compilation: each kind renders once to warm up, and an image for which kernels were compiled is rendered again. Errors
 are 0.1 %-trimmed relMSE as src/eval/metrics.h has it, to references of `path` with other seeds. Values are medians
-over seeds, ratios are of `odis` to `path`. Scenes that do not load get `-`, and the reason on stderr.
+over seeds, ratios are to `path`; the mean is that of all seeds' images, over the reference's, with its standard error
+without the reference's own. Scenes that do not load get `-`, and the reason on stderr.
 """
 import argparse
 import hashlib
 import os
 import resource
+import shlex
 import sys
 import time
 
@@ -26,8 +28,8 @@ from relative_error import trimmed_relative_error
 
 SETTINGS = {"max_depth": 13, "rr_depth": 5}
 REFERENCE_SEED, REFERENCE_PART = 1 << 20, 32
-COLUMNS = ("scene", "samples", "time of `path`, s", "time ratio", "processor time ratio", "error ratio",
-           "rays a sample of `odis`", "error × time")
+COLUMNS = ("scene", "samples", "method", "time, s", "time ratio", "processor time ratio", "error ratio",
+           "rays a sample", "error × time", "mean")
 
 
 def processor_seconds():
@@ -74,28 +76,52 @@ def name_of(path):
     return os.path.basename(os.path.dirname(os.path.abspath(path)))
 
 
-def measure(scene, reference, spp, seeds, preset):
-    """Medians: seconds of `path`, ratios of time, processor time and error, and rays a sample."""
-    integrators = [mi.load_dict({"type": "path", **SETTINGS}),
-                   mi.load_dict({"type": "odis", "preset": preset, **SETTINGS})]
-    for integrator in integrators:
+def parse_methods(text):
+    """Names and parameters of `odis`, from NAME=OPTIONS with commas between; options as of `odis-mitsuba render`."""
+    options = argparse.ArgumentParser(prog="--methods", usage=argparse.SUPPRESS, add_help=False)
+    options.add_argument("--preset", default="default")
+    options.add_argument("--set", action="append", default=[], dest="settings")
+    options.add_argument("--cached", action="store_true")
+    methods = {}
+    for method in text.split(","):
+        name, equals, words = method.partition("=")
+        if not (name and equals):
+            raise argparse.ArgumentTypeError(f"expected NAME=OPTIONS, found {method}")
+        given = options.parse_args(shlex.split(words))
+        methods[name] = {"preset": given.preset, "settings": " ".join(given.settings), "cached": given.cached}
+    return methods
+
+
+def measure(scene, reference, spp, seeds, methods):
+    """For each method a row of medians: seconds, ratios to `path` of time, processor time and error, rays a sample;
+    then the mean of the images over the reference's, with its standard error."""
+    integrators = {"path": mi.load_dict({"type": "path", **SETTINGS})}
+    integrators |= {name: mi.load_dict({"type": "odis", **parameters, **SETTINGS})
+                    for name, parameters in methods.items()}
+    for integrator in integrators.values():
         render(scene, integrator, spp, REFERENCE_SEED - 1)
-    rows, rays = [], []
+    measured = {name: [] for name in integrators}
     for seed in range(seeds):
-        row = []
-        for integrator in integrators:
+        for name, integrator in integrators.items():
             image, seconds, processor = render(scene, integrator, spp, seed)
-            row.append((seconds, processor, trimmed_relative_error(image, reference)))
-        rows.append(row)
-        rays.append(integrators[1].rays / (image.shape[0] * image.shape[1] * spp))
-    (path_seconds, *path), odis = np.median(np.array(rows), axis=0)
-    return path_seconds, *(odis / [path_seconds, *path]), np.median(rays)
+            rays = getattr(integrator, "rays", float("nan")) / (image.shape[0] * image.shape[1] * spp)
+            measured[name].append((seconds, processor, trimmed_relative_error(image, reference), rays,
+                                   image.mean() / reference.mean()))
+    medians = {name: np.median(np.array(rows), axis=0) for name, rows in measured.items()}
+    result = {}
+    for name, median in medians.items():
+        means = np.array(measured[name])[:, -1]
+        error = means.std(ddof=1) / np.sqrt(seeds) if seeds > 1 else float("nan")
+        result[name] = (median[0], *(median[:3] / medians["path"][:3]), median[3], means.mean(), error)
+    return result
 
 
-def print_row(name, spp, values):
-    time_of_path, time_ratio, processor_ratio, error_ratio, rays = values
-    print(f"| {name} | {spp} | {time_of_path} | {time_ratio:.2f} | {processor_ratio:.2f} | {error_ratio:.2f} | "
-          f"{rays} | {time_ratio * error_ratio:.2f} |", flush=True)
+def print_row(scene, spp, method, values):
+    seconds, time_ratio, processor_ratio, error_ratio, rays, mean, standard_error = values
+    rays = "" if np.isnan(rays) else f"{rays:.2f}"  # `path` does not count them
+    print(f"| {scene} | {spp} | {method} | {seconds:.2f} | {time_ratio:.2f} | {processor_ratio:.2f} | "
+          f"{error_ratio:.2f} | {rays} | {time_ratio * error_ratio:.2f} | {mean:.3f} ± {standard_error:.3f} |",
+          flush=True)
 
 
 def main():
@@ -104,7 +130,9 @@ def main():
     parser.add_argument("--variant", default="llvm_ad_rgb")
     parser.add_argument("--pixels", type=int, default=230400)
     parser.add_argument("--spp", default="4,16", help="samples per pixel, with commas (4,16)")
-    parser.add_argument("--preset", default="default", help="of odis: default, paper or paper-fast (default)")
+    parser.add_argument("--methods", type=parse_methods, default="odis=", metavar="NAME=OPTIONS,...",
+                        help="what to compare with path: names and the options --preset, --set and --cached of "
+                        "odis-mitsuba render (odis=)")
     parser.add_argument("--seeds", type=int, default=4)
     parser.add_argument("--reference-spp", type=int, default=256)
     parser.add_argument("--cache", default="out/mitsuba-references", metavar="DIR", help="keeps references there")
@@ -114,7 +142,7 @@ def main():
 
     print(f"| {' | '.join(COLUMNS)} |\n|---|{'--:|' * (len(COLUMNS) - 1)}")
     counts = [int(count) for count in args.spp.split(",")]
-    ratios = {spp: [] for spp in counts}
+    ratios = {}
     with dr.scoped_set_flag(dr.JitFlag.KernelHistory, True):
         for path in args.scenes:
             try:
@@ -125,12 +153,13 @@ def main():
                 print(f"| {name_of(path)} {'| - ' * (len(COLUMNS) - 1)}|", flush=True)
                 continue
             for spp in counts:
-                seconds, *values, rays = measure(scene, reference, spp, args.seeds, args.preset)
-                ratios[spp].append(values)
-                print_row(name_of(path), spp, (f"{seconds:.2f}", *values, f"{rays:.2f}"))
-    for spp, values in ratios.items():
-        if values:
-            print_row(f"geometric mean of {len(values)}", spp, ("", *np.exp(np.log(values).mean(axis=0)), ""))
+                for method, values in measure(scene, reference, spp, args.seeds, args.methods).items():
+                    print_row(name_of(path), spp, method, values)
+                    ratios.setdefault((spp, method), []).append(values[1:4])
+    for (spp, method), values in ratios.items():
+        time_ratio, processor_ratio, error_ratio = np.exp(np.log(values).mean(axis=0))
+        print(f"| geometric mean of {len(values)} | {spp} | {method} | | {time_ratio:.2f} | {processor_ratio:.2f} | "
+              f"{error_ratio:.2f} | | {time_ratio * error_ratio:.2f} | |")
 
 
 if __name__ == "__main__":

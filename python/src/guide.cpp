@@ -120,7 +120,18 @@ void bindDecisions(nb::class_<Guide>& guide) {
           },
           "(cells, light_groups + 1), float32: cumulative probabilities of the groups of lights, from 0 to "
           "1,\n"
-          "where the fraction is above 0; (0, 1) where nothing was learned about lights.");
+          "where the fraction is above 0; (0, 1) where nothing was learned about lights.")
+      .def_prop_ro(
+          "cached_radiance",
+          [](Self self) {
+            const GuideView view = self.p->view();
+            constexpr size_t kFloats = sizeof(CachedRadiance) / sizeof(float);
+            const auto* data = reinterpret_cast<const float*>(view.cached);
+            return shown<NumpyArray<const float, -1, 2, kFloats>>(
+                self, data, {data ? view.cellCount : 0, size_t(2), kFloats});
+          },
+          "(cells, 2, 4), float32: radiance (3) that a path of each half may end with in a cell, and its\n"
+          "standard error; (0, 2, 4) without GuideOptions.cached_error.");
 }
 
 void bindRules(nb::module_& module) {
@@ -139,6 +150,13 @@ void bindRules(nb::module_& module) {
           "least_shadow_ray_probability",
           [](const Rules& self) { return self.decisions.leastShadowRayProbability; },
           "And at least with this probability.")
+      .def_prop_ro(
+          "cached_error", [](const Rules& self) { return self.decisions.cachedError; },
+          "A path may end with cached radiance whose standard error, times its throughput over the pixel's\n"
+          "value, is below this; 0: never.")
+      .def_prop_ro(
+          "least_cached_footprint", [](const Rules& self) { return self.decisions.leastCachedFootprint; },
+          "And whose footprint is at least this many times the cell's edge.")
       .def_prop_ro(
           "rim", [](const Rules& self) { return self.rim; }, "What maps add to every cosine.");
 }

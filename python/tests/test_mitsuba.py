@@ -1,7 +1,6 @@
 """The integrator `odis` against Mitsuba's `path`, on scenes made here. Skipped where Mitsuba does not run."""
 
 import unittest
-import unittest.mock
 
 import made_up
 import numpy as np
@@ -15,7 +14,7 @@ try:
     mi.set_log_level(mi.LogLevel.Error)
     dr.eval(mi.Float(1) + dr.opaque(mi.Float, 1))
     import odis.mitsuba
-    from odis.mitsuba import guide_tables
+    from odis.mitsuba import guide_tables, recording
     from odis.mitsuba.arrays import array_of
     from odis.mitsuba.random_numbers import generator_of, hash_seed
 except (ImportError, AttributeError, RuntimeError) as missing:
@@ -42,10 +41,11 @@ def render(scene, kind, seed, spp, **parameters):
     return np.array(mi.render(scene, integrator=mi.load_dict({"type": kind, **parameters}), spp=spp, seed=seed))
 
 
-def z_scores(scene, spp=64, **parameters):
+def z_scores(scene, spp=64, odis_alone={}, **parameters):
     """Differences between `odis` and `path` in the means of blocks over seeds, in standard errors; and these errors,
     relative to the means."""
-    ours, path = (mi.load_dict({"type": kind, **parameters}) for kind in ("odis", "path"))
+    ours = mi.load_dict({"type": "odis", **parameters, **odis_alone})
+    path = mi.load_dict({"type": "path", **parameters})
     means = [np.array([blocks(np.array(mi.render(scene, integrator=one, spp=spp, seed=first + i))[..., :3])
                        for i in range(SEEDS)]) for one, first in ((ours, 0), (path, 1000))]
     error = np.sqrt(sum(m.var(0, ddof=1) / SEEDS for m in means))
@@ -54,9 +54,11 @@ def z_scores(scene, spp=64, **parameters):
 
 
 class Unbiased(unittest.TestCase):
+    ODIS = {}  # parameters of `odis` that `path` does not have
+
     def compare(self, scene, spp=64, **parameters):
         """Tests of the means of 16 blocks and three colours over seeds: by chance one fails in some 400 such images."""
-        z, error = z_scores(scene, spp, **parameters)
+        z, error = z_scores(scene, spp, self.ODIS, **parameters)
         # |t| > 5 with 22 degrees of freedom: 5 in 100,000.
         self.assertLess(np.abs(z).max(), 5.0, z)
         self.assertLess(np.median(error), 0.02)
@@ -80,29 +82,71 @@ class Unbiased(unittest.TestCase):
 class PixelMaps(Unbiased):
     """The preset `paper`, with histograms at pixels in place of the network, which not every build has."""
 
-    def setUp(self):
-        def with_histogram(preset, width, height, spp, seed, lights):
-            return odis.FrameOptions(
-                width, height, samples_per_pixel=spp, seed=seed, guided_cost=0, refinement_samples=0,
-                pilot_samples_per_pixel=1, pilot_weight=1, adaptive=False,
-                guide=odis.GuideOptions(pixel_maps=odis.PixelMaps.HISTOGRAM, pixel_tile=2, cells_per_diagonal=0,
-                                        fixed_bsdf_fraction=0.5, cosine_product=False))
-        patch = unittest.mock.patch.object(odis.mitsuba.integrator, "frame_options", with_histogram)
-        patch.start()
-        self.addCleanup(patch.stop)
+    ODIS = {"preset": "paper", "settings": "pixel-maps=histogram pixel-tile=2"}
 
     def compare(self, scene, spp=64, **parameters):
         self.assertGreater(len(self.guide_of(scene).pixel_cells), 0)
         super().compare(scene, spp, **parameters)
 
     def guide_of(self, scene):
-        integrator = mi.load_dict({"type": "odis"})
+        integrator = mi.load_dict({"type": "odis", **self.ODIS})
         mi.render(scene, integrator=integrator, spp=4)
         guide = integrator.frame.guide
         # First vertices alone are guided: there are no cells but those of pixels.
         self.assertEqual(len(guide), (guide.pixel_cells != odis.NO_CELL).any() and guide.pixel_cells[
             guide.pixel_cells != odis.NO_CELL].max() + 1)
         return guide
+
+
+class OtherDecisions(unittest.TestCase):
+    """Settings under which kernels decide otherwise."""
+
+    def test_first_bounce_alone_and_roulette_by_throughput(self):
+        settings = "guide-bounces=1 roulette=throughput shadow-rays=all lights=hierarchy samples=even"
+        z, error = z_scores(mi.load_dict(box()), odis_alone={"settings": settings}, max_depth=12, rr_depth=2)
+        self.assertLess(np.abs(z).max(), 5.0, z)  # as of Unbiased
+        self.assertLess(np.median(error), 0.02)
+
+    def test_fewer_guided_bounces_change_the_image(self):
+        scene = mi.load_dict(box())
+        images = [render(scene, "odis", 0, 8, max_depth=6, settings=f"guide-bounces={count}") for count in (-1, 5, 1)]
+        np.testing.assert_array_equal(images[0], images[1])
+        self.assertGreater(np.abs(images[0] - images[2]).max(), 0)
+
+
+class Cached(unittest.TestCase):
+    def test_means_rays_and_noise(self):
+        """Cached radiance moves the image little, and leaves fewer rays and less noise."""
+        scene, images, rays = mi.load_dict(box()), {}, {}
+        for cached in (False, True):
+            integrator = mi.load_dict({"type": "odis", "cached": cached})
+            images[cached] = np.array([np.array(mi.render(scene, integrator=integrator, spp=16, seed=seed))[..., :3]
+                                       for seed in range(SEEDS)], np.float64)
+            rays[cached] = integrator.rays
+        self.assertLess(rays[True], 0.9 * rays[False])
+        self.assertLess(images[True].var(0).mean(), images[False].var(0).mean())
+        self.assertAlmostEqual(images[True].mean() / images[False].mean(), 1, delta=0.02)
+
+    def test_short_paths_are_not_cached(self):
+        scene = mi.load_dict(box())
+        images = [render(scene, "odis", 0, 8, max_depth=7, cached=cached) for cached in (False, True)]
+        np.testing.assert_array_equal(*images)
+
+    def test_recorded_paths_end_with_it(self):
+        """Of two paths, with one and two vertices, the second one ends with cached radiance; no emission is met."""
+        recorder = recording.make_recorder(8)
+        row = recording.new_row(recorder, mi.Bool([True, True, True]))
+        previous = mi.UInt32([recording.NO_ROW, recording.NO_ROW, int(row[1])])
+        zero, one = dr.zeros(mi.Float, 3), dr.ones(mi.Float, 3)
+        recording.write(recorder, row, 1, [zero] * 4 + [one / 2] * 3 + [one], True)  # weight
+        recording.write(recorder, row, 2, [one, zero, zero] + [zero] * 5, True)  # direct
+        recording.write(recorder, row, 4, [one] * 4 + [zero, recording.bits(previous)], True)
+        recording.write(recorder, row, 5, [zero] * 6, True)
+        dr.eval(recorder)
+        recording.complete_paths(recorder, mi.UInt32([int(row[0]), int(row[2])]),
+                                 mi.Float([0, 0, 0, 4, 8, 16]), mi.UInt32([2, 4]))
+        radiance = np.array(recorder.completions).reshape(-1, recording.PACKET)[np.array(row), :3]
+        np.testing.assert_allclose(radiance, [[0, 0, 0], [1 + 4 / 2, 8 / 2, 16 / 2], [4, 8, 16]])
 
 
 class Images(unittest.TestCase):
@@ -159,7 +203,15 @@ class Errors(unittest.TestCase):
     def test_parameters(self):
         for parameters, expected in (({"max_depth": -2}, "max_depth: expected"), ({"rr_depth": 0}, "rr_depth: expected"),
                                      ({"max_dept": 3}, "max_dept"),
-                                     ({"preset": "papre"}, "preset: expected one of default, paper, paper-fast")):
+                                     ({"preset": "papre"}, "preset: expected one of default, paper, paper-fast"),
+                                     ({"settings": "cells"}, "expected words key=value .* found cells"),
+                                     ({"settings": "cels=3"}, "no cels in Mitsuba; did you mean cells?"),
+                                     ({"settings": "refine=1 cells=1.5"}, "cells: expected a whole number from 0 "
+                                      "to 65536, found 1.5"),
+                                     ({"settings": "map-floor=2"}, "map-floor: expected a number from 0 to 1, found 2"),
+                                     ({"settings": "map-floor=nan"}, "map-floor: expected a number"),
+                                     ({"settings": "lights=all"}, "lights: expected one of network, formula, hierarchy"),
+                                     ({"settings": "prior-samples=1:2:3"}, "prior-samples: expected four numbers")):
             with self.assertRaisesRegex(Exception, expected):
                 mi.load_dict({"type": "odis", **parameters})
 
@@ -186,6 +238,41 @@ class Maps(unittest.TestCase):
         expected = self.guide.find_cells(position, normal)
         # Places on the border of two cells may be rounded to either.
         self.assertLess((np.array(found) != expected).mean(), 0.005)
+
+    def test_halves_of_paths(self):
+        """odis::pathHalf, by whole numbers of Python."""
+        def half(pixel, sample):
+            word = pixel << 32 | sample
+            for factor in (0xff51afd7ed558ccd, 0xc4ceb9fe1a85ec53):
+                word = (word ^ word >> 33) * factor % 2**64
+            return word >> 63
+        pixel, sample = (np.random.default_rng(8).integers(0, 2**32, 1000, np.uint32) for _ in range(2))
+        found = np.array(guide_tables.path_half(array_of(mi.UInt32, pixel), array_of(mi.UInt32, sample)))
+        np.testing.assert_array_equal(found, [half(int(p), int(s)) for p, s in zip(pixel, sample)])
+
+    def test_cached_radiance(self):
+        """A path ends where it is wide enough and what the cell doesn't know matters little enough."""
+        vertices = made_up.vertices(20000)
+        builder = odis.GuideBuilder(odis.GuideOptions(cached_error=0.5))
+        builder.add(vertices)
+        guide = builder.build(vertices)
+        tables = guide_tables.make_guide_tables(guide, both_sides=False)
+        count = 2000
+        random = np.random.default_rng(9)
+        cell, half = (random.integers(0, most, count, np.uint32) for most in (len(guide), 2))
+        throughput, footprint = random.random(count, np.float32), (3 * random.random(count)).astype(np.float32)
+        radiance, ends = guide_tables.cached_radiance(
+            tables, array_of(mi.UInt32, cell), array_of(mi.UInt32, half), mi.Float(throughput), mi.Float(footprint),
+            mi.Bool(True))
+        row = guide.cached_radiance[cell, half]
+        edge = guide.finest_edge * 2.0 ** (guide.cell_keys[cell] >> np.uint64(60)).astype(float)
+        expected = (throughput * row[:, 3] < guide.rules.cached_error) & \
+            (footprint >= guide.rules.least_cached_footprint * edge)
+        self.assertGreater(expected.sum(), 100)
+        self.assertGreater((~expected).sum(), 100)
+        self.assertEqual(guide.rules.cached_error, 0.5)
+        self.assertLess((np.array(ends) != expected).sum(), 3)  # edges are rounded
+        np.testing.assert_allclose(np.array(radiance).T[expected], row[expected, :3])
 
     def test_density(self):
         """Of axis-aligned normals the density is nearly the library's: within blocks the cosine is rounded."""

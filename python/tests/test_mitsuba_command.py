@@ -119,6 +119,18 @@ class Command(InFolder):
         np.testing.assert_array_equal(np.array(mi.Bitmap(str(self.folder / "a.exr"))),
                                       np.array(mi.render(scene, integrator=integrator, seed=5)))
 
+    def test_settings_and_cached_images(self):
+        words = ("render", self.scene, "--quiet", "--max-depth", -1, "-o", self.folder / "a.exr")
+        stats = self.folder / "stats.json"
+        self.assertEqual(run(*words, "--cached", "--set", "refine=0", "--set", "cells=8", "--stats-json", stats), (0, ""))
+        result = json.loads(stats.read_text())
+        self.assertEqual((result["settings"], result["cached"]), (["refine=0", "cells=8"], True))
+        self.assertIn("biased", dict(mi.Bitmap(str(self.folder / "a.exr")).metadata().items())["cached"])
+        scene = mi.load_file(str(self.scene))
+        integrator = odis.mitsuba.guide(scene, max_depth=-1, cached=True, settings="refine=0 cells=8")
+        np.testing.assert_array_equal(np.array(mi.Bitmap(str(self.folder / "a.exr"))),
+                                      np.array(mi.render(scene, integrator=integrator)))
+
     def test_resolution_aovs_and_formats(self):
         words = ("render", self.scene, "--resolution", "10x6", "--quiet", "--spp", 4, "--aovs", "dd:depth,n:sh_normal")
         for integrator in ("odis", "path"):
@@ -147,6 +159,10 @@ class Command(InFolder):
                  ((scene, "-o", self.folder), "a folder"),
                  ((scene, "-o", "a.gif"), "ends with one of"), ((scene, "--variant", "scalar_rgb"), "llvm_ad_rgb"),
                  ((scene, "--variant", "metal"), "llvm_ad_rgb"),
+                 ((scene, "--set", "cels=3"), "did you mean cells"), ((scene, "--set", "refine=x"), "found x"),
+                 ((scene, "--cached", "--integrator", "path"), "--cached: expected --integrator odis"),
+                 ((scene, "--set", "refine=0", "--integrator", "path"), "--set: expected --integrator odis"),
+                 ((scene, "--cached", "--variant", "llvm_ad_spectral"), "cached: expected a variant in rgb"),
                  ((scene, "--variant", "llvm_ad_mono"), "rgb or spectral"),
                  ((scene, "-o", self.folder / "a.exr", "--aovs", "a:b"), "Invalid AOV"),
                  ((self.write("text.xml", "hello"), "-o", self.folder / "a.exr"), "expected a scene in XML"),

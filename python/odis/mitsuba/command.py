@@ -19,6 +19,7 @@ from . import from_scene, scene_files
 from .integrator import check_variant
 from .kernel_history import compile_seconds
 from .progress import ProgressLine
+from .settings import PRESETS
 
 NAME = "odis-mitsuba"
 DONE, FAILED, BAD_INPUT, INTERRUPTED = 0, 1, 2, 130
@@ -78,8 +79,12 @@ def make_parser():
                         "(llvm_ad_rgb)")
     render.add_argument("--integrator", choices=("odis", "path"), default="odis",
                         help="odis is guided, path is Mitsuba's path tracer (odis)")
-    render.add_argument("--preset", choices=("default", "paper", "paper-fast"), default="default",
+    render.add_argument("--cached", action="store_true", help="ends paths with the mean radiance of where they "
+                        "arrive: less noise, less time, but biased: docs/cached.md")
+    render.add_argument("--preset", choices=PRESETS, default="default",
                         help="paper, paper-fast: the method of Bako et al. 2019, docs/paper.md (default)")
+    render.add_argument("--set", action="append", default=[], metavar="KEY=VALUE", dest="settings",
+                        help="changes a part of odis, as often as you like: docs/settings.md")
     render.add_argument("--max-depth", type=number_from(-1), metavar="N",
                         help="longest path: 1 is light that the camera sees, -1 is no limit (the scene's, or -1)")
     render.add_argument("--rr-depth", type=number_from(1), metavar="N",
@@ -201,8 +206,10 @@ class Rendering:
     def check(self):
         if not os.path.exists(self.args.scene):
             raise Problem(BAD_INPUT, f"{self.args.scene}: there is no such file")
-        if self.args.preset != "default" and self.args.integrator != "odis":
-            raise Problem(BAD_INPUT, f"--preset {self.args.preset}: expected --integrator odis, path has no presets")
+        args = self.args
+        for option, given in (("--preset", args.preset != "default"), ("--set", args.settings), ("--cached", args.cached)):
+            if given and args.integrator != "odis":
+                raise Problem(BAD_INPUT, f"{option}: expected --integrator odis, path has no such thing")
         format_of(self.output)
         for path in filter(None, (self.output, self.args.stats_json)):
             check_target(path)
@@ -230,8 +237,8 @@ class Rendering:
         given = {name: value for name, value in given.items() if value is not None}
         try:
             if kind == "odis":
-                return from_scene.guide(scene, preset=args.preset, **given,
-                                        **({"aovs": args.aovs} if args.aovs else {}))
+                return from_scene.guide(scene, preset=args.preset, settings=" ".join(args.settings), cached=args.cached,
+                                        **given, **({"aovs": args.aovs} if args.aovs else {}))
             path = {"type": "path", **from_scene.settings_of_scene(scene), **given}
             return mi.load_dict({"type": "aov", "aovs": args.aovs, "image": path} if args.aovs else path)
         except RuntimeError as error:
@@ -264,7 +271,7 @@ class Rendering:
         self.result = {
             "width": bitmap.width(), "height": bitmap.height(), "samples": bitmap.width() * bitmap.height() * spp,
             "spp": spp, "seed": self.args.seed, "integrator": self.args.integrator, "preset": self.args.preset,
-            "variant": self.args.variant,
+            "settings": self.args.settings, "cached": self.args.cached, "variant": self.args.variant,
             "rays": integrator.rays if odis_renders else None}
         return bitmap
 
@@ -284,7 +291,8 @@ class Rendering:
             metadata = {"generatedBy": ", ".join(f"{name} {version}" for name, version in versions.items()),
                         "commandLine": shlex.join([NAME, *self.args.words]), "seed": self.args.seed,
                         "samplesPerPixel": self.result["spp"], "integrator": self.args.integrator,
-                        "variant": self.args.variant}
+                        "variant": self.args.variant,
+                        "cached": "yes: the image is biased" if self.args.cached else "no"}
             self.write(self.output, encoded(bitmap, format_of(self.output), metadata))
             self.seconds["compile"] += (compiling := compile_seconds())
             self.seconds["write"] += time.perf_counter() - begin - compiling

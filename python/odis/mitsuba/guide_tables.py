@@ -33,7 +33,7 @@ class GuideTables:
     """What kernels read of a guide.
 
     4 bytes an entry of the grid; a cell has 1 KB for its texels, 64 bytes a slot (some 2 KB, all of that twice
-    with both sides), 16 bytes of decisions, and 4 bytes a group of lights.
+    with both sides), 16 bytes of decisions, 4 bytes a group of lights, and 36 bytes of cached radiance.
     """
 
     origin: object  # Point3f: corner of the grid
@@ -55,6 +55,10 @@ class GuideTables:
     full_shadow_ray_contribution: object
     least_shadow_ray_probability: object
     pixel_cells: object = None  # UInt32 [pixel]: the cell of the pixel's own map, or odis.NO_CELL; None without such maps
+    # Float [cell][half][4]: radiance that a path may end with, and its standard error; None where none may.
+    cached: object = None
+    cached_footprints: object = None  # Float [cell]: that a path has to have for that
+    cached_error: object = None  # that it may make, over the pixel's value
 
 
 def grid_box(guide):
@@ -139,6 +143,11 @@ def make_guide_tables(guide, both_sides):
         full_shadow_ray_contribution=mi.Float(rules.full_shadow_ray_contribution),
         least_shadow_ray_probability=mi.Float(rules.least_shadow_ray_probability),
         pixel_cells=array_of(mi.UInt32, guide.pixel_cells) if guide.pixel_cells.size else None)
+    if guide.cached_radiance.size:
+        edges = guide.finest_edge * (1 << (guide.cell_keys >> np.uint64(60)).astype(np.int64))
+        tables.cached = array_of(mi.Float, guide.cached_radiance)
+        tables.cached_footprints = array_of(mi.Float, (rules.least_cached_footprint * edges).astype(np.float32))
+        tables.cached_error = mi.Float(rules.cached_error)
     dr.make_opaque(tables)
     return tables
 
@@ -199,6 +208,28 @@ def shadow_ray_probability(tables, contribution):
     full = tables.full_shadow_ray_contribution
     return dr.select(contribution < full,
                      dr.maximum(contribution / full, tables.least_shadow_ray_probability), 1)
+
+
+def path_half(pixel, sample):
+    """The half of the paths that a path belongs to, 0 or 1 (odis::pathHalf)."""
+    word = (mi.UInt64(pixel) << 32) | mi.UInt64(sample)
+    word = (word ^ (word >> 33)) * 0xff51afd7ed558ccd
+    word = (word ^ (word >> 33)) * 0xc4ceb9fe1a85ec53
+    return mi.UInt32(word >> 63)
+
+
+def segment_footprint(distance, pdf, cosine):
+    """What a segment adds to the footprint of its path (odis::segmentFootprint)."""
+    return distance * dr.rsqrt(dr.maximum(pdf * cosine, 1e-20))
+
+
+def cached_radiance(tables, cell, half, throughput, footprint, active):
+    """The radiance that a path which arrives in a cell may end with, and whether it does (odis::cachedRadiance)."""
+    active = active & (cell != odis.NO_CELL)
+    row = dr.gather(mi.ArrayXf, tables.cached, 2 * cell + half, active, shape=(4, -1))
+    least = dr.gather(mi.Float, tables.cached_footprints, cell, active)
+    ends = active & (throughput * row[3] < tables.cached_error) & (footprint >= least)
+    return mi.Color3f(row[0], row[1], row[2]), ends
 
 
 def half_floats(numbers):

@@ -21,14 +21,14 @@ from .lights import make_light_table
 from .materials import make_material_table
 from .progress import default_progress
 from .random_numbers import generator_of, hash_seed
+from .settings import LEAST_CACHED_MAX_DEPTH, GivenSettings
 
 # Vertices are recorded by so many paths at once at most, into so many rows; paths that need more come in smaller parts.
 RECORDED_PATHS = 1 << 17
 ROWS = 1 << 20
-# Of the samples of a guided pass that the guide learns from only those of one pixel in so many are recorded.
-PIXELS_PER_RECORDED = 4
-# Time of a ray of a guided path over that of a ray of another, in the kernels.
-GUIDED_COST = 1.4
+# Of the samples of a guided pass that the guide learns from only those of one pixel in so many are recorded. Cached
+# radiance is worth all of them: their paths are short.
+PIXELS_PER_RECORDED, PIXELS_PER_RECORDED_IF_CACHED = 4, 1
 # Other paths are traced by so many at once at most.
 PATHS = 1 << 22
 # A lane traces this many samples one after the other, and there are at least so many lanes a thread: SIMD packets stay
@@ -95,9 +95,9 @@ def trace_samples(scene, camera, settings, known, tables, samples):
     """Traces samples; where some are recorded returns the recorder, with what only complete paths know filled in."""
     recorder = recording.make_recorder(ROWS) if samples.last_row is not None else None
     path.trace(scene, camera, settings, known, tables, recorder, samples)
-    dr.eval(samples.result, samples.last_row, recorder)
+    dr.eval(samples.result, samples.last_row, samples.ended_with, recorder)
     if recorder is not None:
-        recording.complete_paths(recorder, samples.last_row, path.ray_counts(samples))
+        recording.complete_paths(recorder, samples.last_row, samples.ended_with, path.ray_counts(samples))
         dr.eval(recorder)
     dr.sync_thread()
     return recorder
@@ -110,7 +110,8 @@ def choose_samples(samples, places, recorded, samples_per_lane):
     lanes = min(count, max(LEAST_LANES * dr.thread_count(), count // samples_per_lane))
     samples = replace(samples, chosen=array_of(mi.UInt32, chosen), count=mi.UInt32(count),
                       lane=dr.arange(mi.UInt32, lanes), lanes=mi.UInt32(lanes),
-                      last_row=dr.zeros(mi.UInt32, count) if recorded.any() else None)
+                      last_row=dr.zeros(mi.UInt32, count) if recorded.any() else None,
+                      ended_with=dr.zeros(mi.Float, 3 * count) if recorded.any() else None)
     dr.make_opaque(samples)
     return samples
 
@@ -133,7 +134,7 @@ class PartOfPass:
     recorded: object  # bool: whether its vertices are
 
 
-def parts_of_pass(frame, frame_pass):
+def parts_of_pass(frame, frame_pass, pixels_per_recorded):
     """The samples of a pass, in parts that fit."""
     first, count = frame.samples()
     height, width = first.shape
@@ -142,7 +143,7 @@ def parts_of_pass(frame, frame_pass):
     recorded = np.full(order.size, frame_pass.wants_vertices)
     if frame_pass.kind == odis.PassKind.GUIDED:
         y, x = np.divmod(order, np.uint32(width))
-        recorded &= (x + 2 * y) % PIXELS_PER_RECORDED == 0
+        recorded &= (x + 2 * y) % pixels_per_recorded == 0
     samples_before, recorded_before = (np.concatenate([[0], np.cumsum(counts)])[tile_begin]
                                        for counts in (count, count * recorded))
     begin, tiles = 0, tile_begin.size - 1
@@ -169,30 +170,14 @@ def check_variant():
         raise RuntimeError(f"odis: expected a variant in rgb or spectral without polarisation, found {variant}")
 
 
-# Presets, and the networks at pixels and tiles of those of the paper.
-PRESETS = {"default": None, "paper": ("paper", 1), "paper-fast": ("fast", 4)}
-
-
-def frame_options(preset, width, height, spp, seed, lights):
-    """How the library makes an image."""
-    size = {"width": width, "height": height, "samples_per_pixel": spp, "seed": seed}
-    if PRESETS[preset] is None:
-        return odis.FrameOptions(**size, guided_cost=GUIDED_COST, guide=odis.GuideOptions(
-            light_groups=lights.groups, light_parts=lights.parts))
-    network, tile = PRESETS[preset]
-    return odis.FrameOptions(
-        **size, guided_cost=0, refinement_samples=0, pilot_samples_per_pixel=1, pilot_weight=1, adaptive=False,
-        guide=odis.GuideOptions(
-            model=odis.Model().with_pixel_network(network), pixel_maps=odis.PixelMaps.NETWORK, pixel_tile=tile,
-            cells_per_diagonal=0, fixed_bsdf_fraction=0.5, cosine_product=False))
-
-
 def make_integrator():
     """The class of the integrator for the variant that is set."""
 
     class OdisIntegrator(mi.SamplingIntegrator):
         """Parameters: max_depth (-1), rr_depth (5) and hide_emitters (false), as of `path`; aovs (""), as of `aov`;
-        preset ("default", or "paper" and "paper-fast", docs/paper.md).
+        cached (false): paths may end with cached radiance, which biases the image (docs/cached.md);
+        preset ("default", or "paper" and "paper-fast", docs/paper.md); settings (""): words key=value with blanks
+        between them (docs/settings.md), such as "cells=64 refine=0", which win over those of the preset.
 
         After a rendering `seconds` holds the time of its stages, `rays` the number of rays, `frame` the odis.Frame.
         `progress`, if set, is called with the fraction of the samples that are traced. If `separate_compile` is set and
@@ -203,23 +188,23 @@ def make_integrator():
         # Dr.Jit traverses __dict__, also of an integrator that a scene holds, and would compile kernels anew whenever
         # something in there changes: all is kept out of it.
         __slots__ = ("settings", "scene", "known", "pixel_filter", "frame", "rays", "seconds",
-                     "progress", "separate_compile", "aovs", "preset", "unguided", "said_unguided", "samples_per_lane")
+                     "progress", "separate_compile", "aovs", "given", "cached", "unguided", "said_unguided",
+                     "samples_per_lane")
 
         def __init__(self, props):
             check_variant()
             super().__init__(props)
+            self.given = GivenSettings.read(props.get("preset", "default"), props.get("settings", ""))
             self.settings = path.Settings(props.get("max_depth", -1), props.get("rr_depth", 5),
-                                          props.get("hide_emitters", False))
+                                          props.get("hide_emitters", False), **self.given.path)
             if self.settings.max_depth < -1:
                 raise ValueError("odis: max_depth: expected -1 (no limit) or a number from 0, "
                                  f"found {self.settings.max_depth}")
             if self.settings.rr_depth <= 0:
                 raise ValueError(f"odis: rr_depth: expected a number from 1, found {self.settings.rr_depth}")
-            self.preset = props.get("preset", "default")
-            if self.preset not in PRESETS:
-                raise ValueError(f"odis: preset: expected one of {', '.join(PRESETS)}, found {self.preset}")
-            if self.preset != "default":
-                self.settings.shadow_roulette = False
+            self.cached = props.get("cached", False)
+            if self.cached and mi.is_spectral:
+                raise ValueError(f"odis: cached: expected a variant in rgb, found {mi.variant()}")
             self.scene, self.known = None, None
             self.progress, self.separate_compile = None, False
             names = props.get("aovs", "")
@@ -280,7 +265,10 @@ def make_integrator():
             film = sensor.film()
             self.pixel_filter = filter_quantiles(film.rfilter())
             width, height = film.crop_size()
-            self.frame = frame = odis.Frame(frame_options(self.preset, width, height, spp, seed, self.known.lights))
+            cached = self.cached and not 0 <= self.settings.max_depth < LEAST_CACHED_MAX_DEPTH
+            self.frame = frame = odis.Frame(
+                self.given.frame_options(width, height, spp, seed, self.known.lights, cached))
+            pixels_per_recorded = PIXELS_PER_RECORDED_IF_CACHED if cached else PIXELS_PER_RECORDED
             has_alpha = mi.has_flag(film.flags(), mi.FilmFlags.Alpha)
             valid = np.zeros(width * height) if has_alpha else None  # samples of each pixel
             progress, traced, self.rays = self.progress or default_progress(), 0, 0
@@ -295,7 +283,7 @@ def make_integrator():
                         values = array_of(mi.Float, frame.pixel_values)
                 self.samples_per_lane = SAMPLES_PER_LANE if self.rays >= MANY_RAYS * traced else 1
                 rebuilt = frame_pass.wants_vertices
-                for part in parts_of_pass(frame, frame_pass):
+                for part in parts_of_pass(frame, frame_pass, pixels_per_recorded):
                     self._trace_part(sensor, frame_pass, tables, values, part, valid)
                     traced += part.pixel.size
                     progress(traced / (spp * width * height))

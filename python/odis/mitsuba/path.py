@@ -13,6 +13,8 @@ from .random_numbers import RandomNumbers
 
 VALID = 1 << 31  # marks samples in Samples.result, beside their number of rays
 RECORDED = 1 << 31  # marks samples in Samples.chosen whose vertices are recorded
+# Smoother surfaces end no paths: what they scatter depends too much on the direction.
+LEAST_CACHED_ROUGHNESS = 0.2
 
 
 @dataclass
@@ -22,6 +24,8 @@ class Settings:
     max_depth: int  # 1 is emission that the camera sees; -1 is no limit
     rr_depth: int
     hide_emitters: bool
+    guide_bounces: int = -1  # how many vertices of a path are guided; -1: all
+    learned_roulette: bool = True  # whether guided paths end by the light that comes back; by throughput otherwise
     shadow_roulette: bool = True  # whether guided paths' shadow rays are played for
 
 
@@ -48,6 +52,7 @@ class Samples:
     lane: object = None  # UInt32 [lanes]: 0, 1, ...: as many samples are under way at once
     lanes: object = None  # UInt32
     last_row: object = None  # UInt32 [count]: of the path's last recorded vertex, or NO_ROW; None without a recorder
+    ended_with: object = None  # Float [count][3]: cached radiance that the path ended with; None without a recorder
 
 
 def ray_counts(samples):
@@ -124,9 +129,9 @@ def trace(scene, camera, settings, known, tables, recorder, samples):
     previous_pdf, previous_delta = mi.Float(1), mi.Bool(True)
     previous_cell, previous_fraction = mi.UInt32(odis.NO_CELL), mi.Float(0)
     row, recorded = mi.UInt32(recording.NO_ROW), mi.Bool(False)
-    # Whether no vertex before had lobes that may be guided: for these vertices there are maps at pixels.
+    # How many vertices before had lobes that may be guided: the first ones have maps at pixels.
     has_pixel_maps = tables is not None and tables.pixel_cells is not None
-    first = mi.Bool(True)
+    guidable_before, footprint = mi.UInt32(0), mi.Float(0)
 
     while dr.hint(more, label="odis: paths", exclude=[known, tables, recorder, lights, samples, camera]):
         # The next sample, where none is under way.
@@ -146,8 +151,7 @@ def trace(scene, camera, settings, known, tables, recorder, samples):
             recorded = dr.select(begins, chosen >= RECORDED, recorded)
         if dr.hint(tables is not None, mode="scalar"):
             pixel_value = dr.select(begins, dr.gather(mi.Float, samples.pixel_values, pixel, begins), pixel_value)
-        if dr.hint(has_pixel_maps, mode="scalar"):
-            first = first | begins
+            guidable_before, footprint = dr.select(begins, 0, guidable_before), dr.select(begins, 0, footprint)
 
         active = mi.Bool(more)
         si = scene.ray_intersect(ray, mi.RayFlags.All, coherent=False, active=active)
@@ -188,22 +192,39 @@ def trace(scene, camera, settings, known, tables, recorder, samples):
         if dr.hint(tables is not None, mode="scalar"):
             # Of what mirrors and glass return a cell knows nothing.
             known_here = active & ((flags & SMOOTH) != 0)
+            if dr.hint(settings.guide_bounces >= 0, mode="scalar"):
+                known_here &= guidable_before < settings.guide_bounces
             cell = guide_tables.find_cell(tables, si.p, normal, known_here)
             if dr.hint(has_pixel_maps, mode="scalar"):
-                own = dr.gather(mi.UInt32, tables.pixel_cells, pixel, known_here & first)
-                cell = dr.select(known_here & first & (own != odis.NO_CELL), own, cell)
-                first = first & ((flags & GUIDABLE) == 0)
-            decisions = guide_tables.decisions_of(tables, cell, roughness, active)
+                first = known_here & (guidable_before == 0)
+                own = dr.gather(mi.UInt32, tables.pixel_cells, pixel, first)
+                cell = dr.select(first & (own != odis.NO_CELL), own, cell)
+            guidable_before += dr.select((flags & GUIDABLE) != 0, mi.UInt32(1), mi.UInt32(0))
             relative = mi.luminance(to_rgb(throughput, ray.wavelengths)) / pixel_value
-            survival = guide_tables.survival_probability(tables, decisions.survival_factor, relative)
-            survival_on_arrival = dr.select(active & (depth > 0) & (cell != odis.NO_CELL), survival, 1)
-            stand_in = throughput * (decisions.outgoing_radiance if not mi.is_spectral
-                                     else mi.Spectrum(mi.luminance(decisions.outgoing_radiance)))
-            goes_on = rng.next() < survival_on_arrival
-            played = active & (survival_on_arrival < 1)
-            radiance += dr.select(played, stand_in * dr.select(goes_on, 1 - 1 / survival_on_arrival, 1), 0)
-            active = active & goes_on
-            throughput /= survival_on_arrival
+            if dr.hint(tables.cached is not None, mode="scalar"):
+                # What ends here adds the cached radiance in place of what it would find. Materials with coats go on.
+                facing = dr.abs(dr.dot(si.sh_frame.n, ray.d))
+                footprint += dr.select(active & ~previous_delta,
+                                       guide_tables.segment_footprint(si.t, previous_pdf, facing), 0)
+                even = (flags & (GUIDABLE | HAS_DELTA)) == GUIDABLE
+                there, ends_here = guide_tables.cached_radiance(
+                    tables, cell, guide_tables.path_half(pixel, number), relative, footprint,
+                    active & (depth > 0) & even & (roughness >= LEAST_CACHED_ROUGHNESS))
+                radiance += dr.select(ends_here, throughput * there, 0)
+                if dr.hint(recorder is not None, mode="scalar"):
+                    dr.scatter(samples.ended_with, there, index, ends_here & recorded)
+                active &= ~ends_here
+            decisions = guide_tables.decisions_of(tables, cell, roughness, active)
+            if dr.hint(settings.learned_roulette, mode="scalar"):
+                survival = guide_tables.survival_probability(tables, decisions.survival_factor, relative)
+                survival_on_arrival = dr.select(active & (depth > 0) & (cell != odis.NO_CELL), survival, 1)
+                stand_in = throughput * (decisions.outgoing_radiance if not mi.is_spectral
+                                         else mi.Spectrum(mi.luminance(decisions.outgoing_radiance)))
+                goes_on = rng.next() < survival_on_arrival
+                played = active & (survival_on_arrival < 1)
+                radiance += dr.select(played, stand_in * dr.select(goes_on, 1 - 1 / survival_on_arrival, 1), 0)
+                active = active & goes_on
+                throughput /= survival_on_arrival
             fraction = dr.select((flags & GUIDABLE) != 0, decisions.bsdf_fraction, 1)
             learned_lights = decisions.learned_light_fraction
 
@@ -269,9 +290,10 @@ def trace(scene, camera, settings, known, tables, recorder, samples):
         weight = dr.select(active & dr.all(dr.isfinite(weight)), weight, 0)
         eta *= dr.select(from_map, 1, sampled.eta)
         most = dr.max(throughput * weight)
-        plays = active & (depth >= settings.rr_depth) & (cell == odis.NO_CELL)
+        plays = active & (depth >= settings.rr_depth)
         survival = dr.minimum(most * eta * eta, 0.95)
-        if dr.hint(tables is not None, mode="scalar"):
+        if dr.hint(tables is not None and settings.learned_roulette, mode="scalar"):
+            plays &= cell == odis.NO_CELL
             survival = dr.maximum(survival, tables.least_survival)  # as on arrival
         survival = dr.select(plays, survival, 1)
         goes_on = active & (most > 0) & (rng.next() < survival)

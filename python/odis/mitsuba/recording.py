@@ -64,13 +64,14 @@ def new_row(recorder, active):
     return dr.select(active & (row < recorder.capacity), row, NO_ROW)
 
 
-def complete_paths(recorder, last_row, rays):
+def complete_paths(recorder, last_row, ended_with, rays):
     """Fills in what only complete paths know, from their last rows back to the first (odis::PathRecorder).
 
-    last_row, rays: UInt32, of each path its last row and its number of rays.
+    last_row, rays: UInt32, of each path its last row and its number of rays. ended_with: Float [path][3], the cached
+    radiance that it ended with.
     """
     rays = mi.Float(rays)
-    row, beyond = mi.UInt32(last_row), mi.Color3f(0)
+    row, beyond = mi.UInt32(last_row), dr.unravel(mi.Color3f, ended_with)
 
     def body(row, beyond):
         active = row != NO_ROW
