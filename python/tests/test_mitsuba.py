@@ -14,7 +14,7 @@ try:
     mi.set_log_level(mi.LogLevel.Error)
     dr.eval(mi.Float(1) + dr.opaque(mi.Float, 1))
     import odis.mitsuba
-    from odis.mitsuba import guide_tables, recording
+    from odis.mitsuba import guide_tables, materials, recording
     from odis.mitsuba.arrays import array_of
     from odis.mitsuba.random_numbers import generator_of, hash_seed
 except (ImportError, AttributeError, RuntimeError) as missing:
@@ -126,6 +126,13 @@ class Cached(unittest.TestCase):
         self.assertLess(rays[True], 0.9 * rays[False])
         self.assertLess(images[True].var(0).mean(), images[False].var(0).mean())
         self.assertAlmostEqual(images[True].mean() / images[False].mean(), 1, delta=0.02)
+
+    def test_what_is_seen_through_is_no_coat(self):
+        inside = {"type": "diffuse"}
+        flags = [materials.describe(mi.load_dict(bsdf))[0] & (materials.HAS_DELTA | materials.SEES_THROUGH) for bsdf in (
+            inside, {"type": "plastic"}, {"type": "mask", "opacity": 0.5, "inside": inside}, {"type": "dielectric"})]
+        through = materials.HAS_DELTA | materials.SEES_THROUGH
+        self.assertEqual(flags, [0, materials.HAS_DELTA, through, through])
 
     def test_short_paths_are_not_cached(self):
         scene = mi.load_dict(box())

@@ -13,7 +13,8 @@ LEAST_GUIDED_ROUGHNESS = 0.05
 # Plugins that scatter by delta and other lobes and whose density of the others alone, as the type mask of BSDFContext
 # asks for it, is normalised. Their children need to be such, too.
 SEPARABLE = {"SmoothPlastic", "MaskBSDF", "TwoSidedBRDF", "BumpMap", "NormalMap"}
-GUIDABLE, HAS_DELTA, BOTH_SIDES, SMOOTH = 1, 2, 4, 8
+# SEES_THROUGH: some of the delta lobes let light pass, so that they are no coat.
+GUIDABLE, HAS_DELTA, BOTH_SIDES, SMOOTH, SEES_THROUGH = 1, 2, 4, 8, 16
 
 
 def nodes_below(bsdf):
@@ -58,7 +59,9 @@ def describe(bsdf):
     transmits = mi.has_flag(flags, mi.BSDFFlags.Transmission)
     leaves = [leaf_roughness(node) for node in everything if mi.has_flag(node.flags(), mi.BSDFFlags.Smooth)]
     roughness = min((r for r, _ in leaves), default=1)
-    result = (SMOOTH if smooth else 0) | (BOTH_SIDES if transmits else 0) | (HAS_DELTA if delta else 0)
+    passes = mi.has_flag(flags, mi.BSDFFlags.DeltaTransmission) or mi.has_flag(flags, mi.BSDFFlags.Null)
+    result = (SMOOTH if smooth else 0) | (BOTH_SIDES if transmits else 0) | (HAS_DELTA if delta else 0) \
+        | (SEES_THROUGH if passes else 0)
     separable = not delta or all(node.class_name() in SEPARABLE or not mi.has_flag(node.flags(), mi.BSDFFlags.Delta)
                                  for node in everything)
     if smooth and separable and min((least for _, least in leaves), default=1) >= LEAST_GUIDED_ROUGHNESS:
