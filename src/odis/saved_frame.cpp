@@ -130,6 +130,7 @@ void Frame::save(ArchiveWriter& file) const {
   file.add("frame.hostData", d.hostData);
   file.addValue("frame.position",
                 FramePosition{d.guidesBuilt, d.notFinite, d.outsideFrame, d.buildingBytes, d.pilotVertexCount,
+                              d.schedule.pilotSamples(), d.schedule.passEnd(d.done), d.schedule.spreadAfter(),
                               uint32_t(d.next), d.oraclePasses, d.done, d.finished, d.builder != nullptr});
   file.addValue("frame.vertexCounts", d.vertexCounts);
   file.add("frame.counts", d.schedule.counts());
@@ -231,6 +232,10 @@ void SavedFrame::readPosition(const Archive& file) {
   file.require(position.next <= ODIS_PASS_GUIDED && position.done <= schedule.mostRemaining() &&
                    (position.builder ? options.frame.guided : !learns),
                "frame.position: is damaged");
+  file.require(
+      position.passEnd == schedule.passEnd(position.done) && position.spreadAfter == schedule.spreadAfter() &&
+          position.pilotSamples == schedule.pilotSamples(),
+      "was saved by a version of ODIS that takes samples in another order; expected one by this version");
   // A guide is there as soon as something is guided.
   file.require(!learns || position.next != ODIS_PASS_GUIDED || file.value<uint8_t>("guide.built"),
                "guide.built: is damaged");

@@ -3,13 +3,16 @@
 
 #include <cmath>
 #include <cstdlib>
+#include <cstring>
 #include <fstream>
 #include <set>
 #include <sstream>
 
 #include "learn/inspect/saved_output.h"
 #include "odis/api/objects.h"
+#include "odis/files/crc32.h"
 #include "odis/floor_under_patch.h"
+#include "odis/saved_frame.h"
 #include "odis/saved_vertices.h"
 
 namespace odis::learn {
@@ -294,6 +297,33 @@ TEST(InspectSaved, DamageIsRefused) {
   frame.save(twice);
   twice.addValue("frame.position", uint64_t(0));  // the last of a name counts
   EXPECT_THROW(look(bytesOf(twice)), core::FileError);
+}
+
+// As a version of ODIS would leave it whose pilot has other samples: those that are left are not these.
+TEST(InspectSaved, AFrameOfAnotherOrderOfSamplesIsRefused) {
+  const core::GuideOptions guide = guideOptions(1);
+  const std::string bytes = savedFrame(frameOptions(4, 4, guide), 1);
+  auto position = Archive::parse("f", bytes).value<core::FramePosition>("frame.position");
+  EXPECT_EQ(position.pilotSamples, 16u);
+  for (const auto change :
+       {+[](core::FramePosition& p) { --p.pilotSamples; }, +[](core::FramePosition& p) { ++p.passEnd; },
+        +[](core::FramePosition& p) { ++p.spreadAfter; }}) {
+    core::FramePosition changed = position;
+    change(changed);
+    std::string other = bytes;
+    const std::string_view before(reinterpret_cast<const char*>(&position), sizeof(position));
+    other.replace(other.find(before), sizeof(changed), reinterpret_cast<const char*>(&changed),
+                  sizeof(changed));
+    const uint32_t crc = core::crc32(std::string_view(other).substr(0, other.size() - 4));
+    std::memcpy(other.data() + other.size() - 4, &crc, 4);
+    try {
+      look(other);
+      ADD_FAILURE();
+    } catch (const core::FileError& error) {
+      EXPECT_NE(std::string(error.what()).find("takes samples in another order"), std::string::npos)
+          << error.what();
+    }
+  }
 }
 
 // What the fuzzer begins from (fuzz/saved.cpp), as small as can be. Where what is saved has changed,
