@@ -26,6 +26,13 @@ constexpr uint32_t kOracleFractionPasses = 2;
 constexpr size_t kFewPixels = 16384;
 constexpr uint64_t kGuideSeed = 0x9e3779b97f4a7c15ull;
 
+// How many cells there are does not depend on the number of pixels. Of a pass of more samples than these the
+// guide learns from some pixels only: more gains nothing and costs memory. Vertices of the pilot are larger.
+constexpr uint64_t kMostPilotSamples = 1200000, kMostGuidedSamples = 2400000;
+uint32_t pixelsPerLearnedIn(uint64_t samples, uint64_t most) {
+  return uint32_t((samples + most - 1) / most);
+}
+
 void requireOption(bool holds, const char* message) {
   if (!holds) throw std::invalid_argument(std::string("OdisFrameOptions.") + message);
 }
@@ -102,11 +109,16 @@ void Frame::Data::describePass() {
     if (pixels < kFewPixels) pass.seed ^= guidesBuilt * kGuideSeed;
     cellSamples.clear();
     if (learns()) cellSamples.resize(tiles.tileCount());
+    pixelsPerLearned = pixelsPerLearnedIn(pixels * (end - done), kMostGuidedSamples);
     return;
   }
   pass.stageSamples = next == ODIS_PASS_PILOT ? schedule.pilotSamples() : pixels * options.oracleSamples;
   pass.wantsVertices = true;
   pass.partOfImage = next == ODIS_PASS_PILOT;
+  // Whoever asks for the pilot's vertices, and maps at pixels, want all of them.
+  const bool keepsAll =
+      !pass.partOfImage || options.keepPilotVertices || guideOptions.pixelMaps != ODIS_PIXEL_MAPS_NONE;
+  pixelsPerLearned = keepsAll ? 1 : pixelsPerLearnedIn(schedule.pilotSamples(), kMostPilotSamples);
   if (next == ODIS_PASS_ORACLE) pass.seed ^= kOracleSeed;
   passVertices.assign(tiles.tileCount(), {});
 }
@@ -118,6 +130,10 @@ void Frame::Data::take(uint32_t tile, ArrayView<const FrameSample> samples, Tile
     for (const FrameSample& s : samples) addSample(sums[s.pixel], finiteOrBlack(s.value, notFinite), s.rays);
   }
   if (!pass.wantsVertices) return;
+  if (pixelsPerLearned > 1)
+    vertices.filter([this](const PathVertex& v) {
+      return (v.pixel % options.width + 2 * (v.pixel / options.width)) % pixelsPerLearned == 0;
+    });
   if (next == ODIS_PASS_GUIDED) {
     cellSamples[tile] = builder->take(vertices.view());
     keptBytes += cellSamples[tile].bytes();

@@ -75,6 +75,7 @@ struct Frame::Data {
   OdisPassKind next;                        // of the pass under way, or of the next one
   uint32_t oraclePasses = 0;                // passes of the oracle that are done
   uint32_t done = 0, end = 0;               // samples after the pilot: done before the pass, and by its end
+  uint32_t pixelsPerLearned = 1;            // of the pass: the guide learns from one pixel in so many
   VertexTiles pilotVertices, passVertices;  // [tile]
   VertexTiles oracleVertices;               // those that the oracle's BSDF sampling fractions are made from
   std::vector<CellSamples> cellSamples;     // [tile]

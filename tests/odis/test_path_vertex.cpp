@@ -1,10 +1,11 @@
 // Which vertices can be learned from, and what stands in for what a host does not know.
 #include <gtest/gtest.h>
-#include "odis/frame.h"
 
+#include <algorithm>
 #include <functional>
 
 #include "odis/floor_under_patch.h"
+#include "odis/frame.h"
 #include "odis/models/second_moments.h"
 #include "odis/record/vertex_check.h"
 #include "odis/same_guide.h"
@@ -186,6 +187,36 @@ TEST(VertexCounts, FramesCountWhatThePassDidNotAskFor) {
   EXPECT_EQ(counts.outsideFrame, 2u);
   EXPECT_EQ(counts.notUnit, 1u);
   EXPECT_EQ(refusedVertices(counts), 3u);
+}
+
+// A pilot of 1.3 M samples has more than 1.2 M: one pixel in two is enough, unless somebody asks for the
+// vertices.
+TEST(PathVertexTest, VeryLargeImagesAreLearnedFromInSomePixels) {
+  FrameOptions options;
+  options.width = 1300;
+  options.height = 1000;
+  options.samplesPerPixel = 2;
+  options.pilotSamplesPerPixel = 1;
+  const GuideOptions guide = withModel(test::formulas());
+  options.guide = &guide;
+  for (const bool keepsAll : {false, true}) {
+    options.keepPilotVertices = keepsAll;
+    Frame frame(options);
+    ASSERT_NE(frame.beginPass(), nullptr);
+    std::vector<FrameSample> samples;
+    std::vector<PathVertex> vertices;
+    for (uint32_t pixel = 0; pixel < options.width * options.height; ++pixel) {
+      samples.push_back({pixel, 0, {1, 1, 1}, 3});
+      if (pixel % 7 != 0) continue;
+      vertices.push_back(leastVertex());
+      vertices.back().pixel = pixel;
+    }
+    frame.add(samples, vertices);
+    frame.endPass();
+    const auto learned = [&](const PathVertex& v) { return keepsAll || v.pixel % options.width % 2 == 0; };
+    EXPECT_EQ(frame.vertexCounts().accepted,
+              size_t(std::count_if(vertices.begin(), vertices.end(), learned)));
+  }
 }
 
 // Expects that a guide falls back on what is said where contributions are unknown, in all its cells.

@@ -1,6 +1,8 @@
 // The vertices of a tile on their way to who keeps them.
 #pragma once
 
+#include <algorithm>
+#include <iterator>
 #include <utility>
 #include <vector>
 
@@ -18,6 +20,14 @@ class TileVertices {
 
   ArrayView<const PathVertex> view() const { return m_view; }
   size_t size() const { return m_view.size(); }
+  // Leaves those for which `keeps` is true.
+  template <class Keeps>
+  void filter(const Keeps& keeps) {
+    std::vector<PathVertex> kept;
+    std::copy_if(m_view.begin(), m_view.end(), std::back_inserter(kept), keeps);
+    m_given = std::move(kept);
+    m_view = m_given;
+  }
   // The vertices to keep, copied only if they are lent; this has none afterwards.
   std::vector<PathVertex> take() {
     const ArrayView<const PathVertex> all = std::exchange(m_view, {});
