@@ -211,6 +211,7 @@ class Errors(unittest.TestCase):
         for parameters, expected in (({"max_depth": -2}, "max_depth: expected"), ({"rr_depth": 0}, "rr_depth: expected"),
                                      ({"max_dept": 3}, "max_dept"),
                                      ({"preset": "papre"}, "preset: expected one of default, paper, paper-fast"),
+                                     ({"cached": "no"}, "cached: expected true or false, found no"),
                                      ({"settings": "cells"}, "expected words key=value .* found cells"),
                                      ({"settings": "cels=3"}, "no cels in Mitsuba; did you mean cells?"),
                                      ({"settings": "refine=1 cells=1.5"}, "cells: expected a whole number from 0 "

@@ -203,6 +203,8 @@ def make_integrator():
             if self.settings.rr_depth <= 0:
                 raise ValueError(f"odis: rr_depth: expected a number from 1, found {self.settings.rr_depth}")
             self.cached = props.get("cached", False)
+            if not isinstance(self.cached, bool):
+                raise ValueError(f"odis: cached: expected true or false, found {self.cached}")
             if self.cached and mi.is_spectral:
                 raise ValueError(f"odis: cached: expected a variant in rgb, found {mi.variant()}")
             self.scene, self.known = None, None
