@@ -17,10 +17,11 @@ import sys
 
 import numpy as np
 import OpenEXR
+from block_agreement import BLOCK, pixels_of_blocks
 from PIL import Image, ImageDraw
+from relative_error import LUMINANCE
 
-BLOCK, FULL, FLOOR = 8, 0.1, 0.01
-LUMINANCE = (0.212671, 0.715160, 0.072169)
+FULL, FLOOR = 0.1, 0.01
 COLUMNS, SCALE, GAP, HEADER = 4, 3, 6, 16
 DARKER, SAME, BRIGHTER = (np.array(color, np.float64) for color in ((30, 70, 200), (255, 255, 255), (200, 40, 30)))
 
@@ -29,17 +30,10 @@ def luminance_of(path):
     return OpenEXR.File(path).channels()["RGB"].pixels.astype(np.float64) @ LUMINANCE
 
 
-def blocks(image):
-    """The image as [row of blocks][column][pixel]; a rest at the right and the lower border is left out."""
-    height, width = (size // BLOCK for size in image.shape)
-    cut = image[:height * BLOCK, :width * BLOCK].reshape(height, BLOCK, width, BLOCK)
-    return cut.transpose(0, 2, 1, 3).reshape(height, width, BLOCK * BLOCK)
-
-
 def compare(image, reference):
     """How far each block is off, relative; and the standard error of that."""
-    scale = blocks(reference).mean(axis=2) + FLOOR * reference.mean()
-    difference = blocks(image - reference)
+    scale = pixels_of_blocks(reference).mean(axis=2) + FLOOR * reference.mean()
+    difference = pixels_of_blocks(image - reference)
     return difference.mean(axis=2) / scale, difference.std(axis=2, ddof=1) / BLOCK / scale
 
 

@@ -9,17 +9,24 @@ reach; `heavy tails` marks scenes that exceed the first limit alone.
 import statistics
 
 import numpy as np
+from relative_error import LUMINANCE
 
 BLOCK = 8
 EXCHANGES = 2000
 SIGNIFICANCE = 0.01
 
 
+def pixels_of_blocks(image):
+    """The image, [row][column], as [row of blocks][column][pixel], without what is left over at the right and at the
+    bottom."""
+    height, width = (size // BLOCK for size in image.shape)
+    cut = image[:height * BLOCK, :width * BLOCK].reshape(height, BLOCK, width, BLOCK)
+    return cut.transpose(0, 2, 1, 3).reshape(height, width, BLOCK * BLOCK)
+
+
 def blocks(image):
-    """The luminance of blocks of pixels, without what is left over at the right and at the bottom."""
-    luminance = np.asarray(image, np.float64)[..., :3] @ [0.212671, 0.71516, 0.072169]
-    height, width = (size // BLOCK for size in luminance.shape)
-    return luminance[:height * BLOCK, :width * BLOCK].reshape(height, BLOCK, width, BLOCK).mean((1, 3)).ravel()
+    """The luminance of blocks of pixels."""
+    return pixels_of_blocks(np.asarray(image, np.float64)[..., :3] @ LUMINANCE).mean(axis=2).ravel()
 
 
 def z_scores(a, b):

@@ -299,7 +299,8 @@ TEST(InspectSaved, DamageIsRefused) {
   EXPECT_THROW(look(bytesOf(twice)), core::FileError);
 }
 
-// As a version of ODIS would leave it whose pilot has other samples: those that are left are not these.
+// A version of ODIS that takes samples in another order leaves such frames: this one would take some samples
+// twice and others never.
 TEST(InspectSaved, AFrameOfAnotherOrderOfSamplesIsRefused) {
   const core::GuideOptions guide = guideOptions(1);
   const std::string bytes = savedFrame(frameOptions(4, 4, guide), 1);
