@@ -89,8 +89,18 @@ class VertexMap {
   };
   // Samples a direction from u, v uniform in [0, 1). Only where sampleable().
   ODIS_HOST_DEVICE Sample sample(Real u, Real v) const {
-    const Int blockY = pick(m_rows, v);
-    const Int block = blockY * Int(kBlockSize) + pick(row(m_blocks, blockY), u);
+    const Int block = chooseBlock(u, v);
+    return sampleWithin(block, u, v);
+  }
+
+  // The same in two steps, for hosts that sample many vertices: u and v choose a block of texels, and are
+  // stretched again to sample within it. Only the second step reads texels: if all vertices take the first
+  // step, and prefetch() their blocks, before any takes the second, none waits for memory.
+  ODIS_HOST_DEVICE Int chooseBlock(Real& u, Real& v) const {
+    const Int y = pick(m_rows, v);
+    return y * Int(kBlockSize) + pick(row(m_blocks, y), u);
+  }
+  ODIS_HOST_DEVICE Sample sampleWithin(Int block, Real u, Real v) const {
     Block weights;
     weigh(block, weights);
     const Int y = pick(weights.rows, v);
@@ -98,6 +108,12 @@ class VertexMap {
     const Int x = pick(texels, u);
     const Int texel = block * Int(kBlockTexels) + y * Int(kBlockSize) + x;
     return {squareToDirection(pointOfTexel<Real>(texel, {u, v})), element(texels, x) * weights.toPdf};
+  }
+
+  // Fetches the texels of a block, which sampleWithin() and the density of a direction in it read. On the
+  // CPU, for one vertex at a time.
+  void prefetch(Int block) const {
+    __builtin_prefetch(m_maps.texels + (m_cell * Int(kMapTexels) + block * Int(kBlockTexels)));
   }
 
   // The density of `wi`; 0 where there is nothing to sample.

@@ -144,8 +144,10 @@ TEST_P(VertexMapTest, PdfIsTheSampledOne) {
   map.prepare(texels.arrays(), 0, c.normal, c.belowSign);
   int different = 0;
   for (int i = 0; i < 1000; ++i) {
-    const VertexMap<float>::Sample s = map.sample((i + 0.5f) / 1000, std::fmod(i * 0.618034f, 1.0f));
-    different += std::abs(map.pdf(s.wi) - s.pdf) > 1e-4f * s.pdf;
+    float u = (i + 0.5f) / 1000, v = std::fmod(i * 0.618034f, 1.0f);
+    const int block = map.chooseBlock(u, v);
+    const VertexMap<float>::Sample s = map.sampleWithin(block, u, v);
+    different += texelOf(s.wi) / kBlockTexels != block || std::abs(map.pdf(s.wi) - s.pdf) > 1e-4f * s.pdf;
   }
   EXPECT_LE(different, 2);  // a sample on the very border of a texel may be looked up next door
 }

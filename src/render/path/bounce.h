@@ -35,6 +35,7 @@ struct Bounce : Arrival {
   LightEstimate light;         // next-event estimation
   Rgb direct;                  // its radiance with the MIS weight
   float shadowRayProbability;  // with which the shadow ray was traced; 0: it was not
+  GuidedBsdf::Draw draw;       // numbers that the next direction is sampled with
   BsdfSample next;             // the sampled direction
   Rgb weight;                  // of that direction, divided by `survival`; black if the path ends
   float survival;              // probability with which roulette by throughput lets the path go on
@@ -87,8 +88,12 @@ Bounces keepScattered(Bounces bounces);
 void prepareDirections(const PathSettings& settings, Bounces bounces);
 // Counts the vertices of each path that may be guided, this one included.
 void countGuidable(Bounces bounces);
-// Chooses a light and a point on it, and weighs what it gives against sampling directions.
-void estimateDirectLight(const PathSettings& settings, Bounces bounces);
+// Chooses a light and a point on it.
+void sampleLights(const PathSettings& settings, Bounces bounces);
+// Draws the numbers that directions are sampled with.
+void drawNumbers(Bounces bounces);
+// Weighs what lights give against sampling directions.
+void weighLights(Bounces bounces);
 void sampleDirections(Bounces bounces);
 // Notes features of the first vertex whose direction is not discrete.
 void describeFirstHits(const PathSettings& settings, Bounces bounces);

@@ -41,19 +41,25 @@ LightReference lightReference(const SurfacePoint& at, const Vec3& wo) {
   return {at.p, facingNormal(at, wo), at.shape->bsdf().traits().transmissive};
 }
 
-void estimateDirectLight(const PathSettings& settings, Bounces bounces) {
+void sampleLights(const PathSettings& settings, Bounces bounces) {
   for (Bounce& bounce : bounces) {
     const Vertex& vertex = *bounce.vertex;
     bounce.reference = lightReference(vertex.at, vertex.wo);
     if (settings.learnedLights && bounce.cell != kNoCell)
       bounce.reference.learned = learnedLights(*settings.guide, bounce.cell);
-    bounce.direct = Rgb(0, 0, 0);
     if (!vertex.at.shape->bsdf().traits().evaluable) {
       bounce.light = {};
       bounce.path->sampler.skip(kLightNumbers);
       continue;
     }
     bounce.light = sampleLight(settings, vertex, bounce.reference, bounce.path->sampler);
+    if (bounce.light.pdf > 0) bounce.bsdf.prefetch(bounce.light.wi);
+  }
+}
+
+void weighLights(Bounces bounces) {
+  for (Bounce& bounce : bounces) {
+    bounce.direct = Rgb(0, 0, 0);
     if (!isBlack(bounce.light.radiance))
       bounce.direct = bounce.light.radiance * misWeight(bounce.light, bounce.bsdf);
   }

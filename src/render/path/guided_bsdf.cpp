@@ -11,6 +11,16 @@ struct RivalMap {
   float pdf(const Float3& wi) const { return rival.pdf(fromOdis(wi)); }
 };
 
+// A map whose block was chosen before, as the mixture asks for it.
+struct MapWithBlock {
+  const VertexMap<float>& map;
+  const GuidedBsdf::Draw& draw;
+  VertexMap<float>::Sample sample(float, float) const {
+    return map.sampleWithin(draw.block, draw.withinBlock.x, draw.withinBlock.y);
+  }
+  float pdf(const Float3& wi) const { return map.pdf(wi); }
+};
+
 // The BSDF at a vertex as the mixture asks for it.
 struct BsdfHost {
   using Sample = BsdfSample;
@@ -75,16 +85,30 @@ float GuidedBsdf::pdf(const BsdfValue& bsdf, const Vec3& wiWorld) const {
   return m_mixture.pdf(bsdf.pdf, bsdf.guidablePdf, mapPdf);
 }
 
-BsdfSample GuidedBsdf::sample(const Vertex& vertex, Sampler& sampler) const {
-  float uLobe = 0;
+void GuidedBsdf::prefetch(const Vec3& wiWorld) const {
+  if (m_mixture.guides() && !m_rival) m_map.prefetch(texelOf(toOdis(wiWorld)) >> 4);
+}
+
+GuidedBsdf::Draw GuidedBsdf::draw(const Vertex& vertex, Sampler& sampler) const {
+  Draw draw;
   if (vertex.at.shape->bsdf().traits().choosesLobes)
-    uLobe = sampler.get1D();
+    draw.uLobe = sampler.get1D();
   else
     sampler.skip(1);
-  const Vec2 u = sampler.get2D();
-  const BsdfHost host{vertex, uLobe};
-  if (m_rival) return m_mixture.sample(RivalMap{*m_rival}, u.x, u.y, host);
-  return m_mixture.sample(m_map, u.x, u.y, host);
+  draw.u = sampler.get2D();
+  if (!m_mixture.guides() || m_rival) return draw;
+  const auto choice = m_mixture.choose(draw.u.x);
+  if (!choice.fromMap) return draw;
+  draw.withinBlock = Vec2(choice.u, draw.u.y);
+  draw.block = m_map.chooseBlock(draw.withinBlock.x, draw.withinBlock.y);
+  m_map.prefetch(draw.block);
+  return draw;
+}
+
+BsdfSample GuidedBsdf::sample(const Vertex& vertex, const Draw& draw) const {
+  const BsdfHost host{vertex, draw.uLobe};
+  if (m_rival) return m_mixture.sample(RivalMap{*m_rival}, draw.u.x, draw.u.y, host);
+  return m_mixture.sample(MapWithBlock{m_map, draw}, draw.u.x, draw.u.y, host);
 }
 
 }  // namespace odis::render

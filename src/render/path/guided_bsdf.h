@@ -19,7 +19,19 @@ class GuidedBsdf {
   // The density of the mixture in a direction, with respect to solid angle, `bsdf` being the BSDF's value
   // there.
   float pdf(const BsdfValue& bsdf, const Vec3& wiWorld) const;
-  BsdfSample sample(const Vertex& vertex, Sampler& sampler) const;
+  // Fetches what pdf() of this direction reads of the map.
+  void prefetch(const Vec3& wiWorld) const;
+
+  // A direction is sampled in two steps, so that the map is fetched while other vertices take the first one:
+  // numbers are drawn, and where the direction comes from the map a block of it is chosen.
+  struct Draw {
+    float uLobe = 0;  // chooses a lobe
+    Vec2 u;
+    int block;         // of the map
+    Vec2 withinBlock;  // numbers that sample within it
+  };
+  Draw draw(const Vertex& vertex, Sampler& sampler) const;
+  BsdfSample sample(const Vertex& vertex, const Draw& draw) const;
 
  private:
   Mixture<float> m_mixture;

@@ -22,9 +22,13 @@ void countGuidable(Bounces bounces) {
   for (Bounce& bounce : bounces) bounce.path->guidable += bounce.guidable > 0;
 }
 
+void drawNumbers(Bounces bounces) {
+  for (Bounce& bounce : bounces) bounce.draw = bounce.bsdf.draw(*bounce.vertex, bounce.path->sampler);
+}
+
 void sampleDirections(Bounces bounces) {
   for (Bounce& bounce : bounces) {
-    bounce.next = bounce.bsdf.sample(*bounce.vertex, bounce.path->sampler);
+    bounce.next = bounce.bsdf.sample(*bounce.vertex, bounce.draw);
     if (!isFinite(bounce.next.weight)) bounce.next = {};
   }
 }

@@ -55,7 +55,9 @@ Bounces takeSteps(const PathSettings& settings, Batch& batch, Bounces bounces) {
   bounces = keepScattered(bounces);
   prepareDirections(settings, bounces);
   countGuidable(bounces);
-  estimateDirectLight(settings, bounces);
+  sampleLights(settings, bounces);
+  drawNumbers(bounces);
+  weighLights(bounces);
   sampleDirections(bounces);
   describeFirstHits(settings, bounces);
   playRouletteOnDeparture(settings, bounces);
