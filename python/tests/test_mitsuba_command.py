@@ -235,6 +235,32 @@ class SceneFiles(InFolder):
         self.assertIn("Gaussian", str(sensor.film().rfilter()))
         self.assertIn("Stratified", str(sensor.sampler()))
 
+    def test_old_skies(self):
+        """+Y was up, north -Z and east +X; the sun of 9 o'clock stands in the east."""
+        morning = [0.615, 0.783, 0.096]
+        turned = '<transform name="toWorld"><rotate y="1" angle="90"/></transform>'
+        cases = [
+            ("0.6.0", "sunsky", '<float name="hour" value="9"/>', morning, True),
+            ("0.6.0", "sunsky", '<float name="hour" value="9"/>' + turned, [0.096, 0.783, -0.615], True),
+            ("0.6.0", "sunsky", '<vector name="sunDirection" x="1" y="2" z="-3"/>', [1, 2, -3], True),
+            ("3.0.0", "sun", '<float name="hour" value="9"/>', morning, True),
+            ("0.6.0", "sky", '<float name="hour" value="9"/>', morning, False),
+            ("3.0.0", "sunsky", '<vector name="sun_direction" x="1" y="-3" z="2"/>', [1, -3, 2], True),
+        ]
+        for version, kind, parameters, towards, shines in cases:
+            with self.subTest(version=version, kind=kind, parameters=parameters):
+                text = f'<scene version="{version}"><emitter type="{kind}">{parameters}</emitter></scene>'
+                sky = scene_files.load_file(self.write("sky.xml", text)).environment()
+                at = mi.SurfaceInteraction3f()
+                at.wi = -mi.Vector3f((np.array(towards, float) / np.linalg.norm(towards)).tolist())
+                self.assertEqual(np.max(np.array(sky.eval(at))) > 100, shines)
+                self.assertEqual("Sky scale = 0" in str(sky), kind == "sun")
+        # The sun keeps its power where it is larger, and `scale` is that of both parts.
+        old = '<scene version="0.6.0"><emitter type="sunsky"><float name="sunRadiusScale" value="4"/>{}</emitter></scene>'
+        sky = str(scene_files.load_file(self.write("sky.xml", old.format('<float name="scale" value="3"/>'))).environment())
+        for part in ("Sun aperture = 2.1432", "Sun scale = 3", "Sky scale = 3"):
+            self.assertIn(part, sky)
+
     def test_file_resolver_stays(self):
         before = str(mi.file_resolver())
         scene_files.load_file(self.scene)

@@ -6,9 +6,14 @@ from xml.etree import ElementTree
 from xml.parsers import expat
 
 import mitsuba as mi
+import numpy as np
 
 # What is kept of an integrator that Mitsuba does not have.
 KEPT = {"max_depth", "rr_depth", "hide_emitters"}
+# What only the skies of Mitsuba 0.6 know, and only those of Mitsuba 3; what says where the sun stands.
+OLD_SKY, NEW_SKY = {"extend", "resolution", "scale", "stretch", "sun_radius_scale"}, {"sun_aperture", "complex_sun"}
+TIME_AND_PLACE = {"year", "month", "day", "hour", "minute", "second", "latitude", "longitude", "timezone"}
+SUN_DIAMETER = 0.5358  # degrees
 
 
 def load_file(path, size=None, pixels=None, rfilter=None, sampler=None, warn=None):
@@ -16,7 +21,8 @@ def load_file(path, size=None, pixels=None, rfilter=None, sampler=None, warn=Non
 
     Mitsuba upgrades old versions itself. Beyond that, parameters that it refuses as unreferenced are dropped, texture
     filters that it no longer has become `bilinear`, and an integrator that it does not have becomes `path`, with its
-    max_depth, rr_depth and hide_emitters. `warn` is called with a sentence about each of these; by default it goes to
+    max_depth, rr_depth and hide_emitters. The `sun`, `sky` and `sunsky` of Mitsuba 0.6, where +Y is up, become `sunsky`
+    as it is now, where +Z is. `warn` is called with a sentence about each of these; by default it goes to
     Mitsuba's log.
 
     size: (width, height) in place of what the films of the file say; their crop windows are dropped then.
@@ -37,6 +43,7 @@ def load_file(path, size=None, pixels=None, rfilter=None, sampler=None, warn=Non
     places = dict(zip(root.iter(), _start_tags(text), strict=True))
     _replace_unknown_integrators(root, warn)
     _replace_texture_filters(root, warn)
+    _renew_skies(root)
     if size or pixels or rfilter or sampler:
         _set_sensors(root, size, pixels, rfilter, sampler)
     outside = mi.file_resolver()
@@ -153,6 +160,50 @@ def _replace_texture_filters(root, warn):
         node.set("value", "bilinear")
     if unknown:
         warn("the texture filters trilinear and ewa are not known any more; bilinear takes their place")
+
+
+def _renew_skies(root):
+    """Turns skies of Mitsuba 0.6 into those of Mitsuba 3."""
+    defaults = _defaults(root)
+    before_2 = root.get("version", "3").startswith(("0.", "1."))
+    for node in root.iter("emitter"):
+        kind = _value(node.get("type", ""), defaults)
+        given = {_snake_case(child.get("name", "")): _value(child.get("value", ""), defaults) for child in node}
+        old = kind in ("sun", "sky") or kind == "sunsky" and (before_2 or OLD_SKY & set(given))
+        if not old or NEW_SKY & set(given):
+            continue
+        node.set("type", "sunsky")
+        for part in ("sun", "sky"):
+            if kind not in (part, "sunsky"):
+                _set_number(node, f"{part}_scale", 0)
+            elif f"{part}_scale" not in given and given.get("scale"):
+                _set_number(node, f"{part}_scale", given["scale"])
+        if given.get("sun_radius_scale"):  # 0 was a sun without a diameter
+            _set_number(node, "sun_aperture", max(SUN_DIAMETER * float(given["sun_radius_scale"]), 0.01))
+        for child in [child for child in node if _snake_case(child.get("name", "")) in ("scale", "sun_radius_scale")]:
+            node.remove(child)
+        to_world = node.find("transform")
+        if to_world is None:
+            to_world = ElementTree.SubElement(node, "transform", name="to_world")
+        to_world.insert(0, ElementTree.Element("rotate", x="1", angle="-90"))
+        if "sun_direction" not in given:
+            when = {name: float(given[name]) for name in TIME_AND_PLACE & set(given) if given[name]}
+            to_world.insert(0, ElementTree.Element("rotate", z="1", angle=repr(_turn_of_the_sun(when))))
+
+
+def _turn_of_the_sun(when):
+    """The angle, in degrees about +Z, from where Mitsuba 3 puts the sun at a time to where Mitsuba 0.6 does, both with
+    +Z up. North and east are -X and -Y there; they were +Y and +X."""
+    integers = {name: int(value) for name, value in when.items() if name in ("year", "month", "day")}
+    sky = mi.load_dict({"type": "sunsky", **when, **integers})
+    south, west, _ = np.array(mi.traverse(sky)["sun_direction"], float).ravel()
+    return float(np.degrees(np.arctan2(-south, -west) - np.arctan2(west, south)))
+
+
+def _set_number(node, name, value):
+    for child in [child for child in node if _snake_case(child.get("name", "")) == name]:
+        node.remove(child)
+    ElementTree.SubElement(node, "float", name=name, value=str(value))
 
 
 def _set_sensors(root, size, pixels, rfilter, sampler):
