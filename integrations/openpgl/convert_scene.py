@@ -41,24 +41,34 @@ class Scene:
 
     def color(self, nodes, parameters, name, default):
         """A colour or a texture, as attributes of a closure and connections to it."""
-        value = next((parameters[name + end] for end in (".value", ".data", "") if name + end in parameters
+        if name + ".data" in parameters:
+            to_uv = np.array(parameters[name + ".to_uv"].matrix, float).reshape(3, 3)
+            if np.abs([to_uv[0, 1], to_uv[1, 0]]).max() > 1e-6:
+                self.say("textures are not rotated")
+            file = self.image(parameters.properties[name + ".data"][2], parameters[name + ".data"].shape, to_uv)
+            nodes.append(f'<image_texture name="t{len(nodes)}" filename="{file}" colorspace="__builtin_raw" '
+                         f'tex_mapping.scale="{to_uv[0, 0]:.6g} {to_uv[1, 1]:.6g} 1" '
+                         f'tex_mapping.translation="{to_uv[0, 2]:.6g} {to_uv[1, 2]:.6g} 0"/>')
+            return default, f't{len(nodes) - 1} color'
+        value = next((parameters[name + end] for end in (".value", "") if name + end in parameters
                       and not isinstance(parameters[name + end], str)), None)
         if value is None:
             return default, None
-        array = np.asarray(value, np.float32)
-        if array.ndim == 3 and array.shape[0] * array.shape[1] > 1:
-            file = self.image(array)
-            nodes.append(f'<image_texture name="t{len(nodes)}" filename="{file}" colorspace="__builtin_raw"/>')
-            return default, f't{len(nodes) - 1} color'
-        array = array.ravel()
+        array = np.asarray(value, np.float32).ravel()
         return np.repeat(array, 3) if array.size == 1 else array[:3], None
 
-    def image(self, array):
-        key = array.tobytes()
+    def image(self, texture, shape, to_uv):
+        """The pixels of a bitmap as Mitsuba sees them, linear, in a file whose last row is that of v = 0."""
+        height, width = shape[:2]
+        row, column = np.meshgrid(np.arange(height)[::-1] + 0.5, np.arange(width) + 0.5, indexing="ij")
+        pixels = np.stack([column.ravel() / width, row.ravel() / height, np.ones(height * width)])
+        si = mi.SurfaceInteraction3f()
+        si.uv = mi.Point2f((np.linalg.inv(to_uv) @ pixels)[:2].astype(np.float32))
+        values = np.array(texture.eval(si)).reshape(3, -1).T.reshape(height, width, 3)
+        key = values.tobytes()
         if key not in self.images:
             self.images[key] = f"texture{len(self.images)}.exr"
-            colors = array[..., :3] if array.shape[2] >= 3 else np.repeat(array[..., :1], 3, axis=2)
-            mi.Bitmap(np.ascontiguousarray(colors)).write(str(self.folder / self.images[key]))
+            mi.Bitmap(np.ascontiguousarray(values, np.float32)).write(str(self.folder / self.images[key]))
         return self.images[key]
 
     def closure(self, nodes, bsdf):
@@ -212,7 +222,10 @@ class Scene:
         mi.Bitmap(np.ascontiguousarray(values, np.float32)).write(str(self.folder / "environment.exr"))
         return ('<background>\n  <environment_texture name="e" filename="environment.exr" colorspace="__builtin_raw"/>\n'
                 '  <background name="b" strength="1"/>\n  <connect from="e color" to="b color"/>\n'
-                '  <connect from="b background" to="output surface"/>\n</background>')
+                '  <connect from="b background" to="output surface"/>\n</background>\n'
+                # Without a light of this kind next-event estimation would not choose the environment.
+                '<state shader="default_background">\n'
+                f'  <light light_type="background" map_resolution="{width}" use_mis="true"/>\n</state>')
 
 
 def camera(sensor, pixels):
