@@ -21,6 +21,7 @@ from odis.mitsuba.scene_files import load_file  # noqa: E402
 
 SPHERE_COLUMNS, SPHERE_ROWS = 96, 48
 ENVIRONMENT_SIZE = (2048, 1024)
+CHECKERBOARD_SIZE = (256, 256)
 TINTS = {"RoughConductor", "SmoothConductor"}
 
 
@@ -41,13 +42,14 @@ class Scene:
 
     def color(self, nodes, parameters, name, default):
         """A colour or a texture, as attributes of a closure and connections to it."""
-        if name + ".data" in parameters:
+        if name + ".to_uv" in parameters:  # of a bitmap or a checkerboard
+            shape = parameters[name + ".data"].shape if name + ".data" in parameters else CHECKERBOARD_SIZE
             to_uv = np.array(parameters[name + ".to_uv"].matrix, float).reshape(3, 3)
             if np.abs([to_uv[0, 1], to_uv[1, 0]]).max() > 1e-6:
                 self.say("textures are not rotated")
-            file = self.image(parameters.properties[name + ".data"][2], parameters[name + ".data"].shape, to_uv)
+            file = self.image(parameters.properties[name + ".to_uv"][2], shape, to_uv)
             nodes.append(f'<image_texture name="t{len(nodes)}" filename="{file}" colorspace="__builtin_raw" '
-                         f'tex_mapping.scale="{to_uv[0, 0]:.6g} {to_uv[1, 1]:.6g} 1" '
+                         f'tex_mapping.type="point" tex_mapping.scale="{to_uv[0, 0]:.6g} {to_uv[1, 1]:.6g} 1" '
                          f'tex_mapping.translation="{to_uv[0, 2]:.6g} {to_uv[1, 2]:.6g} 0"/>')
             return default, f't{len(nodes) - 1} color'
         value = next((parameters[name + end] for end in (".value", "") if name + end in parameters
@@ -58,7 +60,7 @@ class Scene:
         return np.repeat(array, 3) if array.size == 1 else array[:3], None
 
     def image(self, texture, shape, to_uv):
-        """The pixels of a bitmap as Mitsuba sees them, linear, in a file whose last row is that of v = 0."""
+        """A texture's unit square as Mitsuba sees it, linear, in a file whose last row is that of v = 0."""
         height, width = shape[:2]
         row, column = np.meshgrid(np.arange(height)[::-1] + 0.5, np.arange(width) + 0.5, indexing="ij")
         pixels = np.stack([column.ravel() / width, row.ravel() / height, np.ones(height * width)])
