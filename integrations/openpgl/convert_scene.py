@@ -61,17 +61,17 @@ class Scene:
 
     def image(self, texture, shape, to_uv):
         """A texture's unit square as Mitsuba sees it, linear, in a file whose last row is that of v = 0."""
+        if texture in self.images:
+            return self.images[texture]
         height, width = shape[:2]
         row, column = np.meshgrid(np.arange(height)[::-1] + 0.5, np.arange(width) + 0.5, indexing="ij")
         pixels = np.stack([column.ravel() / width, row.ravel() / height, np.ones(height * width)])
         si = mi.SurfaceInteraction3f()
         si.uv = mi.Point2f((np.linalg.inv(to_uv) @ pixels)[:2].astype(np.float32))
         values = np.array(texture.eval(si)).reshape(3, -1).T.reshape(height, width, 3)
-        key = values.tobytes()
-        if key not in self.images:
-            self.images[key] = f"texture{len(self.images)}.exr"
-            mi.Bitmap(np.ascontiguousarray(values, np.float32)).write(str(self.folder / self.images[key]))
-        return self.images[key]
+        self.images[texture] = f"texture{len(self.images)}.exr"
+        mi.Bitmap(np.ascontiguousarray(values, np.float32)).write(str(self.folder / self.images[texture]))
+        return self.images[texture]
 
     def closure(self, nodes, bsdf):
         """Adds the nodes of a BSDF; returns the name of the last one and its output."""
