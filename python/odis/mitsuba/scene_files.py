@@ -180,8 +180,7 @@ def _renew_skies(root):
                 _set_number(node, f"{part}_scale", given["scale"])
         if given.get("sun_radius_scale"):  # 0 was a sun without a diameter
             _set_number(node, "sun_aperture", max(SUN_DIAMETER * float(given["sun_radius_scale"]), 0.01))
-        for child in [child for child in node if _snake_case(child.get("name", "")) in ("scale", "sun_radius_scale")]:
-            node.remove(child)
+        _drop(node, {"scale", "sun_radius_scale"})
         to_world = node.find("transform")
         if to_world is None:
             to_world = ElementTree.SubElement(node, "transform", name="to_world")
@@ -201,9 +200,14 @@ def _turn_of_the_sun(when):
 
 
 def _set_number(node, name, value):
-    for child in [child for child in node if _snake_case(child.get("name", "")) == name]:
-        node.remove(child)
+    _drop(node, {name})
     ElementTree.SubElement(node, "float", name=name, value=str(value))
+
+
+def _drop(node, names):
+    for child in list(node):
+        if _snake_case(child.get("name", "")) in names:
+            node.remove(child)
 
 
 def _set_sensors(root, size, pixels, rfilter, sampler):
