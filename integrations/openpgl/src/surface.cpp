@@ -41,51 +41,64 @@ struct alignas(64) SurfaceSamplingDistribution {
   void applyCosine(const pgl_vec3f& normal);
   void clear() { m_view = nullptr; }
 
-  float sample(const pgl_point2f& u, pgl_vec3f& direction) const;
-  float pdf(const pgl_vec3f& direction) const;
+  float sample(const pgl_point2f& u, pgl_vec3f& direction);
+  float pdf(const pgl_vec3f& direction);
   // The density of the cell's map alone, without the cosine at the vertex.
   float radiancePdf(const pgl_vec3f& direction) const;
   uint32_t cell() const { return m_cell; }
 
  private:
   float cosinePdf(const odis::Float3& wi) const { return std::max(dot(wi, m_normal), 0.0f) / kPi; }
+  // Whether directions come from the map, which is prepared when it is first needed.
+  bool guides();
 
   const odis::GuideView* m_view = nullptr;
   odis::Float3 m_position, m_normal;
   uint32_t m_cell = odis::kNoCell;
   odis::VertexMap<float> m_map;
-  bool m_hasNormal = false, m_guides = false;
+  bool m_hasNormal = false, m_isPrepared = false;
 };
 
 bool SurfaceSamplingDistribution::init(const Field& field, const pgl_point3f& position) {
   m_view = field.view().cellCount > 0 ? &field.view() : nullptr;
   m_position = toOdis(position);
   m_cell = odis::kNoCell;
-  m_hasNormal = m_guides = false;
+  m_hasNormal = m_isPrepared = false;
   return m_view;
 }
 
+// Finds the cell alone: until a host asks for directions it has lights to choose and shaders to run, and meanwhile the
+// map arrives from memory.
 ODIS_FLATTENED void SurfaceSamplingDistribution::applyCosine(const pgl_vec3f& normal) {
   if (!m_view) return;
   m_normal = toOdis(normal);
   m_hasNormal = true;
+  m_isPrepared = false;
   m_cell = odis::findCell(*m_view, {m_position, m_normal});
-  if (m_cell == odis::kNoCell) return;
-  odis::prefetchCell(*m_view, m_cell);
-  m_map.prepare(m_view->maps, int32_t(m_cell), m_normal, 0);
-  m_guides = m_map.sampleable();
+  if (m_cell != odis::kNoCell) odis::prefetchCell(*m_view, m_cell);
 }
 
-ODIS_FLATTENED float SurfaceSamplingDistribution::sample(const pgl_point2f& u, pgl_vec3f& direction) const {
-  direction = fromOdis(m_guides      ? m_map.sample(u.x, u.y).wi
-                       : m_hasNormal ? cosineDirection(m_normal, u.x, u.y)
-                                     : odis::squareToDirection(odis::Vector2<float>{u.x, u.y}));
+inline bool SurfaceSamplingDistribution::guides() {
+  if (m_cell == odis::kNoCell) return false;
+  if (!m_isPrepared) m_map.prepare(m_view->maps, int32_t(m_cell), m_normal, 0);
+  m_isPrepared = true;
+  return m_map.sampleable();
+}
+
+ODIS_FLATTENED float SurfaceSamplingDistribution::sample(const pgl_point2f& u, pgl_vec3f& direction) {
+  if (guides()) {
+    const odis::VertexMap<float>::Sample sample = m_map.sample(u.x, u.y);
+    direction = fromOdis(sample.wi);
+    return sample.pdf;
+  }
+  direction = fromOdis(m_hasNormal ? cosineDirection(m_normal, u.x, u.y)
+                                   : odis::squareToDirection(odis::Vector2<float>{u.x, u.y}));
   return pdf(direction);
 }
 
-ODIS_FLATTENED float SurfaceSamplingDistribution::pdf(const pgl_vec3f& direction) const {
+ODIS_FLATTENED float SurfaceSamplingDistribution::pdf(const pgl_vec3f& direction) {
   const odis::Float3 wi = toOdis(direction);
-  return m_guides ? m_map.pdf(wi) : m_hasNormal ? cosinePdf(wi) : kUniform;
+  return guides() ? m_map.pdf(wi) : m_hasNormal ? cosinePdf(wi) : kUniform;
 }
 
 float SurfaceSamplingDistribution::radiancePdf(const pgl_vec3f& direction) const {
