@@ -1,7 +1,9 @@
-// Writes what a renderer calls of Open PGL into the file OPENPGL_CALLS, for tests/openpgl to play again: all calls, or
-// those of one path and of one vertex in OPENPGL_CALLS_EVERY. Loaded in front of a libopenpgl, which answers:
-//   c++ -std=c++17 -O2 -shared -fPIC -Iintegrations/openpgl/include bench/openpgl_recorder.cpp -o recorder.so -ldl
-//   OPENPGL_CALLS=cycles.calls LD_PRELOAD=./recorder.so odis-cycles cycles --samples 5 --output image.exr scene.xml
+// Writes what a renderer calls of Open PGL into the file OPENPGL_CALLS, for tests/openpgl to play again: all
+// calls, or those of one path and of one vertex in OPENPGL_CALLS_EVERY. Loaded in front of a libopenpgl, which
+// answers:
+//   c++ -std=c++17 -O2 -shared -fPIC -Iintegrations/openpgl/include bench/openpgl_recorder.cpp -o recorder.so
+//   OPENPGL_CALLS=cycles.calls LD_PRELOAD=./recorder.so odis-cycles cycles --samples 5 --output image.exr \
+//     scene.xml
 #include <dlfcn.h>
 
 #include <atomic>
@@ -22,7 +24,8 @@ std::mutex g_mutex;
 
 void write(const std::string& records) {
   const std::lock_guard lock(g_mutex);
-  static FILE* const file = std::getenv("OPENPGL_CALLS") ? std::fopen(std::getenv("OPENPGL_CALLS"), "wb") : nullptr;
+  static const char* const name = std::getenv("OPENPGL_CALLS");
+  static FILE* const file = name ? std::fopen(name, "wb") : nullptr;
   if (!file || std::fwrite(records.data(), 1, records.size(), file) < records.size() || std::fflush(file)) {
     std::fprintf(stderr, "openpgl_recorder: OPENPGL_CALLS does not name a file that can be written\n");
     std::_Exit(2);
@@ -125,8 +128,8 @@ float pglSurfaceSamplingDistributionPDF(PGLSurfaceSamplingDistribution distribut
   append(t_thread.vertex, RecordedCall::kPdf, direction);
   return next(distribution, direction);
 }
-float pglSurfaceSamplingDistributionSamplePDF(PGLSurfaceSamplingDistribution distribution, pgl_point2f numbers,
-                                              pgl_vec3f& direction) {
+float pglSurfaceSamplingDistributionSamplePDF(PGLSurfaceSamplingDistribution distribution,
+                                              pgl_point2f numbers, pgl_vec3f& direction) {
   BEHIND(pglSurfaceSamplingDistributionSamplePDF);
   append(t_thread.vertex, RecordedCall::kSample, numbers);
   return next(distribution, numbers, direction);
