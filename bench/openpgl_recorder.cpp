@@ -1,9 +1,7 @@
 // Writes what a renderer calls of Open PGL into the file OPENPGL_CALLS, for tests/openpgl to play again: all
-// calls, or those of one path and of one vertex in OPENPGL_CALLS_EVERY. Loaded in front of a libopenpgl, which
-// answers:
+// calls, or those of one path and of one vertex in OPENPGL_CALLS_EVERY. Loaded in front of a libopenpgl:
 //   c++ -std=c++17 -O2 -shared -fPIC -Iintegrations/openpgl/include bench/openpgl_recorder.cpp -o recorder.so
-//   OPENPGL_CALLS=cycles.calls LD_PRELOAD=./recorder.so odis-cycles cycles --samples 5 --output image.exr \
-//     scene.xml
+//   OPENPGL_CALLS=cycles.calls LD_PRELOAD=./recorder.so odis-cycles cycles scene.xml
 #include <dlfcn.h>
 
 #include <atomic>

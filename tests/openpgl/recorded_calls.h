@@ -1,6 +1,6 @@
 // What a renderer called of Open PGL's interface, in a file that bench/openpgl_recorder.cpp writes: each
-// record is a byte, a RecordedCall, and what that is followed by, as it lies in memory on x86-64. A path, or a
-// vertex with its questions, lies there in one piece, whatever other threads called meanwhile.
+// record is a byte, a RecordedCall, and what that is followed by, as it lies in memory on x86-64. A path,
+// or a vertex with its questions, lies there in one piece, whatever other threads called meanwhile.
 #pragma once
 
 #include <openpgl/openpgl.h>
