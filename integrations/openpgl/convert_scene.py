@@ -98,8 +98,8 @@ class Scene:
             return add("diffuse_bsdf", f'color="{text_of(color)}"', color=texture), "BSDF"
 
         def glossy(color):
-            roughness = f'roughness="{math.sqrt(alpha):.6g}" distribution="GGX"'
-            return add("glossy_bsdf", f'color="{text_of(color)}" {roughness}'), "BSDF"
+            # Distributions are GGX by default; Cycles 3 and 5 spell that differently.
+            return add("glossy_bsdf", f'color="{text_of(color)}" roughness="{math.sqrt(alpha):.6g}"'), "BSDF"
 
         if kind in ("TwoSidedBRDF", "BumpMap", "NormalMap") and inner:
             return self.closure(nodes, inner[0])
@@ -117,8 +117,7 @@ class Scene:
             return mix(diffuse("diffuse_reflectance"), glossy([1.0] * 3), 0.04, f"{fresnel} fac")
         if kind in ("SmoothDielectric", "RoughDielectric"):
             ior = number("eta", 1.5)
-            return add("glass_bsdf", f'color="1 1 1" IOR="{ior:.6g}" roughness="{math.sqrt(alpha):.6g}" '
-                                     'distribution="GGX"'), "BSDF"
+            return add("glass_bsdf", f'color="1 1 1" IOR="{ior:.6g}" roughness="{math.sqrt(alpha):.6g}"'), "BSDF"
         if kind in ("ThinDielectric", "Null"):
             return add("transparent_bsdf", 'color="0.92 0.92 0.92"'), "BSDF"
         if kind.startswith("Principled"):
