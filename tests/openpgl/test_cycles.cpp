@@ -97,8 +97,7 @@ TEST(PglCycles, FindsAllThatItImports) {
 
 // Cycles 3.4.1 with five samples of scenes/demo at 256 x 144 pixels, one path and one vertex in 900.
 TEST(PglCycles, AnswersDoNotDependOnThreads) {
-  const std::vector<RecordedRound> rounds =
-      RecordedCalls(kData + std::string("cycles-3.4.calls")).rounds();
+  const std::vector<RecordedRound> rounds = RecordedCalls(kData + std::string("cycles-3.4.calls")).rounds();
   pgl::Device device{PGL_DEVICE_TYPE_CPU_8};
   const Played one = play(rounds, device, 1);
   EXPECT_GE(one.updates, 2u);

@@ -29,6 +29,20 @@ class PglFields : public ::testing::Test {
     field->Update(samples);
     return field;
   }
+  // The mean of what paths bring, and the square of its standard error.
+  std::pair<double, double> image(const pgl::Field* field, uint64_t firstSeed) const {
+    const PglHost host(room);
+    pgl::PathSegmentStorage path;
+    double sum = 0, squares = 0;
+    constexpr uint64_t kPaths = 100000;
+    for (uint64_t i = 0; i < kPaths; ++i) {
+      const double value = host.trace(field, path, numbersOf(firstSeed + i));
+      sum += value;
+      squares += value * value;
+    }
+    const double mean = sum / kPaths;
+    return {mean, (squares / kPaths - mean * mean) / kPaths};
+  }
   // The distribution on the floor.
   void prepare(pgl::SurfaceSamplingDistribution& distribution, const pgl::Field& field,
                const Float3& position = {0.3f, 0.4f, 1e-4f}) {
@@ -86,24 +100,23 @@ TEST_F(PglFields, RadianceDensityIntegratesToOne) {
 }
 
 TEST_F(PglFields, GuidedImagesAreRightAndLessNoisy) {
-  const PglHost host(room);
-  const auto moments = [&](const pgl::Field* field, uint64_t first) {
-    pgl::PathSegmentStorage path;
-    double sum = 0, squares = 0;
-    constexpr uint64_t kPaths = 100000;
-    for (uint64_t i = 0; i < kPaths; ++i) {
-      const double value = host.trace(field, path, numbersOf(first + i));
-      sum += value;
-      squares += value * value;
-    }
-    const double mean = sum / kPaths;
-    return std::pair(mean, (squares / kPaths - mean * mean) / kPaths);
-  };
-  const auto field = taughtField(40000);
-  const auto [path, ofPath] = moments(nullptr, 1'000'000);
-  const auto [guided, ofGuided] = moments(field.get(), 2'000'000);
+  const auto [path, ofPath] = image(nullptr, 1'000'000);
+  const auto [guided, ofGuided] = image(taughtField(40000).get(), 2'000'000);
   EXPECT_LT(std::abs(path - guided), 4 * std::sqrt(ofPath + ofGuided)) << path << " and " << guided;
   EXPECT_LT(ofGuided, 0.7 * ofPath);
+}
+
+// One that learned while another lamp was on looks the wrong way.
+TEST_F(PglFields, WrongFieldsMakeNoiseAndNoBias) {
+  room.lampRadiance[0] = 0;
+  room.lampRadiance[1] = 40;
+  const auto field = taughtField(40000);
+  room.lampRadiance[0] = 40;
+  room.lampRadiance[1] = 0;
+  const auto [path, ofPath] = image(nullptr, 1'000'000);
+  const auto [guided, ofGuided] = image(field.get(), 2'000'000);
+  EXPECT_LT(std::abs(path - guided), 4 * std::sqrt(ofPath + ofGuided)) << path << " and " << guided;
+  EXPECT_GT(ofGuided, 1.2 * ofPath);
 }
 
 TEST_F(PglFields, DoNotDependOnThreadsNorOrder) {
