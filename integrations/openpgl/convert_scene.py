@@ -251,7 +251,8 @@ def main():
     args = parser.parse_args()
     args.folder.mkdir(parents=True, exist_ok=True)
     scene, converted = load_file(args.scene), Scene(args.folder)
-    for shape in scene.shapes():
+    # Mitsuba loads shapes in parallel, and their order differs from run to run.
+    for shape in sorted(scene.shapes(), key=lambda shape: (str(shape.bbox()), shape.class_name())):
         converted.add_shape(shape)
     if any(not emitter.is_environment() and emitter.get_shape() is None for emitter in scene.emitters()):
         converted.say("lights without a shape are left out")
