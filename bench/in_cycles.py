@@ -1,14 +1,14 @@
 #!/usr/bin/env python3
 """What a libopenpgl gains and costs in Cycles' own program: error and processor time beside unguided paths.
 
-    bench/in_cycles.py CYCLES SCENE... --guide NAME=FOLDER... [--stub] [--denoise ODIS] [--ris] [--spp 4,16]
+    bench/in_cycles.py CYCLES SCENE... --guide NAME=FOLDER... [--stub] [--denoise ODIS] [--mixture] [--spp 4,16]
                        [--seeds 4] [--reference-spp 4096] [--cache DIR]
 
 CYCLES is a program that links libopenpgl as a shared library, SCENE a folder that
 integrations/openpgl/convert_scene.py wrote, FOLDER one that holds a libopenpgl.so.0. `--stub` adds a library that knows
 nothing, openpgl_stub.cpp: what Cycles' calls cost, and what its mixture does to its numbers. `--denoise` gives the
-program `odis`, and images are compared after Open Image Denoise as well, by their colours alone. With `--ris` guided
-directions are chosen by resampled importance sampling, which Cycles 4 and later offer beside their mixture.
+program `odis`, and images are compared after Open Image Denoise as well, by their colours alone. With `--mixture`
+Cycles 4 and later mix guide and BSDF as 3.4 does, in place of resampled importance sampling (RIS), their default.
 
 Errors are 0.1 %-trimmed relMSE as src/eval/metrics.h has it, to an unguided image of another seed; times are of all
 threads, without what an image of 8 x 8 pixels takes (loading). Medians over seeds; ratios are to unguided paths. Needs
@@ -37,15 +37,15 @@ def read(file):
 
 
 class Program:
-    def __init__(self, cycles, threads, any_library, ris=False):
+    def __init__(self, cycles, threads, any_library, mixture=False):
         """any_library: the folder of a libopenpgl, which the program does not start without."""
-        self.cycles, self.threads, self.any_library, self.ris = cycles, threads, any_library, ris
+        self.cycles, self.threads, self.any_library, self.mixture = cycles, threads, any_library, mixture
 
     def render(self, scene, spp, seed, library=None, output=None, size=None):
         """Renders with the guide of a folder, None for unguided paths; returns processor seconds."""
         guiding = f'use_guiding="{"true" if library else "false"}" seed="{seed}"'
-        if self.ris:
-            guiding += ' guiding_directional_sampling_type="RIS"'
+        if self.mixture:
+            guiding += ' guiding_directional_sampling_type="MIS"'
         file = scene / f".scene-{os.getpid()}.xml"
         text = (scene / "scene.xml").read_text()
         file.write_text(re.sub(r'use_guiding="\w+" seed="\d+"', guiding, text))
@@ -136,7 +136,7 @@ def main():
     parser.add_argument("--guide", action="append", required=True, metavar="NAME=FOLDER")
     parser.add_argument("--stub", action="store_true")
     parser.add_argument("--denoise", metavar="ODIS")
-    parser.add_argument("--ris", action="store_true")
+    parser.add_argument("--mixture", action="store_true")
     parser.add_argument("--spp", default="4,16", help="samples per pixel, with commas (4,16)")
     parser.add_argument("--seeds", type=int, default=4)
     parser.add_argument("--threads", type=int, default=os.cpu_count())
@@ -145,7 +145,7 @@ def main():
                         help="keeps references there")
     args = parser.parse_args()
     guides = dict(guide.split("=", 1) for guide in args.guide)
-    program = Program(args.cycles, args.threads, next(iter(guides.values())), args.ris)
+    program = Program(args.cycles, args.threads, next(iter(guides.values())), args.mixture)
     with tempfile.TemporaryDirectory() as folder:
         if args.stub:
             guides["stub"] = build_stub(folder)
