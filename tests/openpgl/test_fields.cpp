@@ -84,6 +84,14 @@ TEST_F(PglFields, SamplesFollowTheDensity) {
   }
 }
 
+TEST_F(PglFields, ClearedDistributionsForgetTheField) {
+  const auto field = taughtField(2000);
+  pgl::SurfaceSamplingDistribution distribution(field.get());
+  prepare(distribution, *field);
+  distribution.Clear();
+  EXPECT_NEAR(distribution.PDF({0, 0, 1}), 1 / kPi, 1e-6f);
+}
+
 TEST_F(PglFields, RadianceDensityIntegratesToOne) {
   const auto field = taughtField();
   pgl::SurfaceSamplingDistribution distribution(field.get());

@@ -39,7 +39,10 @@ struct alignas(64) SurfaceSamplingDistribution {
  public:
   bool init(const Field& field, const pgl_point3f& position);
   void applyCosine(const pgl_vec3f& normal);
-  void clear() { m_view = nullptr; }
+  void clear() {
+    m_view = nullptr;
+    m_cell = odis::kNoCell;
+  }
 
   float sample(const pgl_point2f& u, pgl_vec3f& direction);
   float pdf(const pgl_vec3f& direction);
@@ -63,7 +66,7 @@ bool SurfaceSamplingDistribution::init(const Field& field, const pgl_point3f& po
   m_view = field.view().cellCount > 0 ? &field.view() : nullptr;
   m_position = toOdis(position);
   m_cell = odis::kNoCell;
-  m_hasNormal = m_isPrepared = false;
+  m_hasNormal = false;
   return m_view;
 }
 
