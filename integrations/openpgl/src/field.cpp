@@ -11,7 +11,8 @@ namespace {
 // A guide is built again when it can know this many times as many vertices; until then as many more are kept.
 constexpr size_t kGrowth = 2;
 // Training is over when this many vertices are known, or this many times those of the first update: the host need
-// not record any more. With five times as many the error is 3 % lower, and four samples per pixel take a tenth longer.
+// not record any more. With five times as many the error is 2 % lower at four samples per pixel, which take a fifth
+// longer.
 constexpr size_t kEnough = 8, kEnoughVertices = 200'000;
 // Up to this many vertices are kept between two updates, however few are known.
 constexpr size_t kFewestKept = size_t(1) << 16;
