@@ -24,6 +24,14 @@ inline ToyNumbers numbersOf(uint64_t seed) {
   return ToyNumbers(seed, 0, 0);
 }
 
+// Hands a path over as Cycles does.
+inline void handOver(pgl::PathSegmentStorage& path, pgl::SampleStorage& samples) {
+  path.PrepareSamples();
+  size_t count = 0;
+  const pgl::SampleData* made = path.GetSamples(count);
+  samples.AddSamples(made, count);
+}
+
 class PglHost {
  public:
   static constexpr int kMaxDepth = 6;
@@ -77,10 +85,7 @@ class PglHost {
     double sum = 0;
     for (uint64_t seed = first; seed < first + count; ++seed) {
       sum += trace(field, path, numbersOf(seed));
-      path.PrepareSamples();
-      size_t size = 0;
-      const pgl::SampleData* data = path.GetSamples(size);
-      samples.AddSamples(data, size);
+      handOver(path, samples);
     }
     return sum;
   }

@@ -25,13 +25,11 @@ enum class RecordedCall : char {
 };
 
 // A path, or what was asked at a vertex.
-struct RecordedPath {
-  struct Segment {
-    bool isCopied;
-    PGLPathSegmentData data;
-  };
-  std::vector<Segment> segments;
+struct RecordedSegment {
+  bool isCopied;
+  PGLPathSegmentData data;
 };
+using RecordedPath = std::vector<RecordedSegment>;
 struct RecordedVertex {
   struct Question {
     bool samples;
@@ -50,60 +48,54 @@ struct RecordedRound {
   bool isUpdated = false;
 };
 
-class RecordedCalls {
- public:
-  explicit RecordedCalls(const std::string& file) {
-    std::ifstream in(file, std::ios::binary);
-    m_bytes.assign(std::istreambuf_iterator<char>(in), {});
-    if (m_bytes.empty()) throw std::runtime_error(file + ": can't be read");
-  }
-
-  std::vector<RecordedRound> rounds() {
-    std::vector<RecordedRound> rounds(1);
-    RecordedPath path;
-    for (m_next = 0; m_next < m_bytes.size();) {
-      RecordedRound& round = rounds.back();
-      switch (const auto call = take<RecordedCall>()) {
-        case RecordedCall::kSegment:
-        case RecordedCall::kCopied:
-          path.segments.push_back({call == RecordedCall::kCopied, take<PGLPathSegmentData>()});
-          break;
-        case RecordedCall::kPath:
-          round.paths.push_back(std::move(path));
-          path = {};
-          break;
-        case RecordedCall::kVertex:
-          round.vertices.push_back({take<pgl_point3f>(), take<pgl_vec3f>(), {}});
-          break;
-        case RecordedCall::kPdf:
-          round.vertices.back().questions.push_back({false, take<pgl_vec3f>(), {}});
-          break;
-        case RecordedCall::kSample:
-          round.vertices.back().questions.push_back({true, {}, take<pgl_point2f>()});
-          break;
-        case RecordedCall::kUpdate:
-          round.isUpdated = true;
-          rounds.emplace_back();
-          break;
-        default:
-          throw std::runtime_error("recorded calls: byte " + std::to_string(m_next - 1) + " is no call");
-      }
-    }
-    return rounds;
-  }
-
- private:
-  template <class T>
-  T take() {
-    if (m_bytes.size() - m_next < sizeof(T)) throw std::runtime_error("recorded calls: the file is cut off");
-    T value;
-    std::memcpy(&value, m_bytes.data() + m_next, sizeof(T));
-    m_next += sizeof(T);
+// Throws std::runtime_error where a file can't be read, is cut off or holds something else.
+inline std::vector<RecordedRound> readRecordedCalls(const std::string& file) {
+  std::ifstream in(file, std::ios::binary);
+  const std::string bytes(std::istreambuf_iterator<char>(in), {});
+  if (bytes.empty()) throw std::runtime_error(file + ": can't be read");
+  size_t next = 0;
+  // The next value of the type of its argument.
+  const auto take = [&](auto value) {
+    if (bytes.size() - next < sizeof value) throw std::runtime_error(file + ": is cut off");
+    std::memcpy(&value, bytes.data() + next, sizeof value);
+    next += sizeof value;
     return value;
-  }
+  };
 
-  std::string m_bytes;
-  size_t m_next = 0;
-};
+  std::vector<RecordedRound> rounds(1);
+  RecordedPath path;
+  const auto ask = [&](const RecordedVertex::Question& question) {
+    if (rounds.back().vertices.empty()) throw std::runtime_error(file + ": a question without a vertex");
+    rounds.back().vertices.back().questions.push_back(question);
+  };
+  while (next < bytes.size()) {
+    switch (const auto call = take(RecordedCall())) {
+      case RecordedCall::kSegment:
+      case RecordedCall::kCopied:
+        path.push_back({call == RecordedCall::kCopied, take(PGLPathSegmentData())});
+        break;
+      case RecordedCall::kPath:
+        rounds.back().paths.push_back(std::move(path));
+        path.clear();
+        break;
+      case RecordedCall::kVertex:
+        rounds.back().vertices.push_back({take(pgl_point3f()), take(pgl_vec3f()), {}});
+        break;
+      case RecordedCall::kPdf:
+        ask({false, take(pgl_vec3f()), {}});
+        break;
+      case RecordedCall::kSample:
+        ask({true, {}, take(pgl_point2f())});
+        break;
+      case RecordedCall::kUpdate:
+        rounds.back().isUpdated = true;
+        rounds.emplace_back();
+        break;
+      default:
+        throw std::runtime_error(file + ": byte " + std::to_string(next - 1) + " is no call");
+    }
+  }
+  return rounds;
+}
 
 }  // namespace odis::test

@@ -1,31 +1,26 @@
 // What Cycles imports, and calls that it made, played again by any number of threads.
 #include <dlfcn.h>
 #include <gtest/gtest.h>
-#include <openpgl/cpp/OpenPGL.h>
 
 #include <filesystem>
 #include <thread>
 
+#include "openpgl/host.h"
 #include "openpgl/recorded_calls.h"
 #include "support/temporary_folder.h"
 
 namespace odis::test {
 namespace {
 
-namespace pgl = openpgl::cpp;
-
 constexpr char kData[] = ODIS_SOURCE "/tests/openpgl/data/";
 
 void play(const RecordedPath& recorded, pgl::PathSegmentStorage& path, pgl::SampleStorage& samples) {
-  for (const auto& [isCopied, data] : recorded.segments)
+  for (const auto& [isCopied, data] : recorded)
     if (isCopied)
       path.AddSegment(data);
     else
       *path.NextSegment() = data;
-  path.PrepareSamples();
-  size_t count = 0;
-  const pgl::SampleData* made = path.GetSamples(count);
-  samples.AddSamples(made, count);
+  handOver(path, samples);
   path.Clear();
 }
 
@@ -97,7 +92,7 @@ TEST(PglCycles, FindsAllThatItImports) {
 
 // Cycles 3.4.1 with five samples of scenes/demo at 256 x 144 pixels, one path and one vertex in 900.
 TEST(PglCycles, AnswersDoNotDependOnThreads) {
-  const std::vector<RecordedRound> rounds = RecordedCalls(kData + std::string("cycles-3.4.calls")).rounds();
+  const std::vector<RecordedRound> rounds = readRecordedCalls(kData + std::string("cycles-3.4.1.calls"));
   pgl::Device device{PGL_DEVICE_TYPE_CPU_8};
   const Played one = play(rounds, device, 1);
   EXPECT_GE(one.updates, 2u);
@@ -114,10 +109,10 @@ TEST(PglCycles, AnswersDoNotDependOnThreads) {
 TEST(PglRecordedCalls, DamagedFilesAreNoCalls) {
   const TemporaryFolder folder;
   const std::string file = folder.path("calls");
-  EXPECT_THROW(RecordedCalls{file}, std::runtime_error);
-  for (const char* text : {"p?", "s cut off"}) {
+  EXPECT_THROW(readRecordedCalls(file), std::runtime_error);
+  for (const char* text : {"p?", "s cut off", "d asked nowhere"}) {
     std::ofstream(file) << text;
-    EXPECT_THROW(RecordedCalls(file).rounds(), std::runtime_error) << text;
+    EXPECT_THROW(readRecordedCalls(file), std::runtime_error) << text;
   }
 }
 
