@@ -16,6 +16,14 @@ void say(const std::string& text) {
   std::fflush(stderr);
 }
 
+static bool onTerminal() {
+  return isatty(STDERR_FILENO) == 1;
+}
+
+void sayWarning(const std::string& message) {
+  say(fmt::format("{}warning: {}\n", onTerminal() ? "\r\033[K" : "", message));
+}
+
 // The first signal that came. Rendering threads look at it, so it is an atomic; one that a handler may write.
 static std::atomic<int> g_signal = 0;
 static_assert(std::atomic<int>::is_always_lock_free);
@@ -49,7 +57,7 @@ int InterruptScope::exitCode() {
   return g_signal != 0 ? codeOf(g_signal) : kOk;
 }
 
-ConsoleProgress::ConsoleProgress(bool quiet) : m_quiet(quiet), m_terminal(isatty(STDERR_FILENO) == 1) {}
+ConsoleProgress::ConsoleProgress(bool quiet) : m_quiet(quiet), m_terminal(onTerminal()) {}
 
 void ConsoleProgress::begin(const std::string& stage, uint64_t total, uint64_t done, const char* unit) {
   m_stage = m_title.empty() ? stage : m_title + ": " + stage;
@@ -81,7 +89,7 @@ void ConsoleProgress::end() {
 void ConsoleProgress::warn(const std::string& message) {
   if (m_quiet) return;
   const std::lock_guard lock(m_mutex);
-  say(fmt::format("{}warning: {}\n", m_terminal ? "\r\033[K" : "", message));
+  sayWarning(message);
 }
 
 void ConsoleProgress::show(uint64_t done, bool last) {

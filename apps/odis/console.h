@@ -17,6 +17,8 @@ namespace odis::app {
 // Prints to stderr. Where that can't be printed to (a full disk, a terminal that is gone) work goes on in
 // silence.
 void say(const std::string& text);
+// Says so on a line of its own, even where a bar shows progress.
+void sayWarning(const std::string& message);
 
 // While one lives, the first Ctrl-C (SIGINT) or SIGTERM only sets a flag; the second ends the program at
 // once. A signal that is ignored when the program begins, as `trap '' INT` in a shell asks for, stays

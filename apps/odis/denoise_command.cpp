@@ -104,7 +104,7 @@ int runDenoise(const DenoiseArguments& a) {
   DenoiserImages images = imagesOf(a, image);
   const render::Denoiser denoiser(a.threads);
   if (images.albedo.empty() && a.auxiliaries != "none" && !a.quiet)
-    say(fmt::format("warning: {}: found no albedo: denoised by its colours alone\n", a.image));
+    sayWarning(fmt::format("{}: found no albedo: denoised by its colours alone", a.image));
   if (images.albedo.empty()) images.normal.clear();
 
   static const std::map<std::string, render::Auxiliaries> kAuxiliaries{

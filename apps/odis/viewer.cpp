@@ -1,7 +1,5 @@
 #include "viewer.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <utility>
 
@@ -56,7 +54,7 @@ void Viewer::send() {
       tev.send(m_name, picture->width, picture->height, picture->colors.data());
   } catch (const std::exception& error) {  // the image is written all the same
     m_failed = true;
-    say(fmt::format("warning: {}\n", error.what()));
+    sayWarning(error.what());
   }
 }
 
