@@ -115,7 +115,8 @@ class GuideBuilder {
   // that are new have their parents' fractions.
   Guide rebuild(const Guide& previous) const;
 
-  // The maps at pixels that the options ask for, from the pilot's vertices: path by path, from the camera on.
+  // The maps at pixels that the options ask for, from the pilot's vertices: path by path, from the camera on,
+  // all of a pixel in one part.
   PixelMaps makePixelMaps(VertexParts pilot, int width, int height) const;
 
   // Keeps the memory of building from so many vertices, and of two guides, below a limit, as well as can be

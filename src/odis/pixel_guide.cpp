@@ -94,9 +94,9 @@ Guide Guide::withPixelMaps(const PixelMaps& maps, const GuideOptions& options, c
 PixelMaps GuideBuilder::makePixelMaps(VertexParts pilot, int width, int height) const {
   const PixelModel& model = *m_data->pixels;
   FirstVertices vertices(width, height);
-  for (const ArrayView<const PathVertex>& part : pilot) vertices.add(part, model.radiance());
-  return core::makePixelMaps(vertices, int(m_data->options.pixelTile), model, m_data->store.tasks(),
-                             m_data->progress);
+  const Tasks& tasks = m_data->store.tasks();
+  tasks.forEach(pilot.size(), [&](size_t part) { vertices.add(pilot[part], model.radiance()); });
+  return core::makePixelMaps(vertices, int(m_data->options.pixelTile), model, tasks, m_data->progress);
 }
 
 Guide Guide::ofCellsAlone() const {

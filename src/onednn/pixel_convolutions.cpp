@@ -19,19 +19,22 @@ namespace {
 
 using dnnl::memory;
 
-// Where each texel of a square with a border comes from: in a square of the same side, in one of half the
-// side, and, of the four in one of twice the side, the first.
-struct BorderTable {
-  std::vector<uint16_t> same, half, twice;
+// The texels of the border around a square, and which of its own texels each repeats; both are counted row by
+// row, border included.
+struct Border {
+  struct Texel {
+    uint16_t at, repeats;
+  };
+  std::vector<Texel> texels;
 
-  explicit BorderTable(int side) {
+  explicit Border(int side) {
+    const int width = side + 2;
     for (int y = -1; y <= side; ++y)
       for (int x = -1; x <= side; ++x) {
         int column = x, row = y;
         wrapTexel(column, row, side);
-        same.push_back(uint16_t(row * side + column));
-        half.push_back(uint16_t(row / 2 * (side / 2) + column / 2));
-        twice.push_back(uint16_t(2 * row * 2 * side + 2 * column));
+        if (column == x && row == y) continue;
+        texels.push_back({uint16_t((y + 1) * width + x + 1), uint16_t((row + 1) * width + column + 1)});
       }
   }
 };
@@ -196,38 +199,45 @@ class OneDnnConvolutions : public PixelConvolutions {
     int level;
   };
 
+  // Puts the input of a convolution together: squares of this side, each with its border.
   static void border(Workspace& space, std::initializer_list<Part> parts, int side, size_t count) {
-    static const std::unordered_map<int, BorderTable> tables = {
-        {16, BorderTable(16)}, {8, BorderTable(8)}, {4, BorderTable(4)}};
-    size_t channels = 0, first = 0;
+    static const std::unordered_map<int, Border> borders = {{16, Border(16)}, {8, Border(8)}, {4, Border(4)}};
+    const std::vector<Border::Texel>& border = borders.at(side).texels;
+    size_t channels = 0;
     for (const Part& part : parts) channels += part.channels;
-    for (const Part& part : parts) {
-      copyPart(part, tables.at(side), side, count, space.bordered.data() + first, channels);
-      first += part.channels;
+    float* to = space.bordered.data();
+    for (size_t place = 0; place < count; ++place, to += size_t(side + 2) * size_t(side + 2) * channels) {
+      size_t first = 0;
+      for (const Part& part : parts) {
+        copyPart(part, side, place, to + first, channels);
+        first += part.channels;
+      }
+      for (const Border::Texel& t : border) copy(to + t.repeats * channels, channels, to + t.at * channels);
     }
   }
 
-  // Writes a part of the channels of all texels, which lie `stride` apart.
-  static void copyPart(const Part& part, const BorderTable& table, int side, size_t count, float* to,
-                       size_t stride) {
-    const size_t n = part.channels;
-    const int from = part.level > 0 ? side / 2 : part.level < 0 ? 2 * side : side;
-    const std::vector<uint16_t>& sources = part.level > 0   ? table.half
-                                           : part.level < 0 ? table.twice
-                                                            : table.same;
-    const size_t below = size_t(from) * n;
-    for (size_t place = 0; place < count; ++place) {
-      const float* values = part.values + place * size_t(from * from) * n;
-      for (const uint16_t source : sources) {
-        const float* texel = values + source * n;
+  // Writes a part of the channels of a place's texels, which lie `stride` apart, into the square in a border.
+  static void copyPart(const Part& part, int side, size_t place, float* to, size_t stride) {
+    const auto width = size_t(side), n = size_t(part.channels);
+    const size_t from = part.level > 0 ? width / 2 : part.level < 0 ? 2 * width : width;
+    const float* values = part.values + place * from * from * n;
+    const size_t below = from * n;
+    for (size_t y = 0; y < width; ++y) {
+      float* texel = to + ((y + 1) * (width + 2) + 1) * stride;
+      for (size_t x = 0; x < width; ++x, texel += stride)
         if (part.level < 0)
-          for (size_t c = 0; c < n; ++c)
-            to[c] = 0.25f * ((texel[c] + texel[n + c]) + (texel[below + c] + texel[below + n + c]));
+          mean(values + 2 * (y * from + x) * n, below, n, texel);
+        else if (part.level > 0)
+          copy(values + (y / 2 * from + x / 2) * n, n, texel);
         else
-          copy(texel, n, to);
-        to += stride;
-      }
+          copy(values + (y * from + x) * n, n, texel);
     }
+  }
+
+  // The mean of four texels of which two lie `below` the other two.
+  [[gnu::always_inline]] static void mean(const float* texel, size_t below, size_t n, float* to) {
+    for (size_t c = 0; c < n; ++c)
+      to[c] = 0.25f * ((texel[c] + texel[n + c]) + (texel[below + c] + texel[below + n + c]));
   }
 
   // Fits loops over few channels better than a call does.
