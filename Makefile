@@ -41,7 +41,7 @@ train-small:         ## Make data and train weights from nothing, in some ten mi
 weights:             ## Make the shipped weights again (1,000 scenes, 1 to 2 hours; goes on where it stopped): out/weights/run
 	@scripts/train full "$(PRESET)" "$(JOBS)" 0-999 $(ASSETS)
 
-paper-weights:       ## Make the weights of `--preset paper` again, data included (some 50 minutes on two cores; goes on where it stopped): out/paper
+paper-weights:       ## Make the weights of `--preset paper` again, data included (an hour to an hour and a half on two cores; goes on where it stopped): out/paper
 	@scripts/train paper "$(PRESET)" "$(JOBS)" 0-999 --kind incident-radiance $(ASSETS)
 
 fuzz:                ## Feed damaged input to all readers, SECONDS=60 each; needs `scripts/setup --dev`

@@ -2,7 +2,6 @@
 #include "eval/compare.h"
 
 #include <fmt/format.h>
-#include <unistd.h>
 #include <CLI/CLI.hpp>
 
 #include <climits>
@@ -30,10 +29,7 @@ namespace {
 class ConsoleObserver : public eval::CompareObserver {
  public:
   ConsoleObserver(bool quiet, bool strict)
-      : m_quiet(quiet),
-        m_strict(strict),
-        m_terminal(isatty(STDERR_FILENO) == 1),
-        m_progress(quiet || !m_terminal) {}
+      : m_quiet(quiet), m_strict(strict), m_terminal(onTerminal()), m_progress(quiet || !m_terminal) {}
 
   void start(const std::string& what, const eval::Outlook& outlook) override {
     std::string title = fmt::format("[{}/{}", outlook.done + 1, outlook.total);

@@ -16,7 +16,7 @@ void say(const std::string& text) {
   std::fflush(stderr);
 }
 
-static bool onTerminal() {
+bool onTerminal() {
   return isatty(STDERR_FILENO) == 1;
 }
 

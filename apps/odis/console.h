@@ -19,6 +19,8 @@ namespace odis::app {
 void say(const std::string& text);
 // Says so on a line of its own, even where a bar shows progress.
 void sayWarning(const std::string& message);
+// Whether stderr is a terminal, where progress is one line that changes.
+bool onTerminal();
 
 // While one lives, the first Ctrl-C (SIGINT) or SIGTERM only sets a flag; the second ends the program at
 // once. A signal that is ignored when the program begins, as `trap '' INT` in a shell asks for, stays

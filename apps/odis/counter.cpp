@@ -1,15 +1,13 @@
 #include "counter.h"
 
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include "command.h"
 #include "console.h"
 
 namespace odis::app {
 
-Counter::Counter(size_t total, bool quiet)
-    : m_total(total), m_quiet(quiet), m_terminal(isatty(STDERR_FILENO) == 1) {}
+Counter::Counter(size_t total, bool quiet) : m_total(total), m_quiet(quiet), m_terminal(onTerminal()) {}
 
 void Counter::done(const std::string& what) {
   ++m_done;
