@@ -196,6 +196,65 @@ TEST_F(PglFields, AreStoredAndLoaded) {
   EXPECT_NE(loaded.GetSurfaceStatistics().ToString().find("cells"), std::string::npos);
 }
 
+// Two ends of a floor: over one (x < 1) the same light comes from everywhere, over the other one (x > 4) from a hole
+// in a dark sky.
+void learnUnderTwoSkies(pgl::Field& field, int paths) {
+  pgl::SampleStorage samples;
+  pgl::PathSegmentStorage path;
+  ToyNumbers numbers = numbersOf(1);
+  for (int i = 0; i < paths; ++i) {
+    const bool dark = i % 2;
+    const Float3 position{numbers.next() + (dark ? 4.0f : 0.0f), numbers.next(), 0};
+    const float phi = 2 * kPi * numbers.next(), r = std::sqrt(numbers.next());
+    const Float3 wi{r * std::cos(phi), r * std::sin(phi), std::sqrt(1 - r * r)};
+    path.Clear();
+    pgl::PathSegment* vertex = path.NextSegment();
+    pgl::SetPosition(vertex, toPgl(position));
+    pgl::SetNormal(vertex, {0, 0, 1});
+    pgl::SetDirectionOut(vertex, {0, 0, 1});
+    pgl::SetDirectionIn(vertex, toPgl(wi));
+    pgl::SetPDFDirectionIn(vertex, std::max(wi.z, 1e-3f) / kPi);
+    pgl::SetScatteringWeight(vertex, {0.5f, 0.5f, 0.5f});
+    const float sky = dark && dot(wi, {0.6f, 0, 0.8f}) < 0.95f ? 0.0f : 1.0f;
+    pgl::SetDirectContribution(path.NextSegment(), {sky, sky, sky});
+    handOver(path, samples);
+  }
+  field.Update(samples);
+}
+
+TEST_F(PglFields, LeavePlacesToTheBsdfWhereLittleVaries) {
+  const auto field = newField();
+  learnUnderTwoSkies(*field, 20000);
+  pgl::SurfaceSamplingDistribution distribution(field.get());
+  float unused = 0;
+  EXPECT_FALSE(distribution.Init(field.get(), {0.5f, 0.5f, 0}, unused));
+  EXPECT_TRUE(distribution.Init(field.get(), {4.5f, 0.5f, 0}, unused));
+  // Where nothing is known a host is given the cosine, as there may be a guide later.
+  EXPECT_TRUE(distribution.Init(field.get(), {50, 0.5f, 0}, unused));
+}
+
+TEST_F(PglFields, FewVerticesDontTellWhatVaries) {
+  const auto field = newField();
+  learnUnderTwoSkies(*field, 20);
+  pgl::SurfaceSamplingDistribution distribution(field.get());
+  float unused = 0;
+  EXPECT_TRUE(distribution.Init(field.get(), {0.5f, 0.5f, 0}, unused));
+}
+
+TEST_F(PglFields, LoadedFieldsGuideEverywhere) {
+  const TemporaryFolder folder;
+  const auto field = newField();
+  learnUnderTwoSkies(*field, 20000);
+  ASSERT_TRUE(field->Store(folder.path("field")));
+  pgl::Field loaded(&device, folder.path("field"));
+  pgl::SurfaceSamplingDistribution distribution(&loaded);
+  float unused = 0;
+  EXPECT_TRUE(distribution.Init(&loaded, {0.5f, 0.5f, 0}, unused));
+  // What its paths bring by then was guided, and does not tell what the BSDF alone would bring.
+  learnUnderTwoSkies(loaded, 20000);
+  EXPECT_TRUE(distribution.Init(&loaded, {0.5f, 0.5f, 0}, unused));
+}
+
 TEST_F(PglFields, TakeSamplesWithoutPaths) {
   const auto field = newField();
   pgl::SampleStorage samples;

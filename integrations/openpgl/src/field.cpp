@@ -43,7 +43,8 @@ void Field::update(SampleStorage& samples) {
   const odis::ArrayView<const odis::PathVertex> vertices = samples.vertices();
   if (vertices.empty()) return;
   ++m_updates;
-  const bool first = !m_builder;
+  // Until the first update all directions are the BSDF's, unless a guide was loaded.
+  const bool first = !m_builder, loaded = first && m_guide;
   if (first) m_builder.emplace();
   m_builder->add(vertices);
   m_vertices += vertices.size();
@@ -51,6 +52,7 @@ void Field::update(SampleStorage& samples) {
     m_firstVertices = m_vertices;
     // Without vertices to choose BSDF sampling fractions from: nobody asks for these.
     show(m_builder->build(odis::ArrayView<const odis::PathVertex>()));
+    if (!loaded) m_unguided = {odis::CellGrid(m_view.grid), vertices};
   } else if (m_vertices >= kGrowth * m_builtFrom) {
     show(m_builder->rebuild(*m_guide));
   }
@@ -86,7 +88,8 @@ void Field::load(const char* file) {
 
 std::string Field::statistics() const {
   return "ODIS: " + std::to_string(m_view.cellCount) + " cells from " + std::to_string(m_vertices) +
-         " vertices in " + std::to_string(m_updates) + " updates";
+         " vertices in " + std::to_string(m_updates) + " updates, " + std::to_string(m_unguided.size()) +
+         " places left to BSDFs";
 }
 
 // The types behind two more handles.

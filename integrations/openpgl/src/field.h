@@ -7,6 +7,7 @@
 
 #include "openpgl/openpgl.h"
 #include "samples.h"
+#include "unguided.h"
 
 // The type behind Open PGL's handle. Distributions may look up while nobody updates.
 struct Field {
@@ -18,6 +19,10 @@ struct Field {
 
   // Without cells where nothing was learned yet.
   const odis::GuideView& view() const { return m_view; }
+  // Whether a host is given directions at a place.
+  bool guidesAt(const odis::Float3& position) const {
+    return m_view.cellCount > 0 && !m_unguided.contains(position);
+  }
   size_t iteration() const;
   std::string statistics() const;
 
@@ -29,6 +34,7 @@ struct Field {
   std::optional<odis::GuideBuilder> m_builder;
   std::optional<odis::Guide> m_guide;
   odis::GuideView m_view;
+  odis::openpgl_interface::UnguidedPlaces m_unguided;  // none if the guide was loaded
   size_t m_updates = 0;
   size_t m_vertices = 0, m_firstVertices = 0, m_builtFrom = 0;
 };

@@ -1,0 +1,53 @@
+#include "unguided.h"
+
+#include <unordered_map>
+
+namespace odis::openpgl_interface {
+
+namespace {
+
+// Fewer vertices don't tell how much varies.
+constexpr double kFewestVertices = 16;
+// A place is left to the BSDF if the standard deviation of what a direction brings is below this fraction of what
+// surfaces scatter back there.
+constexpr double kLeastDeviation = 1;
+
+struct Moments {
+  double count = 0, sum = 0, squares = 0, direct = 0;
+
+  void add(const PathVertex& v) {
+    const double brought = mean({v.weight.x * v.radiance.x, v.weight.y * v.radiance.y, v.weight.z * v.radiance.z});
+    ++count;
+    sum += brought;
+    squares += brought * brought;
+    direct += mean(v.direct);
+  }
+  // Not where nothing comes back, or what is not finite: comparisons with NaN are false.
+  bool variesLittle() const {
+    const double variance = squares / count - (sum / count) * (sum / count);
+    const double limit = kLeastDeviation * (sum + direct) / count;
+    return count >= kFewestVertices && sum + direct > 0 && variance < limit * limit;
+  }
+
+ private:
+  static double mean(const Float3& v) { return (double(v.x) + v.y + v.z) / 3; }
+};
+
+}  // namespace
+
+UnguidedPlaces::UnguidedPlaces(const CellGrid& grid, ArrayView<const PathVertex> vertices) : m_grid(grid) {
+  std::unordered_map<uint64_t, Moments> places;
+  for (const PathVertex& vertex : vertices)
+    if (isUsable(vertex)) places[keyOf(vertex.position)].add(vertex);
+  while (m_slots.size() < 2 * places.size()) m_slots.resize(2 * m_slots.size());
+  for (const auto& [key, moments] : places)
+    if (moments.variesLittle()) insert(key);
+}
+
+void UnguidedPlaces::insert(uint64_t key) {
+  uint64_t slot = cellHash(key) & (m_slots.size() - 1);
+  while (m_slots[slot].cell != kNoCell) slot = (slot + 1) & (m_slots.size() - 1);
+  m_slots[slot] = {key, uint32_t(m_size++)};
+}
+
+}  // namespace odis::openpgl_interface
