@@ -8,24 +8,29 @@ namespace {
 
 // Fewer vertices don't tell how much varies.
 constexpr double kFewestVertices = 16;
-// A place is left to the BSDF if the standard deviation of what a direction brings is below this fraction of what
-// surfaces scatter back there.
-constexpr double kLeastDeviation = 1;
+// A place is left to the BSDF if the standard deviation of what a direction brings is below this times what surfaces
+// scatter back there. Where glossy lobes scatter, a map times the cosine says less about where to look.
+constexpr double kLeastDeviation = 0.7, kLeastGlossyDeviation = 1.7;
+// The mean roughness (alpha of a microfacet lobe, 1 for diffuse ones) from which on a place counts as diffuse.
+constexpr double kDiffuseRoughness = 0.7;
 
 struct Moments {
-  double count = 0, sum = 0, squares = 0, direct = 0;
+  double count = 0, sum = 0, squares = 0, direct = 0, roughness = 0;
 
   void add(const PathVertex& v) {
-    const double brought = mean({v.weight.x * v.radiance.x, v.weight.y * v.radiance.y, v.weight.z * v.radiance.z});
+    const double brought =
+        mean({v.weight.x * v.radiance.x, v.weight.y * v.radiance.y, v.weight.z * v.radiance.z});
     ++count;
     sum += brought;
     squares += brought * brought;
     direct += mean(v.direct);
+    roughness += v.roughness;
   }
   // Not where nothing comes back, or what is not finite: comparisons with NaN are false.
   bool variesLittle() const {
     const double variance = squares / count - (sum / count) * (sum / count);
-    const double limit = kLeastDeviation * (sum + direct) / count;
+    const bool diffuse = roughness >= kDiffuseRoughness * count;
+    const double limit = (diffuse ? kLeastDeviation : kLeastGlossyDeviation) * (sum + direct) / count;
     return count >= kFewestVertices && sum + direct > 0 && variance < limit * limit;
   }
 
