@@ -197,8 +197,8 @@ TEST_F(PglFields, AreStoredAndLoaded) {
 }
 
 // Two ends of a floor: over one (x < 1) the same light comes from everywhere, over the other one (x > 4) from a hole
-// in a dark sky.
-void learnUnderTwoSkies(pgl::Field& field, int paths) {
+// in a dark sky, or in one of this radiance.
+void learnUnderTwoSkies(pgl::Field& field, int paths, float aroundHole = 0) {
   pgl::SampleStorage samples;
   pgl::PathSegmentStorage path;
   ToyNumbers numbers = numbersOf(1);
@@ -215,7 +215,7 @@ void learnUnderTwoSkies(pgl::Field& field, int paths) {
     pgl::SetDirectionIn(vertex, toPgl(wi));
     pgl::SetPDFDirectionIn(vertex, std::max(wi.z, 1e-3f) / kPi);
     pgl::SetScatteringWeight(vertex, {0.5f, 0.5f, 0.5f});
-    const float sky = dark && dot(wi, {0.6f, 0, 0.8f}) < 0.95f ? 0.0f : 1.0f;
+    const float sky = dark && dot(wi, {0.6f, 0, 0.8f}) < 0.95f ? aroundHole : 1.0f;
     pgl::SetDirectContribution(path.NextSegment(), {sky, sky, sky});
     handOver(path, samples);
   }
@@ -239,6 +239,16 @@ TEST_F(PglFields, FewVerticesDontTellWhatVaries) {
   pgl::SurfaceSamplingDistribution distribution(field.get());
   float unused = 0;
   EXPECT_TRUE(distribution.Init(field.get(), {0.5f, 0.5f, 0}, unused));
+}
+
+TEST_F(PglFields, GuideNothingWhereThatGainsNothing) {
+  const auto field = newField();
+  learnUnderTwoSkies(*field, 20000, 1);
+  pgl::SurfaceSamplingDistribution distribution(field.get());
+  float unused = 0;
+  EXPECT_FALSE(distribution.Init(field.get(), {4.5f, 0.5f, 0}, unused));
+  EXPECT_FALSE(distribution.Init(field.get(), {50, 0.5f, 0}, unused));
+  EXPECT_GT(field->GetIteration(), 1000000u) << "there is nothing to record for";
 }
 
 TEST_F(PglFields, LoadedFieldsGuideEverywhere) {

@@ -1,6 +1,7 @@
 #include "field.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <cstring>
 #include <exception>
@@ -18,6 +19,10 @@ constexpr size_t kEnough = 8, kEnoughVertices = 200'000;
 constexpr size_t kFewestKept = size_t(1) << 16;
 // What a host is told then: more than the training samples of any setting.
 constexpr size_t kTrained = 1u << 30;
+// Nothing is guided where more than this part of the image's variance is predicted to stay. Fewer first vertices don't
+// predict it well enough.
+constexpr float kMostVarianceLeft = 0.98f;
+constexpr size_t kFewestToPredict = 10'000;
 
 // Hosts call C functions, which don't throw: a guide that can't be built is a warning, and rendering goes on.
 template <class Body>
@@ -50,9 +55,8 @@ void Field::update(SampleStorage& samples) {
   m_vertices += vertices.size();
   if (first) {
     m_firstVertices = m_vertices;
-    // Without vertices to choose BSDF sampling fractions from: nobody asks for these.
-    show(m_builder->build(odis::ArrayView<const odis::PathVertex>()));
-    if (!loaded) m_unguided = {odis::CellGrid(m_view.grid), vertices};
+    show(m_builder->build(vertices));
+    if (!loaded) judge(vertices);
   } else if (m_vertices >= kGrowth * m_builtFrom) {
     show(m_builder->rebuild(*m_guide));
   }
@@ -66,14 +70,22 @@ void Field::show(odis::Guide guide) {
   m_builtFrom = m_vertices;
 }
 
+void Field::judge(odis::ArrayView<const odis::PathVertex> vertices) {
+  // Samples that came without paths don't tell what they are worth.
+  const auto isKnown = [](const odis::PathVertex& v) { return !std::isnan(v.indirect); };
+  const bool predicted = size_t(std::count_if(vertices.begin(), vertices.end(), isKnown)) >= kFewestToPredict;
+  m_gains = !predicted || m_guide->predictedVarianceRatio() < kMostVarianceLeft;
+  m_unguided = {odis::CellGrid(m_view.grid), vertices};
+}
+
 void Field::reset() {
   *this = {};
 }
 
 size_t Field::iteration() const {
-  const bool trained =
+  const bool enough =
       m_firstVertices > 0 && m_vertices >= std::min(kEnough * m_firstVertices, kEnoughVertices);
-  return trained ? kTrained : m_updates;
+  return enough || !m_gains ? kTrained : m_updates;
 }
 
 void Field::save(const char* file) const {
@@ -87,6 +99,7 @@ void Field::load(const char* file) {
 }
 
 std::string Field::statistics() const {
+  if (!m_gains) return "ODIS: nothing is guided, as the first paths tell that it would gain little";
   return "ODIS: " + std::to_string(m_view.cellCount) + " cells from " + std::to_string(m_vertices) +
          " vertices in " + std::to_string(m_updates) + " updates, " + std::to_string(m_unguided.size()) +
          " places left to BSDFs";

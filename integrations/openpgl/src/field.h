@@ -21,7 +21,7 @@ struct Field {
   const odis::GuideView& view() const { return m_view; }
   // Whether a host is given directions at a place.
   bool guidesAt(const odis::Float3& position) const {
-    return m_view.cellCount > 0 && !m_unguided.contains(position);
+    return m_gains && m_view.cellCount > 0 && !m_unguided.contains(position);
   }
   size_t iteration() const;
   std::string statistics() const;
@@ -30,11 +30,14 @@ struct Field {
 
  private:
   void show(odis::Guide guide);
+  // Finds out by unguided vertices whether and where a host is given directions.
+  void judge(odis::ArrayView<const odis::PathVertex> vertices);
 
   std::optional<odis::GuideBuilder> m_builder;
   std::optional<odis::Guide> m_guide;
   odis::GuideView m_view;
-  odis::openpgl_interface::UnguidedPlaces m_unguided;  // none if the guide was loaded
+  bool m_gains = true;  // whether guiding is worth it at all
+  odis::openpgl_interface::UnguidedPlaces m_unguided;
   size_t m_updates = 0;
   size_t m_vertices = 0, m_firstVertices = 0, m_builtFrom = 0;
 };
