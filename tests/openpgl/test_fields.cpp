@@ -196,8 +196,8 @@ TEST_F(PglFields, AreStoredAndLoaded) {
   EXPECT_NE(loaded.GetSurfaceStatistics().ToString().find("cells"), std::string::npos);
 }
 
-// Two ends of a floor: over one (x < 1) the same light comes from everywhere, over the other one (x > 4) from a hole
-// in a dark sky, or in one of this radiance.
+// Two ends of a floor: over one (x < 1) the same light comes from everywhere, over the other one (x > 4)
+// from a hole in a dark sky, or in one of this radiance.
 void learnUnderTwoSkies(pgl::Field& field, int paths, float aroundHole = 0) {
   pgl::SampleStorage samples;
   pgl::PathSegmentStorage path;
