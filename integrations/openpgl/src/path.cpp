@@ -33,9 +33,6 @@ uint64_t hashOf(const PGLPathSegmentData& segment) {
   }
   return hash;
 }
-float meanOf(const odis::Float3& v) {
-  return (v.x + v.y + v.z) / 3;
-}
 
 }  // namespace
 

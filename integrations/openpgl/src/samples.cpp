@@ -133,7 +133,7 @@ std::vector<PGLSampleData> SampleStorage::samples() {
   std::vector<PGLSampleData> result;
   for (const odis::PathVertex& v : vertices()) {
     if (!odis::isUsable(v)) continue;
-    const float radiance = (v.radiance.x + v.radiance.y + v.radiance.z) / 3;
+    const float radiance = meanOf(v.radiance);
     result.push_back({fromOdis(v.position), fromOdis(v.wi), radiance / v.pdf, v.pdf, v.distance, 0});
   }
   return result;

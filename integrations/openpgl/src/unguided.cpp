@@ -2,6 +2,8 @@
 
 #include <unordered_map>
 
+#include "vectors.h"
+
 namespace odis::openpgl_interface {
 
 namespace {
@@ -19,11 +21,11 @@ struct Moments {
 
   void add(const PathVertex& v) {
     const double brought =
-        mean({v.weight.x * v.radiance.x, v.weight.y * v.radiance.y, v.weight.z * v.radiance.z});
+        meanOf({v.weight.x * v.radiance.x, v.weight.y * v.radiance.y, v.weight.z * v.radiance.z});
     ++count;
     sum += brought;
     squares += brought * brought;
-    direct += mean(v.direct);
+    direct += meanOf(v.direct);
     roughness += v.roughness;
   }
   // Not where nothing comes back, or what is not finite: comparisons with NaN are false.
@@ -33,9 +35,6 @@ struct Moments {
     const double limit = (diffuse ? kLeastDeviation : kLeastGlossyDeviation) * (sum + direct) / count;
     return count >= kFewestVertices && sum + direct > 0 && variance < limit * limit;
   }
-
- private:
-  static double mean(const Float3& v) { return (double(v.x) + v.y + v.z) / 3; }
 };
 
 }  // namespace

@@ -16,5 +16,8 @@ inline Float3 toOdis(const pgl_vec3f& v) {
 inline pgl_vec3f fromOdis(const Float3& v) {
   return {v.x, v.y, v.z};
 }
+inline float meanOf(const Float3& v) {
+  return (v.x + v.y + v.z) / 3;
+}
 
 }  // namespace odis::openpgl_interface
