@@ -1,7 +1,9 @@
 // What Cycles imports, and calls that it made, played again by any number of threads.
 #include <dlfcn.h>
 #include <gtest/gtest.h>
+#include <sys/wait.h>
 
+#include <cstdlib>
 #include <filesystem>
 #include <thread>
 
@@ -104,6 +106,26 @@ TEST(PglCycles, AnswersDoNotDependOnThreads) {
     EXPECT_TRUE(*one.field == *several.field) << threads;
     EXPECT_EQ(one.answers, several.answers) << threads;
   }
+}
+
+int exitCodeOf(const std::string& command) {
+  return WEXITSTATUS(std::system((command + " > /dev/null 2>&1").c_str()));
+}
+
+TEST(OdisCycles, StartsWhatLinksOpenPgl) {
+  const std::string wrapper = "bash " ODIS_CYCLES " ";
+  const std::string self = std::filesystem::read_symlink("/proc/self/exe");
+  EXPECT_EQ(exitCodeOf(wrapper + self + " --gtest_list_tests"), 0);
+  EXPECT_EQ(exitCodeOf(wrapper), 2);
+  EXPECT_EQ(exitCodeOf(wrapper + "/bin/ls"), 2) << "which does not";
+  EXPECT_EQ(exitCodeOf(wrapper + "no-such-program"), 2);
+}
+
+TEST(OdisCycles, ReadsListsOfLibrariesToTheirEnd) {
+  const TemporaryFolder folder;
+  std::ofstream(folder.path("ldd")) << "#!/bin/sh\necho libopenpgl.so.0\nsleep 0.2\necho libm.so.6\n";
+  std::filesystem::permissions(folder.path("ldd"), std::filesystem::perms::owner_all);
+  EXPECT_EQ(exitCodeOf("PATH=" + folder.path("") + ":$PATH bash " ODIS_CYCLES " true"), 0);
 }
 
 TEST(PglRecordedCalls, DamagedFilesAreNoCalls) {
