@@ -222,32 +222,32 @@ void learnUnderTwoSkies(pgl::Field& field, int paths, float aroundHole = 0) {
   field.Update(samples);
 }
 
+bool guidesAt(const pgl::Field& field, const pgl_point3f& position) {
+  pgl::SurfaceSamplingDistribution distribution(&field);
+  float unused = 0;
+  return distribution.Init(&field, position, unused);
+}
+
 TEST_F(PglFields, LeavePlacesToTheBsdfWhereLittleVaries) {
   const auto field = newField();
   learnUnderTwoSkies(*field, 20000);
-  pgl::SurfaceSamplingDistribution distribution(field.get());
-  float unused = 0;
-  EXPECT_FALSE(distribution.Init(field.get(), {0.5f, 0.5f, 0}, unused));
-  EXPECT_TRUE(distribution.Init(field.get(), {4.5f, 0.5f, 0}, unused));
+  EXPECT_FALSE(guidesAt(*field, {0.5f, 0.5f, 0}));
+  EXPECT_TRUE(guidesAt(*field, {4.5f, 0.5f, 0}));
   // Where nothing is known a host is given the cosine, as there may be a guide later.
-  EXPECT_TRUE(distribution.Init(field.get(), {50, 0.5f, 0}, unused));
+  EXPECT_TRUE(guidesAt(*field, {50, 0.5f, 0}));
 }
 
 TEST_F(PglFields, FewVerticesDontTellWhatVaries) {
   const auto field = newField();
   learnUnderTwoSkies(*field, 20);
-  pgl::SurfaceSamplingDistribution distribution(field.get());
-  float unused = 0;
-  EXPECT_TRUE(distribution.Init(field.get(), {0.5f, 0.5f, 0}, unused));
+  EXPECT_TRUE(guidesAt(*field, {0.5f, 0.5f, 0}));
 }
 
 TEST_F(PglFields, GuideNothingWhereThatGainsNothing) {
   const auto field = newField();
   learnUnderTwoSkies(*field, 20000, 1);
-  pgl::SurfaceSamplingDistribution distribution(field.get());
-  float unused = 0;
-  EXPECT_FALSE(distribution.Init(field.get(), {4.5f, 0.5f, 0}, unused));
-  EXPECT_FALSE(distribution.Init(field.get(), {50, 0.5f, 0}, unused));
+  EXPECT_FALSE(guidesAt(*field, {4.5f, 0.5f, 0}));
+  EXPECT_FALSE(guidesAt(*field, {50, 0.5f, 0}));
   EXPECT_GT(field->GetIteration(), 1000000u) << "there is nothing to record for";
 }
 
@@ -257,12 +257,10 @@ TEST_F(PglFields, LoadedFieldsGuideEverywhere) {
   learnUnderTwoSkies(*field, 20000);
   ASSERT_TRUE(field->Store(folder.path("field")));
   pgl::Field loaded(&device, folder.path("field"));
-  pgl::SurfaceSamplingDistribution distribution(&loaded);
-  float unused = 0;
-  EXPECT_TRUE(distribution.Init(&loaded, {0.5f, 0.5f, 0}, unused));
+  EXPECT_TRUE(guidesAt(loaded, {0.5f, 0.5f, 0}));
   // What its paths bring by then was guided, and does not tell what the BSDF alone would bring.
   learnUnderTwoSkies(loaded, 20000);
-  EXPECT_TRUE(distribution.Init(&loaded, {0.5f, 0.5f, 0}, unused));
+  EXPECT_TRUE(guidesAt(loaded, {0.5f, 0.5f, 0}));
 }
 
 TEST_F(PglFields, TakeSamplesWithoutPaths) {

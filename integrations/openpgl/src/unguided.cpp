@@ -43,15 +43,8 @@ UnguidedPlaces::UnguidedPlaces(const CellGrid& grid, ArrayView<const PathVertex>
   std::unordered_map<uint64_t, Moments> places;
   for (const PathVertex& vertex : vertices)
     if (isUsable(vertex)) places[keyOf(vertex.position)].add(vertex);
-  while (m_slots.size() < 2 * places.size()) m_slots.resize(2 * m_slots.size());
   for (const auto& [key, moments] : places)
-    if (moments.variesLittle()) insert(key);
-}
-
-void UnguidedPlaces::insert(uint64_t key) {
-  uint64_t slot = cellHash(key) & (m_slots.size() - 1);
-  while (m_slots[slot].cell != kNoCell) slot = (slot + 1) & (m_slots.size() - 1);
-  m_slots[slot] = {key, uint32_t(m_size++)};
+    if (moments.variesLittle()) m_places.insert(key);
 }
 
 }  // namespace odis::openpgl_interface

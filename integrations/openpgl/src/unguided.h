@@ -3,7 +3,7 @@
 
 #include <odis/odis.hpp>
 
-#include <vector>
+#include <unordered_set>
 
 namespace odis::openpgl_interface {
 
@@ -15,21 +15,16 @@ class UnguidedPlaces {
   // Judges by vertices whose directions were sampled from the BSDF alone.
   UnguidedPlaces(const CellGrid& grid, ArrayView<const PathVertex> vertices);
 
-  bool contains(const Float3& position) const {
-    return findSlot(m_slots.data(), m_slots.size() - 1, keyOf(position)) != kNoCell;
-  }
-  size_t size() const { return m_size; }
+  bool contains(const Float3& position) const { return m_places.count(keyOf(position)) > 0; }
+  size_t size() const { return m_places.size(); }
 
  private:
-  // Of the cube around a position, twice as long as the finest cells, whatever the normal: a host doesn't tell it
-  // before it decides.
+  // A place is a cube twice as long as the finest cells. Its key holds no normal (the one here stands for all of them),
+  // because hosts ask before they tell it.
   uint64_t keyOf(const Float3& position) const { return m_grid.key(position, {1, 0, 0}, 1); }
-  void insert(uint64_t key);
 
   CellGrid m_grid;
-  // Of cubes, as the slots of a guide's cells; a power of two of them, at most half of them taken.
-  std::vector<CellSlot> m_slots{CellSlot()};
-  size_t m_size = 0;
+  std::unordered_set<uint64_t> m_places;
 };
 
 }  // namespace odis::openpgl_interface
