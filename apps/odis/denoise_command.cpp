@@ -20,7 +20,7 @@ using eval::LayeredImage;
 
 struct DenoiseArguments {
   std::string image, output, png, layer, albedo, normal, albedoLayer, normalLayer;
-  std::string auxiliaries = "prefiltered";
+  std::string auxiliaries;
   float exposure = 0;
   int threads = 0;
   bool quiet = false;
@@ -75,6 +75,13 @@ std::vector<render::Rgb> auxiliary(const std::string& imageFile, const LayeredIm
   return pixelsOf(file, other, layer.empty() ? find(other).value_or("") : layer);
 }
 
+// How albedo and normals are taken if nobody says: those that `odis render --denoise` made are clean.
+std::string auxiliariesOf(const DenoiseArguments& a, const LayeredImage& image) {
+  const auto found = image.metadata.find("odis:denoiserAuxiliaries");
+  const bool clean = found != image.metadata.end() && endsWith(found->second, ", clean");
+  return clean && a.albedo.empty() && a.normal.empty() ? "clean" : "prefiltered";
+}
+
 DenoiserImages imagesOf(const DenoiseArguments& a, const LayeredImage& image) {
   DenoiserImages images;
   const std::string layer = a.layer.empty() ? eval::findColorLayer(image).value_or("") : a.layer;
@@ -94,13 +101,14 @@ void setLayer(LayeredImage& image, const std::string& prefix, const std::vector<
   }
 }
 
-int runDenoise(const DenoiseArguments& a) {
+int runDenoise(DenoiseArguments& a) {
   rejectDisplayed(a.image);
   Outputs outputs;
   outputs.add(a.output, {".exr", ".png"});
   if (!a.png.empty()) outputs.add(a.png, {".png"});
   outputs.rejectInputs({a.image, a.albedo, a.normal});
   LayeredImage image = eval::readChannels(a.image);
+  if (a.auxiliaries.empty()) a.auxiliaries = auxiliariesOf(a, image);
   DenoiserImages images = imagesOf(a, image);
   const render::Denoiser denoiser(a.threads);
   if (images.albedo.empty() && a.auxiliaries != "none" && !a.quiet)
@@ -108,6 +116,7 @@ int runDenoise(const DenoiseArguments& a) {
   if (images.albedo.empty()) images.normal.clear();
 
   static const std::map<std::string, render::Auxiliaries> kAuxiliaries{
+      {"clean", render::Auxiliaries::clean},
       {"prefiltered", render::Auxiliaries::prefiltered},
       {"noisy", render::Auxiliaries::noisy},
       {"none", render::Auxiliaries::none}};
@@ -145,10 +154,11 @@ Command addDenoiseCommand(CLI::App& parent) {
   app->add_option("--exposure", a->exposure, "Of the PNG, in stops")
       ->check(within(kStops))
       ->capture_default_str();
-  app->add_option("--aux", a->auxiliaries,
-                  "Albedo and normals: denoised first, taken as they are, or not taken at all")
-      ->check(CLI::IsMember({"prefiltered", "noisy", "none"}))
-      ->capture_default_str();
+  app->add_option(
+         "--aux", a->auxiliaries,
+         "Albedo and normals: taken as free of noise, denoised first, taken as noisy, or not taken at all; "
+         "default: clean if they are of `odis render --denoise`, else prefiltered")
+      ->check(CLI::IsMember({"clean", "prefiltered", "noisy", "none"}));
   app->add_option("--albedo", a->albedo, "File that has the albedo; default: a layer of IMAGE");
   app->add_option("--normal", a->normal, "File that has the normals; default: a layer of IMAGE");
   app->add_option("--layer", a->layer, "Which layer holds the colours, as in noisy of noisy.R");

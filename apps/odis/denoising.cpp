@@ -25,7 +25,9 @@ std::optional<std::vector<Rgb>> denoiseColors(const Denoiser& denoiser, const De
     say("interrupted while denoising: the image stays as it was rendered\n");
     return {};
   }
-  denoising = {denoiser.name(), auxiliariesText(input, auxiliaries), watch.seconds()};
+  denoising.denoiser = denoiser.name();
+  denoising.auxiliaries = auxiliariesText(input, auxiliaries);
+  denoising.seconds = watch.seconds();
   return colors;
 }
 
@@ -33,7 +35,8 @@ std::map<std::string, std::string> denoisingMetadata(const Denoising& denoising)
   if (denoising.denoiser.empty()) return {};
   return {{"odis:denoiser", denoising.denoiser},
           {"odis:denoiserAuxiliaries", denoising.auxiliaries},
-          {"odis:secondsDenoise", fmt::format("{:.4f}", denoising.seconds)}};
+          {"odis:secondsDenoise", fmt::format("{:.4f}", denoising.seconds)},
+          {"odis:secondsAuxiliaries", fmt::format("{:.4f}", denoising.secondsAuxiliaries)}};
 }
 
 }  // namespace odis::app

@@ -12,8 +12,9 @@ namespace odis::app {
 // How an image was denoised, if it was.
 struct Denoising {
   std::string denoiser;     // with its version
-  std::string auxiliaries;  // "albedo and normal, prefiltered"
+  std::string auxiliaries;  // "albedo and normal, clean"
   double seconds = 0;
+  double secondsAuxiliaries = 0;  // that rendering albedo and normal took; 0: they were there
 };
 
 // Denoised colours; nothing, and words about it, where Ctrl-C came first. Throws DenoiserError, also where
@@ -23,7 +24,8 @@ std::optional<std::vector<render::Rgb>> denoiseColors(const render::Denoiser& de
                                                       render::Auxiliaries auxiliaries,
                                                       render::Progress& progress, Denoising& denoising);
 
-// For the header of an EXR file: odis:denoiser, odis:denoiserAuxiliaries, odis:secondsDenoise.
+// For the header of an EXR file: odis:denoiser, odis:denoiserAuxiliaries, odis:secondsDenoise,
+// odis:secondsAuxiliaries.
 std::map<std::string, std::string> denoisingMetadata(const Denoising& denoising);
 
 }  // namespace odis::app

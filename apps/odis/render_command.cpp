@@ -13,6 +13,7 @@
 #include "numbers.h"
 #include "output.h"
 #include "records.h"
+#include "render/integrators/auxiliary_images.h"
 #include "render_arguments.h"
 #include "saved_rendering.h"
 #include "scene_warnings.h"
@@ -34,8 +35,7 @@ static RenderOptions renderOptions(const RenderArguments& a, const Scene& scene,
   options.threads = a.threads;
   options.timeLimit = a.timeLimit;
   options.variance = a.variance;
-  // restir knows no features: its image is denoised by its colours alone.
-  options.features = layers.any() || (a.denoise && options.integrator != IntegratorKind::restir);
+  options.features = layers.any();
   options.guideFeatures = layers.guide;
   options.records = !a.recordsFile.empty();
   options.saving = savingOf(a, options, scene);
@@ -78,13 +78,28 @@ static Outputs outputsOf(const RenderArguments& a) {
   return outputs;
 }
 
+// Renders what the denoiser is told beside colours; says so where that is interrupted.
+static bool addAuxiliaries(const RenderArguments& a, const Scene& scene, RenderedImage& image,
+                           Progress& progress, Denoising& denoising) {
+  const auto start = std::chrono::steady_clock::now();
+  AuxiliaryImages auxiliaries = renderAuxiliaries(scene, a.seed, a.threads, progress);
+  if (auxiliaries.albedo.empty()) {
+    say("interrupted: the image is not denoised\n");
+    return false;
+  }
+  image.albedo = std::move(auxiliaries.albedo);
+  image.normal = std::move(auxiliaries.normal);
+  denoising.secondsAuxiliaries = secondsSince(start);
+  return true;
+}
+
 // Denoises the image, which stays as it is where that is interrupted or fails. Returns the failure: the image
 // is to be written first.
 static std::optional<DenoiserError> denoiseImage(const Denoiser& denoiser, RenderedImage& image,
                                                  Progress& progress, Denoising& denoising) {
   try {
     const DenoiserInput input{image.width, image.height, image.color, image.albedo, image.normal};
-    if (auto colors = denoiseColors(denoiser, input, kDefaultAuxiliaries, progress, denoising))
+    if (auto colors = denoiseColors(denoiser, input, Auxiliaries::clean, progress, denoising))
       image.noisy = std::exchange(image.color, std::move(*colors));
   } catch (const DenoiserError& error) {
     return error;
@@ -157,7 +172,7 @@ static int runRender(RenderArguments& a) {
   std::optional<DenoiserError> failure;
   if (denoiser && InterruptScope::interrupted()) {
     say("interrupted: the image is not denoised\n");
-  } else if (denoiser) {
+  } else if (denoiser && addAuxiliaries(a, *scene, result.image, progress, stats.denoising)) {
     failure = denoiseImage(*denoiser, result.image, progress, stats.denoising);
     layers.albedo = layers.normal = true;  // as the denoiser had them
   }

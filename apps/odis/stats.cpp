@@ -33,8 +33,11 @@ std::string statsTable(const RunStats& stats) {
   if (r.secondsPilot > 0) row("pilot", durationText(r.secondsPilot));
   if (r.secondsBuild > 0) row("build", durationText(r.secondsBuild));
   row("render", durationText(r.secondsGuided));
-  if (!stats.denoising.denoiser.empty())
-    row("denoise", fmt::format("{}, {}", durationText(stats.denoising.seconds), stats.denoising.denoiser));
+  const Denoising& d = stats.denoising;
+  if (!d.denoiser.empty()) {
+    row("albedo, normals", durationText(d.secondsAuxiliaries));
+    row("denoise", fmt::format("{}, {}", durationText(d.seconds), d.denoiser));
+  }
   row("write", durationText(stats.secondsWrite));
   row("samples per pixel", fmt::format("{:.4g}", r.spp));
   row("samples", fmt::format("{:.3f} M, {:.3f} M/s", double(r.samples) * 1e-6,
@@ -90,7 +93,10 @@ std::string statsJson(const RunStats& stats) {
                                  {"denoising", nullptr}};
   const Denoising& d = stats.denoising;
   if (!d.denoiser.empty())
-    json["denoising"] = {{"denoiser", d.denoiser}, {"auxiliaries", d.auxiliaries}, {"seconds", d.seconds}};
+    json["denoising"] = {{"denoiser", d.denoiser},
+                         {"auxiliaries", d.auxiliaries},
+                         {"seconds", d.seconds},
+                         {"secondsAuxiliaries", d.secondsAuxiliaries}};
   return json.dump(2) + "\n";
 }
 

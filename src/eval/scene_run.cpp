@@ -64,25 +64,17 @@ std::string SceneRun::keyOf(const Method& method, const RenderOptions& options, 
 }
 
 std::string SceneRun::denoisedKey(const std::string& key) const {
-  return hexText(hashText(key + " denoised by " + m_settings.denoiser->name()));
+  return hexText(hashText(key + " denoised with clean auxiliary images by " + m_settings.denoiser->name()));
 }
 
-// Deeper than what is seen in a few mirrors there is nothing for the denoiser.
-static constexpr int kFeatureDepth = 9;
-
-void SceneRun::renderFeatures(const RenderOptions& options) {
-  const std::pair wanted(options.spp, options.seed);
-  if (m_featuresOf == wanted) return;
-  RenderOptions plain;
-  plain.integrator = IntegratorKind::path;
-  plain.spp = options.spp;
-  plain.seed = options.seed;
-  plain.threads = options.threads;
-  plain.maxDepth = options.maxDepth < 0 ? kFeatureDepth : std::min(options.maxDepth, kFeatureDepth);
-  plain.rrDepth = options.rrDepth;
-  plain.features = true;
-  m_features = render::render(*m_scene, plain, m_observer.progress()).image;
-  m_featuresOf = wanted;
+void SceneRun::renderAuxiliariesOf(uint64_t seed, int threads) {
+  if (!m_auxiliaries.albedo.empty() && m_auxiliarySeed == seed) return;
+  const std::clock_t start = std::clock();
+  const Stopwatch watch;
+  m_auxiliaries = renderAuxiliaries(*m_scene, seed, threads, m_observer.progress());
+  m_auxiliarySeed = seed;
+  m_auxiliarySeconds = watch.seconds();
+  m_auxiliaryCpuSeconds = double(std::clock() - start) / CLOCKS_PER_SEC;
 }
 
 // The measurement of the same image after the denoiser; nothing if that was cancelled.
@@ -90,11 +82,12 @@ std::optional<Measurement> SceneRun::measureDenoised(Measurement m, const Method
                                                      const RenderedImage& noisy) {
   const std::clock_t start = std::clock();
   const Stopwatch watch;
-  const DenoiserInput input{noisy.width, noisy.height, noisy.color, m_features.albedo, m_features.normal};
-  auto colors = m_settings.denoiser->denoise(input, kDefaultAuxiliaries, m_observer.progress());
+  const DenoiserInput input{noisy.width, noisy.height, noisy.color, m_auxiliaries.albedo,
+                            m_auxiliaries.normal};
+  auto colors = m_settings.denoiser->denoise(input, Auxiliaries::clean, m_observer.progress());
   if (!colors) return {};
-  m.seconds += watch.seconds();
-  m.cpuSeconds += double(std::clock() - start) / CLOCKS_PER_SEC;
+  m.seconds += watch.seconds() + m_auxiliarySeconds;
+  m.cpuSeconds += double(std::clock() - start) / CLOCKS_PER_SEC + m_auxiliaryCpuSeconds;
   m.denoised = true;
   m.key = denoisedKey(m.key);
   RenderedImage image = noisy;
@@ -157,7 +150,8 @@ std::vector<Measurement> SceneRun::measure(const Method& method, const Budget& b
   m.rays = result.stats.rays + result.stats.shadowRays;
   std::vector<Measurement> measured{measureImage(m, method, result.image)};
   if (m_settings.denoiser) {
-    renderFeatures(options);
+    renderAuxiliariesOf(seed, options.threads);
+    if (m_auxiliaries.albedo.empty()) return {};  // cancelled
     const auto denoised = measureDenoised(m, method, result.image);
     if (!denoised) return {};
     measured.push_back(*denoised);

@@ -4,13 +4,13 @@
 #include <memory>
 #include <optional>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "eval/compare.h"
 #include "eval/reference.h"
 #include "eval/results_log.h"
 #include "eval/schedule.h"
+#include "render/integrators/auxiliary_images.h"
 
 namespace odis::eval {
 
@@ -38,7 +38,7 @@ class SceneRun {
   Measurement measureImage(const Measurement& what, const Method& method, const render::RenderedImage& image);
   std::optional<Measurement> measureDenoised(Measurement noisyOne, const Method& method,
                                              const render::RenderedImage& noisy);
-  void renderFeatures(const render::RenderOptions& options);
+  void renderAuxiliariesOf(uint64_t seed, int threads);
   std::string denoisedKey(const std::string& key) const;
   std::string keyOf(const Method& method, const render::RenderOptions& options, const Budget& budget) const;
   std::string writeImage(const Measurement& m, const Method& method,
@@ -51,9 +51,11 @@ class SceneRun {
   std::unique_ptr<render::Scene> m_scene;
   SceneRecord m_record;
   Reference m_reference;
-  // Albedo and normals for the denoiser, of the samples and the seed that were asked for last.
-  render::RenderedImage m_features;
-  std::pair<int, uint64_t> m_featuresOf{0, 0};
+  // What the denoiser is told beside colours, of all methods alike, with the seed that was asked for last;
+  // and what it took to render.
+  render::AuxiliaryImages m_auxiliaries;
+  uint64_t m_auxiliarySeed = 0;
+  double m_auxiliarySeconds = 0, m_auxiliaryCpuSeconds = 0;
 };
 
 }  // namespace odis::eval

@@ -45,7 +45,9 @@ struct BsdfValue {
 };
 
 struct BsdfFeatures {
-  Rgb albedo{0, 0, 0};  // approximate directional-hemispherical reflectance (plus transmittance), in [0, 1]
+  // Approximate directional-hemispherical reflectance plus transmittance, in [0, 1], without what passes
+  // straight through (Lobe::null).
+  Rgb albedo{0, 0, 0};
   float roughness = 1;  // alpha in [0, 1] of the lobe that matters most; 0 for delta, 1 for diffuse
 };
 

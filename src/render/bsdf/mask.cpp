@@ -37,9 +37,9 @@ class Mask final : public Bsdf {
   }
 
   BsdfFeatures features(const SurfacePoint& at, const Vec3& wo) const override {
-    const float opacity = m_opacity(at);
+    // Of what hides what is behind: paths that pass straight through have the features of that.
     const BsdfFeatures nested = m_nested->features(at, wo);
-    return {lerp(opacity, Rgb(1.0f), nested.albedo), opacity < 0.5f ? 0 : nested.roughness};
+    return {nested.albedo, m_opacity(at) < 0.5f ? 0 : nested.roughness};
   }
 
  private:

@@ -165,7 +165,7 @@ std::optional<std::vector<Rgb>> Denoiser::denoise(const DenoiserInput& input, Au
   filter.image("normal", normal);
   filter.image("output", color);
   filter.flag("hdr", true);
-  filter.flag("cleanAux", prefiltered);
+  filter.flag("cleanAux", prefiltered || (auxiliaries == Auxiliaries::clean && usesBoth(input)));
   if (!run(filter)) return {};
   progress.end();
   return color;
@@ -174,7 +174,9 @@ std::optional<std::vector<Rgb>> Denoiser::denoise(const DenoiserInput& input, Au
 std::string auxiliariesText(const DenoiserInput& input, Auxiliaries auxiliaries) {
   if (auxiliaries == Auxiliaries::none || input.albedo.empty()) return "none";
   if (input.normal.empty()) return "albedo";
-  return auxiliaries == Auxiliaries::prefiltered ? "albedo and normal, prefiltered" : "albedo and normal";
+  const std::string both = "albedo and normal";
+  if (auxiliaries == Auxiliaries::clean) return both + ", clean";
+  return auxiliaries == Auxiliaries::prefiltered ? both + ", prefiltered" : both;
 }
 
 }  // namespace odis::render

@@ -14,11 +14,11 @@ namespace odis::render {
 
 // What becomes of albedo and normals before they steer the denoising of the colours.
 enum class Auxiliaries {
+  clean,        // taken as images without noise
   prefiltered,  // each is denoised by itself, so that its noise does not end up in the image
-  noisy,        // taken as they are
+  noisy,        // taken as images with as much noise as the colours have
   none          // colours alone
 };
-inline constexpr Auxiliaries kDefaultAuxiliaries = Auxiliaries::prefiltered;
 
 // Images of one size, row 0 at the top. Albedo and normals are those of features.h; either may be empty, but
 // there are no normals without an albedo.
@@ -57,7 +57,7 @@ class Denoiser {
   std::string m_name;
 };
 
-// "albedo and normal, prefiltered", "albedo", "none": what `denoise` uses of this input.
+// "albedo and normal, clean", "albedo", "none", …: what `denoise` uses of this input.
 std::string auxiliariesText(const DenoiserInput& input, Auxiliaries auxiliaries);
 
 }  // namespace odis::render

@@ -3,7 +3,24 @@
 #include <cmath>
 #include <span>
 
+#include "render/path/path.h"
+
 namespace odis::render {
+
+FirstHit firstHitAt(const Vertex& vertex, float distance) {
+  const auto& [at, wo] = vertex;
+  const BsdfFeatures features = at.shape->bsdf().features(at, wo);
+  const float side = wo.z < 0 ? -1.0f : 1.0f;
+  FirstHit first;
+  first.valid = true;
+  first.position = at.p;
+  first.normal = at.shading.n * side;
+  first.geometricNormal = at.ng * side;
+  first.albedo = features.albedo;
+  first.depth = distance;
+  first.roughness = features.roughness;
+  return first;
+}
 
 void FeatureSums::add(const FirstHit& first, float sampleAlpha) {
   alpha += sampleAlpha;

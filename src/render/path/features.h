@@ -24,6 +24,11 @@ struct FirstHit {
   float survival = 1;                // that learned roulette would give a path with this throughput
 };
 
+struct Vertex;
+
+// The features of a vertex, `distance` from the camera along the path.
+FirstHit firstHitAt(const Vertex& vertex, float distance);
+
 // Sums of features over the samples that met a surface, and of alpha over all. 88 bytes a pixel.
 struct FeatureSums {
   Rgb albedo{0, 0, 0};

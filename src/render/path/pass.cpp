@@ -81,7 +81,10 @@ void renderTile(const Pass& pass, uint32_t tile, TileResult& result) {
       ++traced;
     }
     if (traced > 0 && paths.size() < pixels.size()) continue;
-    tracePaths(pass.path, paths, pass.wantsVertices ? &result.vertices : nullptr);
+    if (pass.firstHitsOnly)
+      traceFirstHits(pass.path, paths);
+    else
+      tracePaths(pass.path, paths, pass.wantsVertices ? &result.vertices : nullptr);
     collect(pass, paths, result);
     paths.clear();
   }

@@ -28,6 +28,7 @@ struct Pass {
   // threads.
   std::function<void(uint32_t tile, ArrayView<const FrameSample>, ArrayView<const PathVertex>)> deliver;
   bool wantsVertices = false;
+  bool firstHitsOnly = false;  // traceFirstHits() in place of tracePaths(): for `features`, samples are black
   // Further sums, with one entry a pixel of the crop. Null: not wanted.
   std::vector<FeatureSums>* features = nullptr;
   std::vector<Rgb>* emitted = nullptr;

@@ -97,6 +97,11 @@ LightReference lightReference(const SurfacePoint& at, const Vec3& wo);
 void tracePaths(const PathSettings& settings, std::span<Path> paths,
                 std::vector<PathVertex>* vertices = nullptr);
 
+// Follows each path through mirrors and glass to the first other surface, and fills in Path::first there,
+// unless settings.maxDepth ends it or it leaves the scene before. Coats over rougher surfaces are no mirrors
+// here. Nothing is guided, and no light gathered.
+void traceFirstHits(const PathSettings& settings, std::span<Path> paths);
+
 inline Float3 toOdis(const Vec3& v) {
   return {v.x, v.y, v.z};
 }

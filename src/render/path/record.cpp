@@ -10,16 +10,7 @@ void describeFirstHits(const PathSettings& settings, Bounces bounces) {
     bounce.path->visible |= bounce.next.lobe != Lobe::null;
     FirstHit& first = bounce.path->first;
     if (first.valid || isDiscrete(bounce.next.lobe)) continue;
-    const auto& [at, wo] = *bounce.vertex;
-    const BsdfFeatures features = at.shape->bsdf().features(at, wo);
-    const float side = wo.z < 0 ? -1.0f : 1.0f;
-    first.valid = true;
-    first.position = at.p;
-    first.normal = at.shading.n * side;
-    first.geometricNormal = at.ng * side;
-    first.albedo = features.albedo;
-    first.depth = bounce.path->distance;
-    first.roughness = features.roughness;
+    first = firstHitAt(*bounce.vertex, bounce.path->distance);
     if (!settings.guideFeatures || bounce.cell == kNoCell) continue;
     first.cell = bounce.cell;
     first.texels = settings.guide->maps.texels + size_t(bounce.cell) * kMapTexels;
