@@ -331,7 +331,8 @@ TEST(Features, DescribeTheSurface) {
       sum += average(s.weight) * s.eta * s.eta;
       ++count;
     }
-    EXPECT_NEAR(average(bsdf->features(flatPoint(), wo).albedo), sum / std::max(count, 1), 0.25) << name;
+    if (count == 0) continue;  // no surface
+    EXPECT_NEAR(average(bsdf->features(flatPoint(), wo).albedo), sum / count, 0.25) << name;
   }
 }
 

@@ -100,11 +100,10 @@ TEST(AuxiliaryImages, AreFeaturesOfPaths) {
 // A board whose squares are smaller than pixels is grey, which few samples don't find out.
 TEST(AuxiliaryImages, TakeMoreSamplesWhereTheyDiffer) {
   const auto scene = test::loadScene(
-      camera(24) +
-      screen(R"(<bsdf type="diffuse"><texture type="checkerboard" name="reflectance">
+      camera(24) + screen(R"(<bsdf type="diffuse"><texture type="checkerboard" name="reflectance">
                   <transform name="to_uv"><scale value="97"/></transform>
                   <rgb name="color0" value="0"/><rgb name="color1" value="0.8"/></texture></bsdf>)",
-             9));
+                          9));
   RenderOptions options;
   options.integrator = IntegratorKind::path;
   options.features = true;

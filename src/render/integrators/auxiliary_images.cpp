@@ -72,8 +72,8 @@ class AuxiliaryRendering {
       const Mean now = meanOf(m_sums[i]);
       if (now.samples == before[i].samples) continue;
       const Rgb albedo = now.albedo - before[i].albedo;
-      result[i] = lengthSquared(now.normal - before[i].normal) +
-                  lengthSquared(Vec3(albedo.x, albedo.y, albedo.z));
+      result[i] =
+          lengthSquared(now.normal - before[i].normal) + lengthSquared(Vec3(albedo.x, albedo.y, albedo.z));
     }
     return result;
   }
