@@ -33,10 +33,13 @@ std::optional<std::vector<Rgb>> denoiseColors(const Denoiser& denoiser, const De
 
 std::map<std::string, std::string> denoisingMetadata(const Denoising& denoising) {
   if (denoising.denoiser.empty()) return {};
-  return {{"odis:denoiser", denoising.denoiser},
-          {"odis:denoiserAuxiliaries", denoising.auxiliaries},
-          {"odis:secondsDenoise", fmt::format("{:.4f}", denoising.seconds)},
-          {"odis:secondsAuxiliaries", fmt::format("{:.4f}", denoising.secondsAuxiliaries)}};
+  std::map<std::string, std::string> metadata{
+      {"odis:denoiser", denoising.denoiser},
+      {"odis:denoiserAuxiliaries", denoising.auxiliaries},
+      {"odis:secondsDenoise", fmt::format("{:.4f}", denoising.seconds)}};
+  if (denoising.secondsAuxiliaries > 0)
+    metadata["odis:secondsAuxiliaries"] = fmt::format("{:.4f}", denoising.secondsAuxiliaries);
+  return metadata;
 }
 
 }  // namespace odis::app

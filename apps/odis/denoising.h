@@ -25,7 +25,7 @@ std::optional<std::vector<render::Rgb>> denoiseColors(const render::Denoiser& de
                                                       render::Progress& progress, Denoising& denoising);
 
 // For the header of an EXR file: odis:denoiser, odis:denoiserAuxiliaries, odis:secondsDenoise,
-// odis:secondsAuxiliaries.
+// odis:secondsAuxiliaries (where they were rendered).
 std::map<std::string, std::string> denoisingMetadata(const Denoising& denoising);
 
 }  // namespace odis::app

@@ -84,6 +84,7 @@ TEST_F(Denoising, OfAFileComesToTheSameBits) {
   }
   EXPECT_EQ(later.channels.at("depth.Z"), atOnce.channels.at("depth.Z"));
   EXPECT_EQ(later.metadata.at("odis:seed"), "0");
+  EXPECT_EQ(later.metadata.at("odis:secondsAuxiliaries"), atOnce.metadata.at("odis:secondsAuxiliaries"));
   EXPECT_EQ(later.metadata.at("odis:denoiserAuxiliaries"), "albedo and normal, clean");
   // Features of the image's own few samples are denoised first.
   ASSERT_EQ(run(render + "--aov albedo,normal -o plain.exr").code, 0);
