@@ -75,8 +75,9 @@ std::vector<render::Rgb> auxiliary(const std::string& imageFile, const LayeredIm
   return pixelsOf(file, other, layer.empty() ? find(other).value_or("") : layer);
 }
 
-// How albedo and normals are taken if nobody says: those that `odis render --denoise` made are clean.
+// How albedo and normals are taken. If nobody says, those that `odis render --denoise` made are clean.
 std::string auxiliariesOf(const DenoiseArguments& a, const LayeredImage& image) {
+  if (!a.auxiliaries.empty()) return a.auxiliaries;
   const auto found = image.metadata.find("odis:denoiserAuxiliaries");
   const bool clean = found != image.metadata.end() && endsWith(found->second, ", clean");
   return clean && a.albedo.empty() && a.normal.empty() ? "clean" : "prefiltered";
@@ -101,14 +102,13 @@ void setLayer(LayeredImage& image, const std::string& prefix, const std::vector<
   }
 }
 
-int runDenoise(DenoiseArguments& a) {
+int runDenoise(const DenoiseArguments& a) {
   rejectDisplayed(a.image);
   Outputs outputs;
   outputs.add(a.output, {".exr", ".png"});
   if (!a.png.empty()) outputs.add(a.png, {".png"});
   outputs.rejectInputs({a.image, a.albedo, a.normal});
   LayeredImage image = eval::readChannels(a.image);
-  if (a.auxiliaries.empty()) a.auxiliaries = auxiliariesOf(a, image);
   DenoiserImages images = imagesOf(a, image);
   const render::Denoiser denoiser(a.threads);
   if (images.albedo.empty() && a.auxiliaries != "none" && !a.quiet)
@@ -125,7 +125,7 @@ int runDenoise(DenoiseArguments& a) {
   Denoising denoising;
   const int width = image.window.width, height = image.window.height;
   const auto colors = denoiseColors(denoiser, {width, height, images.color, images.albedo, images.normal},
-                                    kAuxiliaries.at(a.auxiliaries), progress, denoising);
+                                    kAuxiliaries.at(auxiliariesOf(a, image)), progress, denoising);
   if (!colors) return InterruptScope::exitCode();
   if (endsWith(a.output, ".png"))
     render::writePng(a.output, width, height, colors->data(), a.exposure);

@@ -14,7 +14,7 @@ struct Denoising {
   std::string denoiser;     // with its version
   std::string auxiliaries;  // "albedo and normal, clean"
   double seconds = 0;
-  double secondsAuxiliaries = 0;  // that rendering albedo and normal took; 0: they were there
+  double secondsAuxiliaries = 0;  // what it took to render albedo and normal; 0 where a file had them
 };
 
 // Denoised colours; nothing, and words about it, where Ctrl-C came first. Throws DenoiserError, also where

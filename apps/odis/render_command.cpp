@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <limits>
 #include <memory>
+#include <new>
 
 #include "command.h"
 #include "console.h"
@@ -78,11 +79,13 @@ static Outputs outputsOf(const RenderArguments& a) {
   return outputs;
 }
 
-// Renders what the denoiser is told beside colours; says so where that is interrupted.
+// Renders what the denoiser is told beside colours. Returns false, and says so, if the user interrupted it or
+// what came before.
 static bool addAuxiliaries(const RenderArguments& a, const Scene& scene, RenderedImage& image,
                            Progress& progress, Denoising& denoising) {
   const auto start = std::chrono::steady_clock::now();
-  AuxiliaryImages auxiliaries = renderAuxiliaries(scene, a.seed, a.threads, progress);
+  AuxiliaryImages auxiliaries;
+  if (!InterruptScope::interrupted()) auxiliaries = renderAuxiliaries(scene, a.seed, a.threads, progress);
   if (auxiliaries.albedo.empty()) {
     say("interrupted: the image is not denoised\n");
     return false;
@@ -95,14 +98,18 @@ static bool addAuxiliaries(const RenderArguments& a, const Scene& scene, Rendere
 
 // Denoises the image, which stays as it is where that is interrupted or fails. Returns the failure: the image
 // is to be written first.
-static std::optional<DenoiserError> denoiseImage(const Denoiser& denoiser, RenderedImage& image,
+static std::optional<DenoiserError> denoiseImage(const RenderArguments& a, const Scene& scene,
+                                                 const Denoiser& denoiser, RenderedImage& image,
                                                  Progress& progress, Denoising& denoising) {
   try {
+    if (!addAuxiliaries(a, scene, image, progress, denoising)) return {};
     const DenoiserInput input{image.width, image.height, image.color, image.albedo, image.normal};
     if (auto colors = denoiseColors(denoiser, input, Auxiliaries::clean, progress, denoising))
       image.noisy = std::exchange(image.color, std::move(*colors));
   } catch (const DenoiserError& error) {
     return error;
+  } catch (const std::bad_alloc&) {
+    return DenoiserError("albedo and normals for the denoiser: not enough memory");
   }
   return {};
 }
@@ -170,12 +177,9 @@ static int runRender(RenderArguments& a) {
   if (result.stats.interrupted) tellOfSaved(a);
   if (!isWorthWriting(a, result.stats)) return InterruptScope::exitCode();
   std::optional<DenoiserError> failure;
-  if (denoiser && InterruptScope::interrupted()) {
-    say("interrupted: the image is not denoised\n");
-  } else if (denoiser && addAuxiliaries(a, *scene, result.image, progress, stats.denoising)) {
-    failure = denoiseImage(*denoiser, result.image, progress, stats.denoising);
+  if (denoiser) failure = denoiseImage(a, *scene, *denoiser, result.image, progress, stats.denoising);
+  if (stats.denoising.secondsAuxiliaries > 0)
     layers.albedo = layers.normal = true;  // as the denoiser had them
-  }
 
   stats.render = result.stats;
   stats.bytesScene = scene->bytes();

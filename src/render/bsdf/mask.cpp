@@ -37,7 +37,7 @@ class Mask final : public Bsdf {
   }
 
   BsdfFeatures features(const SurfacePoint& at, const Vec3& wo) const override {
-    // Of what hides what is behind: paths that pass straight through have the features of that.
+    // The nested BSDF alone: a path that passes straight through takes the features of what it meets next.
     const BsdfFeatures nested = m_nested->features(at, wo);
     return {nested.albedo, m_opacity(at) < 0.5f ? 0 : nested.roughness};
   }

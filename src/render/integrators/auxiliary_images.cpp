@@ -47,7 +47,7 @@ class AuxiliaryRendering {
       before.reserve(m_sums.size());
       for (const FeatureSums& sums : m_sums) before.push_back(meanOf(sums));
       trace(samples, samples);
-      findUneven(before);
+      if (2 * samples < kMostSamples) findUneven(before);  // for the next round
     }
     if (m_progress.cancelled()) return {};
     RenderedImage image;
