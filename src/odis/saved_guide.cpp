@@ -79,7 +79,9 @@ Guide Guide::load(const Archive& file) {
         "guide.keys: are damaged");
   if (pixels) {
     data.rim = file.value<float>("guide.rim");
-    file.require(data.rim > 0 && std::isfinite(data.rim), "guide.rim: is damaged");
+    // Any other might leave a map nothing to sample.
+    file.require(data.rim == MapArrays().rim || data.rim == Data::kRimWithoutProduct,
+                 "guide.rim: is damaged");
     data.pixelCells = file.get<uint32_t>("guide.pixelCells");
     for (const uint32_t cell : data.pixelCells)
       file.require(cell == kNoCell || cell < keys.size(), "guide.pixelCells: are damaged");

@@ -1,4 +1,6 @@
 // Guides, vertices and frames in files: what is read is what was written, and a frame goes on where it was.
+#include <cmath>
+#include <cstring>
 #include <filesystem>
 #include <fstream>
 #include <random>
@@ -19,6 +21,14 @@ std::string readAll(const std::string& path) {
 
 void writeAll(const std::string& path, const std::string& bytes) {
   std::ofstream(path, std::ios::binary).write(bytes.data(), std::streamsize(bytes.size()));
+}
+
+// `bytes` without their last four, which are made the checksum of the others.
+void writeWithChecksum(const std::string& path, std::string bytes) {
+  bytes.resize(bytes.size() - 4);
+  const uint32_t crc = core::crc32(bytes);
+  for (int byte = 0; byte < 4; ++byte) bytes.push_back(char(uint8_t(crc >> (8 * byte))));
+  writeAll(path, bytes);
 }
 
 TEST(ApiFiles, AGuideIsReadAsItWasWritten) {
@@ -171,6 +181,33 @@ TEST(ApiFiles, OtherFilesAreRefused) {
   EXPECT_FALSE(std::filesystem::exists(guide + ".part"));
 }
 
+// With a rim that is too small or too large, the density of a map that is dark above a horizon would be
+// zero or infinite.
+TEST(ApiFiles, ARimThatNoGuideHasIsRefused) {
+  const TemporaryFolder folder;
+  const std::string path = folder.path("a.guide");
+  GuideBuilder builder;
+  builder.add(apiVertices());
+  builder.build(apiVertices()).save(path);
+  const std::string sound = readAll(path), name = "guide.rim";
+  // Behind the name are the bytes of an element and the number of elements.
+  const size_t rim = sound.find(name) + name.size() + sizeof(uint32_t) + sizeof(uint64_t);
+  const auto isRead = [&](float value) {
+    std::string bytes = sound;
+    std::memcpy(&bytes[rim], &value, sizeof value);
+    writeWithChecksum(path, bytes);
+    const OdisGuide guide = odisLoadGuide(Context::shared().get(), path.c_str());
+    std::string message;
+    takeError(&message);
+    EXPECT_EQ(message.find("guide.rim: is damaged") == std::string::npos, guide != nullptr) << message;
+    odisReleaseGuide(guide);
+    return guide != nullptr;
+  };
+  EXPECT_TRUE(isRead(1e-4f));
+  EXPECT_TRUE(isRead(1e6f));
+  for (const float value : {0.0f, -1.0f, 1e-40f, 1e38f, INFINITY, NAN}) EXPECT_FALSE(isRead(value)) << value;
+}
+
 // Bytes that were changed, with a checksum that fits them: what is read either works or is refused.
 TEST(ApiFiles, DamageThatTheChecksumDoesNotShowIsHarmless) {
   const TemporaryFolder folder;
@@ -189,13 +226,11 @@ TEST(ApiFiles, DamageThatTheChecksumDoesNotShowIsHarmless) {
   std::mt19937 engine(3);
   int refused = 0;
   for (int i = 0; i < 120; ++i) {
-    std::string bytes = sound.substr(0, sound.size() - 4);
+    std::string bytes = sound;
     // Most of the file is numbers of any value; the others are near its begin.
-    const size_t range = i % 2 ? bytes.size() : 1500;
+    const size_t range = i % 2 ? bytes.size() - 4 : 1500;
     for (int k = 0; k < 3; ++k) bytes[engine() % range] = char(engine());
-    const uint32_t crc = core::crc32(bytes);
-    for (int byte = 0; byte < 4; ++byte) bytes.push_back(char(uint8_t(crc >> (8 * byte))));
-    writeAll(path, bytes);
+    writeWithChecksum(path, bytes);
     const OdisFrame read = odisLoadFrame(Context::shared().get(), path.c_str(), nullptr);
     refused += read == nullptr;
     if (read) {
