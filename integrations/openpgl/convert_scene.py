@@ -256,6 +256,8 @@ def main():
         converted.add_shape(shape)
     if any(not emitter.is_environment() and emitter.get_shape() is None for emitter in scene.emitters()):
         converted.say("lights without a shape are left out")
+    if scene.environment() is None and not any("<emission" in body for _, body in converted.shaders):
+        converted.say("no light is left, and the image will be black")
     bounces = " ".join(f'max_{kind}bounce="{args.bounces}"' for kind in ("", "diffuse_", "glossy_", "transmission_"))
     shaders = "\n".join(f'<shader name="{name}">\n  {body}\n</shader>' for name, body in converted.shaders)
     (args.folder / "scene.xml").write_text("\n".join([
