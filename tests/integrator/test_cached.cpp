@@ -82,5 +82,20 @@ TEST(Cached, LeavesShallowPathsAsTheyAre) {
   EXPECT_TRUE(test::sameBits(cached.image.color, test::renderScene(*scene, options).image.color));
 }
 
+// What a glossy metal scatters depends on the direction, so that the mean of a cell is not what a path finds.
+TEST(Cached, OnlyRoughMetalEndsPaths) {
+  for (const auto& [alpha, ends] : {std::pair("0.25", false), std::pair("0.4", true)}) {
+    const auto scene = test::loadScene(
+        test::furnace("<bsdf type=\"roughconductor\"><string name=\"material\" value=\"none\"/>"
+                      "<rgb name=\"specular_reflectance\" value=\"0.5\"/><float name=\"alpha\" value=\"" +
+                      std::string(alpha) + "\"/></bsdf>"));
+    RenderOptions options = cachedOptions(8);
+    const RenderResult cached = test::renderScene(*scene, options);
+    options.cached = false;
+    EXPECT_EQ(test::sameBits(cached.image.color, test::renderScene(*scene, options).image.color), !ends)
+        << alpha;
+  }
+}
+
 }  // namespace
 }  // namespace odis::render

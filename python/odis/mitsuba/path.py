@@ -16,7 +16,7 @@ RECORDED = 1 << 31  # marks samples in Samples.chosen whose vertices are recorde
 # Smoother surfaces end no paths: what they scatter depends too much on the direction. Nor do coats that are met at an
 # angle of a smaller cosine: half of the draws at a cosine of 0.2 are mirrored, for an index of refraction of 1.5 over a
 # diffuse reflectance of 0.5.
-LEAST_CACHED_ROUGHNESS, LEAST_CACHED_COSINE = 0.2, 0.2
+LEAST_CACHED_ROUGHNESS, LEAST_CACHED_COSINE = 0.3, 0.2
 
 
 @dataclass

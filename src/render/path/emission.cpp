@@ -71,7 +71,7 @@ namespace {
 
 // Smoother surfaces end no paths: what they scatter depends too much on the direction. The same is true of
 // those that scatter mostly by lobes that may not be guided.
-constexpr float kLeastCachedRoughness = 0.2f, kLeastCachedGuidable = 0.5f;
+constexpr float kLeastCachedRoughness = 0.3f, kLeastCachedGuidable = 0.5f;
 // Cached radiance holds what comes back from vertices of any depth, so that paths that end with it may bring
 // light of more bounces than max_depth allows. Below this max_depth that light is too bright to be ignored.
 constexpr int kLeastCachedMaxDepth = 8;
