@@ -44,10 +44,20 @@ class ConvertScene(unittest.TestCase):
         self.folder = pathlib.Path(scratch.name)
         picture = np.repeat(STEPS[:, None, None], 3, axis=2)
         mi.Bitmap(np.ascontiguousarray(picture)).write(str(self.folder / "steps.png"))
-        (self.folder / "scene.xml").write_text(SCENE)
-        subprocess.run([sys.executable, PROGRAM, self.folder / "scene.xml", self.folder / "out", "--pixels", "24"],
-                       check=True, capture_output=True)
+        self.said = self.convert(SCENE)
         self.text = (self.folder / "out/scene.xml").read_text()
+
+    def convert(self, scene):
+        """Returns what is said on stderr."""
+        (self.folder / "scene.xml").write_text(scene)
+        command = [sys.executable, PROGRAM, self.folder / "scene.xml", self.folder / "out", "--pixels", "24"]
+        return subprocess.run(command, check=True, capture_output=True, text=True).stderr
+
+    def test_without_light(self):
+        dark = self.convert(SCENE.replace('<emitter type="constant"/>', '<emitter type="point"/>'))
+        self.assertIn("lights without a shape are left out", dark)
+        self.assertIn("no light is left", dark)
+        self.assertNotIn("no light is left", self.said)
 
     def test_textures(self):
         """Linear, the row of v = 0 last, as Cycles reads them."""
