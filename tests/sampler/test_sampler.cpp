@@ -1,8 +1,9 @@
-#include "render/sampler/sampler.h"
+#include "render/sampler/sampler_block.h"
 
 #include <gtest/gtest.h>
 
 #include <set>
+#include <vector>
 
 namespace odis::render {
 namespace {
@@ -105,14 +106,34 @@ TEST(Sampler, RedrawsTheNumbersForSomePurposesAndNoOthers) {
   }
 }
 
-TEST(Sampler, SkippedNumbersLeaveTheOthersWhereTheyAre) {
-  Sampler all(SamplerKind::sobol, 1, 2, 3), some(SamplerKind::sobol, 1, 2, 3);
-  all.startVertex(2);
-  all.get1D();
-  all.get2D();
-  some.startVertex(2);
-  some.skip(2);
-  EXPECT_EQ(all.get1D(), some.get1D());
+// What a sampler draws of a dimension by itself.
+Vec2 drawnAlone(Sampler sampler, int depth, VertexNumber number, bool pair) {
+  sampler.startVertex(depth);
+  for (uint32_t before = 1; before < number; ++before) sampler.get1D();
+  return pair ? sampler.get2D() : Vec2(sampler.get1D(), 0);
+}
+
+TEST(SamplerBlock, DrawsWhatEachSamplerDrawsByItself) {
+  for (const SamplerKind kind : {SamplerKind::sobol, SamplerKind::independent})
+    for (const Purposes redrawn : {Purposes(0), kLaterDirection, kAllPurposes})
+      for (const size_t count : {size_t(1), size_t(7), SamplerBlock::kSize}) {
+        std::vector<Sampler> samplers;
+        SamplerBlock block;
+        for (uint32_t i = 0; i < count; ++i) {
+          samplers.emplace_back(kind, 42, 1000 + i / 3, i * i, redrawn);
+          block.add(samplers.back());
+        }
+        for (const int depth : {1, 2, 40})
+          for (const VertexNumber number : {kLightChoiceNumber, kDirectionNumber, kShadowRayNumber}) {
+            SamplerBlock::Column x, y, first;
+            block.draw2D(dimensionOf(depth, number), x, y);
+            block.draw1D(dimensionOf(depth, number), first);
+            for (size_t i = 0; i < count; ++i) {
+              EXPECT_EQ(Vec2(x[i], y[i]), drawnAlone(samplers[i], depth, number, true));
+              EXPECT_EQ(Vec2(first[i], 0), drawnAlone(samplers[i], depth, number, false));
+            }
+          }
+      }
 }
 
 }  // namespace

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "odis/maps/instruction_sets.h"
+#include "odis/instruction_sets.h"
 #include "odis/maps/texel_directions.h"
 
 namespace odis::core {

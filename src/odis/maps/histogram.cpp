@@ -4,7 +4,7 @@
 #include <cmath>
 #include <cstring>
 
-#include "odis/maps/instruction_sets.h"
+#include "odis/instruction_sets.h"
 
 namespace odis::core {
 

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "odis/maps/instruction_sets.h"
+#include "odis/instruction_sets.h"
 #include "odis/maps/texel_directions.h"
 
 namespace odis::core {

@@ -1,6 +1,6 @@
 #include "odis/maps/texel_directions.h"
 
-#include "odis/maps/instruction_sets.h"
+#include "odis/instruction_sets.h"
 
 namespace odis::core {
 

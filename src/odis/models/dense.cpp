@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <array>
 
-#include "odis/maps/instruction_sets.h"
+#include "odis/instruction_sets.h"
 
 namespace odis::core {
 

@@ -5,8 +5,8 @@
 #include <cmath>
 #include <vector>
 
+#include "odis/instruction_sets.h"
 #include "odis/maps/fast_log2.h"
-#include "odis/maps/instruction_sets.h"
 #include "odis/maps/texel_directions.h"
 
 namespace odis::core {

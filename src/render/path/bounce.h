@@ -4,6 +4,7 @@
 #include <array>
 
 #include "render/path/guided_bsdf.h"
+#include "render/sampler/sampler_block.h"
 
 namespace odis::render {
 
@@ -30,12 +31,13 @@ struct Arrival {
 
 // The same from its arrival to its departure. Steps fill it in one after another.
 struct Bounce : Arrival {
+  VertexNumbers numbers;       // that the following is decided by
   GuidedBsdf bsdf;             // that directions are sampled from
   LightReference reference;    // that the choice of lights depends on
   LightEstimate light;         // next-event estimation
   Rgb direct;                  // its radiance with the MIS weight
   float shadowRayProbability;  // with which the shadow ray was traced; 0: it was not
-  GuidedBsdf::Draw draw;       // numbers that the next direction is sampled with
+  GuidedBsdf::Draw draw;       // where the next direction comes from
   BsdfSample next;             // the sampled direction
   Rgb weight;                  // of that direction, divided by `survival`; black if the path ends
   float survival;              // probability with which roulette by throughput lets the path go on
@@ -44,7 +46,7 @@ struct Bounce : Arrival {
 
 // Steps are taken by a few paths at a time: as many as the first-level cache holds, so that each finds what
 // the step before it left.
-inline constexpr size_t kBounceBlock = 16;
+inline constexpr size_t kBounceBlock = SamplerBlock::kSize;
 
 // A shadow ray adds this radiance to its path if nothing is in the way.
 struct ShadowRay {
@@ -62,6 +64,7 @@ struct Batch {
   std::vector<Place> places;     // and as places of the guide
   std::vector<uint32_t> cells;   // of the guide; kNoCell where there is none
   std::array<Bounce, kBounceBlock> bounces;
+  SamplerBlock samplers;  // those of the bounces' paths
   std::vector<ShadowRay> shadowRays;
   std::vector<Ray> shadowSegments;  // theirs
   std::vector<uint8_t> hidden;
@@ -84,14 +87,16 @@ void playRouletteOnArrival(const PathSettings& settings, Batch& batch, Bounces b
 // Moves the paths that are scattered to the front, in their order, and returns them. All steps from here on
 // are theirs.
 Bounces keepScattered(Bounces bounces);
+// Draws the random numbers that the steps from here on need.
+void drawNumbers(const PathSettings& settings, Batch& batch, Bounces bounces);
 // Finds out what directions are sampled from.
 void prepareDirections(const PathSettings& settings, Bounces bounces);
 // Counts the vertices of each path that may be guided, this one included.
 void countGuidable(Bounces bounces);
 // Chooses a light and a point on it.
 void sampleLights(const PathSettings& settings, Bounces bounces);
-// Draws the numbers that directions are sampled with.
-void drawNumbers(Bounces bounces);
+// Chooses between BSDF and map, and a block of the map.
+void chooseBlocks(Bounces bounces);
 // Weighs what lights give against sampling directions.
 void weighLights(Bounces bounces);
 void sampleDirections(Bounces bounces);

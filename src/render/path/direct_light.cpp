@@ -6,16 +6,12 @@ namespace odis::render {
 
 namespace {
 
-// How many numbers sampleLight() draws.
-constexpr uint32_t kLightNumbers = 2;
-
 LightEstimate sampleLight(const PathSettings& settings, const Vertex& vertex, const LightReference& reference,
-                          Sampler& sampler) {
+                          const VertexNumbers& numbers) {
   LightEstimate result;
   const SurfacePoint& at = vertex.at;
-  const float uChoice = sampler.get1D();
-  const Vec2 u = sampler.get2D();
-  const LightSampler::Choice choice = settings.lights->sample(reference, uChoice, u);
+  const LightSampler::Choice choice =
+      settings.lights->sample(reference, numbers.lightChoice, numbers.lightPoint);
   if (!choice.emitter) return result;
   const EmitterSample light = sampleLightAt(at.time, *choice.emitter, choice.part, at.p, choice.u);
   if (!(light.pdf > 0) || isBlack(light.radiance)) return result;
@@ -49,10 +45,9 @@ void sampleLights(const PathSettings& settings, Bounces bounces) {
       bounce.reference.learned = learnedLights(*settings.guide, bounce.cell);
     if (!vertex.at.shape->bsdf().traits().evaluable) {
       bounce.light = {};
-      bounce.path->sampler.skip(kLightNumbers);
       continue;
     }
-    bounce.light = sampleLight(settings, vertex, bounce.reference, bounce.path->sampler);
+    bounce.light = sampleLight(settings, vertex, bounce.reference, bounce.numbers);
     if (bounce.light.pdf > 0) bounce.bsdf.prefetch(bounce.light.wi);
   }
 }
@@ -74,7 +69,7 @@ void requestShadowRays(const PathSettings& settings, Batch& batch, Bounces bounc
     if (settings.shadowRoulette && bounce.cell != kNoCell)
       probability = shadowRayProbability(settings.guide->rules,
                                          luminance(path.throughput * bounce.direct) / path.pixelValue);
-    if (probability < 1 && !(path.sampler.get1D() < probability)) continue;
+    if (probability < 1 && !(bounce.numbers.shadowRay < probability)) continue;
     bounce.shadowRayProbability = probability;
     bounce.direct /= probability;
     bounce.light.radiance /= probability;

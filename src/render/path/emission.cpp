@@ -46,7 +46,6 @@ void arriveAt(Batch& batch, const Bounce& bounce) {
 
 void meetEmission(const PathSettings& settings, Batch& batch, Bounces bounces) {
   for (Bounce& bounce : bounces) {
-    bounce.path->sampler.startVertex(bounce.depth);
     ++bounce.path->counts.rays;
     const Path& path = *bounce.path;
     const bool hit = bounce.vertex->at.shape;

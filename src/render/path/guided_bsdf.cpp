@@ -89,26 +89,22 @@ void GuidedBsdf::prefetch(const Vec3& wiWorld) const {
   if (m_mixture.guides() && !m_rival) m_map.prefetch(texelOf(toOdis(wiWorld)) >> 4);
 }
 
-GuidedBsdf::Draw GuidedBsdf::draw(const Vertex& vertex, Sampler& sampler) const {
+GuidedBsdf::Draw GuidedBsdf::draw(const VertexNumbers& numbers) const {
   Draw draw;
-  if (vertex.at.shape->bsdf().traits().choosesLobes)
-    draw.uLobe = sampler.get1D();
-  else
-    sampler.skip(1);
-  draw.u = sampler.get2D();
   if (!m_mixture.guides() || m_rival) return draw;
-  const auto choice = m_mixture.choose(draw.u.x);
+  const auto choice = m_mixture.choose(numbers.direction.x);
   if (!choice.fromMap) return draw;
-  draw.withinBlock = Vec2(choice.u, draw.u.y);
+  draw.withinBlock = Vec2(choice.u, numbers.direction.y);
   draw.block = m_map.chooseBlock(draw.withinBlock.x, draw.withinBlock.y);
   m_map.prefetch(draw.block);
   return draw;
 }
 
-BsdfSample GuidedBsdf::sample(const Vertex& vertex, const Draw& draw) const {
-  const BsdfHost host{vertex, draw.uLobe};
-  if (m_rival) return m_mixture.sample(RivalMap{*m_rival}, draw.u.x, draw.u.y, host);
-  return m_mixture.sample(MapWithBlock{m_map, draw}, draw.u.x, draw.u.y, host);
+BsdfSample GuidedBsdf::sample(const Vertex& vertex, const VertexNumbers& numbers, const Draw& draw) const {
+  const BsdfHost host{vertex, numbers.lobe};
+  const auto [u, v] = numbers.direction;
+  if (m_rival) return m_mixture.sample(RivalMap{*m_rival}, u, v, host);
+  return m_mixture.sample(MapWithBlock{m_map, draw}, u, v, host);
 }
 
 }  // namespace odis::render

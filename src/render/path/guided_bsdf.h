@@ -8,6 +8,16 @@
 
 namespace odis::render {
 
+// The random numbers of a path at a vertex, uniform in [0, 1), as far as any are asked for.
+struct VertexNumbers {
+  float lightChoice;  // chooses a light
+  Vec2 lightPoint;    // samples a point or direction of it
+  float lobe;         // chooses a lobe of the BSDF
+  Vec2 direction;     // samples a direction
+  float survival;     // decides whether the path goes on
+  float shadowRay;    // and whether the light is asked for
+};
+
 class GuidedBsdf {
  public:
   // `cell` is kNoCell where the guide knows nothing; `guidable`: Bsdf::guidableProbability().
@@ -23,15 +33,13 @@ class GuidedBsdf {
   void prefetch(const Vec3& wiWorld) const;
 
   // A direction is sampled in two steps, so that the map is fetched while other vertices take the first one:
-  // numbers are drawn, and where the direction comes from the map a block of it is chosen.
+  // where the direction comes from the map, a block of it is chosen.
   struct Draw {
-    float uLobe = 0;  // chooses a lobe
-    Vec2 u;
     int block;         // of the map
     Vec2 withinBlock;  // numbers that sample within it
   };
-  Draw draw(const Vertex& vertex, Sampler& sampler) const;
-  BsdfSample sample(const Vertex& vertex, const Draw& draw) const;
+  Draw draw(const VertexNumbers& numbers) const;
+  BsdfSample sample(const Vertex& vertex, const VertexNumbers& numbers, const Draw& draw) const;
 
  private:
   Mixture<float> m_mixture;

@@ -13,6 +13,37 @@ Bounces keepScattered(Bounces bounces) {
   return bounces.first(left);
 }
 
+namespace {
+
+bool choosesLobe(const Bounce& bounce) {
+  return bounce.vertex->at.shape->bsdf().traits().choosesLobes;
+}
+
+}  // namespace
+
+void drawNumbers(const PathSettings& settings, Batch& batch, Bounces bounces) {
+  if (bounces.empty()) return;
+  batch.samplers.clear();
+  for (const Bounce& bounce : bounces) batch.samplers.add(bounce.path->sampler);
+  SamplerBlock::Column x, y;
+  const int depth = bounces.front().depth;
+  const auto draw1D = [&](VertexNumber number, float VertexNumbers::*member) {
+    batch.samplers.draw1D(dimensionOf(depth, number), x);
+    for (size_t i = 0; i < bounces.size(); ++i) bounces[i].numbers.*member = x[i];
+  };
+  const auto draw2D = [&](VertexNumber number, Vec2 VertexNumbers::*member) {
+    batch.samplers.draw2D(dimensionOf(depth, number), x, y);
+    for (size_t i = 0; i < bounces.size(); ++i) bounces[i].numbers.*member = Vec2(x[i], y[i]);
+  };
+  draw1D(kLightChoiceNumber, &VertexNumbers::lightChoice);
+  draw2D(kLightPointNumber, &VertexNumbers::lightPoint);
+  if (std::any_of(bounces.begin(), bounces.end(), choosesLobe)) draw1D(kLobeNumber, &VertexNumbers::lobe);
+  draw2D(kDirectionNumber, &VertexNumbers::direction);
+  if (settings.learnedRoulette || depth >= settings.rrDepth)
+    draw1D(kSurvivalNumber, &VertexNumbers::survival);
+  if (settings.shadowRoulette) draw1D(kShadowRayNumber, &VertexNumbers::shadowRay);
+}
+
 void prepareDirections(const PathSettings& settings, Bounces bounces) {
   for (Bounce& bounce : bounces)
     bounce.bsdf.prepare(settings, *bounce.path, *bounce.vertex, bounce.cell, bounce.guidable);
@@ -22,13 +53,13 @@ void countGuidable(Bounces bounces) {
   for (Bounce& bounce : bounces) bounce.path->guidable += bounce.guidable > 0;
 }
 
-void drawNumbers(Bounces bounces) {
-  for (Bounce& bounce : bounces) bounce.draw = bounce.bsdf.draw(*bounce.vertex, bounce.path->sampler);
+void chooseBlocks(Bounces bounces) {
+  for (Bounce& bounce : bounces) bounce.draw = bounce.bsdf.draw(bounce.numbers);
 }
 
 void sampleDirections(Bounces bounces) {
   for (Bounce& bounce : bounces) {
-    bounce.next = bounce.bsdf.sample(*bounce.vertex, bounce.draw);
+    bounce.next = bounce.bsdf.sample(*bounce.vertex, bounce.numbers, bounce.draw);
     if (!isFinite(bounce.next.weight)) bounce.next = {};
   }
 }
@@ -41,10 +72,7 @@ void playRouletteOnDeparture(const PathSettings& settings, Bounces bounces) {
     bounce.survival = 1;
     path.eta *= bounce.next.eta;
     // Read where roulette is played: here or, where it was learned, where the path arrives.
-    if (settings.learnedRoulette || bounce.depth >= settings.rrDepth)
-      path.uSurvival = path.sampler.get1D();
-    else
-      path.sampler.skip(1);
+    path.uSurvival = bounce.numbers.survival;
     bounce.survives = bounce.next.lobe != Lobe::none && !isBlack(bounce.weight);
     const bool learned = settings.learnedRoulette && bounce.cell != kNoCell;
     if (bounce.survives && bounce.depth >= settings.rrDepth && !learned) {

@@ -53,10 +53,11 @@ Bounces takeSteps(const PathSettings& settings, Batch& batch, Bounces bounces) {
   endInCache(settings, batch, bounces);
   playRouletteOnArrival(settings, batch, bounces);
   bounces = keepScattered(bounces);
+  drawNumbers(settings, batch, bounces);
   prepareDirections(settings, bounces);
   countGuidable(bounces);
   sampleLights(settings, bounces);
-  drawNumbers(bounces);
+  chooseBlocks(bounces);
   weighLights(bounces);
   sampleDirections(bounces);
   describeFirstHits(settings, bounces);

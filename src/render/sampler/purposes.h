@@ -10,6 +10,21 @@ namespace odis::render {
 // Each vertex of a path has so many dimensions; the camera is vertex 0.
 inline constexpr uint32_t kDimensionsPerVertex = 8;
 
+// What the numbers of a vertex are for, in the order of their dimensions.
+enum VertexNumber : uint32_t {
+  kLightChoiceNumber = 1,  // which light
+  kLightPointNumber,       // which point or direction of it: two
+  kLobeNumber,             // which lobe of the BSDF
+  kDirectionNumber,        // whither the path goes on: two
+  kSurvivalNumber,         // whether it does
+  kShadowRayNumber,        // whether the light is asked for
+};
+
+// The dimension of a number at the vertex of this depth: 1 for the first.
+inline uint32_t dimensionOf(int depth, VertexNumber number) {
+  return kDimensionsPerVertex * uint32_t(depth) + number;
+}
+
 // A set of purposes, a bit each. The camera and the first vertex have bits of their own, all later vertices
 // share theirs.
 using Purposes = uint32_t;
@@ -17,12 +32,14 @@ using Purposes = uint32_t;
 // Where in the pixel, through which point of the lens, and when.
 inline constexpr Purposes kPixelAndLens = 1u << 1 | 1u << 2 | 1u << 3;
 // Next-event estimation at the first vertex: which light, and which point or direction of it.
-inline constexpr Purposes kFirstLightChoice = 1u << 9;
-inline constexpr Purposes kFirstLightPoint = 1u << 10;
+inline constexpr Purposes kFirstLightChoice = 1u << (kDimensionsPerVertex + kLightChoiceNumber);
+inline constexpr Purposes kFirstLightPoint = 1u << (kDimensionsPerVertex + kLightPointNumber);
 // Where the path goes on: which lobe, BSDF or map, whither.
-inline constexpr Purposes kFirstDirection = 1u << 11 | 1u << 12;
+inline constexpr Purposes kFirstDirection =
+    1u << (kDimensionsPerVertex + kLobeNumber) | 1u << (kDimensionsPerVertex + kDirectionNumber);
 // Whether it does, decided here or where it arrives; whether the light is asked for.
-inline constexpr Purposes kFirstSurvival = 1u << 13 | 1u << 14;
+inline constexpr Purposes kFirstSurvival =
+    1u << (kDimensionsPerVertex + kSurvivalNumber) | 1u << (kDimensionsPerVertex + kShadowRayNumber);
 // The same at all vertices but the first.
 inline constexpr Purposes kLaterLightChoice = kFirstLightChoice << kDimensionsPerVertex;
 inline constexpr Purposes kLaterLightPoint = kFirstLightPoint << kDimensionsPerVertex;

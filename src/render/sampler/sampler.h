@@ -42,6 +42,33 @@ inline uint64_t mixBits(uint64_t x) {
   return x ^ (x >> 33);
 }
 
+// 32 bits as a fraction in [0, 1).
+inline float toUnit(uint32_t x) {
+  return std::min(float(x) * 0x1p-32f, kOneMinusEpsilon);
+}
+
+// The index of a point, given bit-reversed, after shuffling.
+inline uint32_t shuffledIndex(uint32_t reversedSample, uint32_t seed) {
+  return reverseBits(owenScrambleReversed(reversedSample, seed));
+}
+// The scrambled coordinates of a point. The first dimension is the bit-reversed index, so that scrambling its
+// reversal scrambles the index.
+inline float firstSobolNumber(uint32_t index, uint32_t seed) {
+  return toUnit(reverseBits(owenScrambleReversed(index, seed)));
+}
+inline float secondSobolNumber(uint32_t index, uint32_t seed) {
+  return toUnit(reverseBits(owenScrambleReversed(sobolSecondReversed(index), seed)));
+}
+
+// Where the independent numbers of a sample begin.
+inline uint64_t independentStream(uint32_t sample) {
+  return (uint64_t(sample) + 1) << 32;
+}
+// What is added for those that are redrawn.
+inline uint64_t redrawnStream(Purposes redrawn, uint32_t dimension) {
+  return uint64_t(isFor(redrawn, dimension)) << 63;
+}
+
 // Owen-scrambled Sobol' points padded by dimension: each pair of dimensions is the two-dimensional sequence,
 // shuffled and scrambled anew (Burley 2020, "Practical Hash-based Owen Scrambling"); or independent numbers.
 class Sampler {
@@ -56,39 +83,31 @@ class Sampler {
 
   // Every vertex of a path starts at a dimension of its own, whatever the vertices before it used.
   void startVertex(int depth) { m_dimension = kDimensionsPerVertex * uint32_t(depth); }
-  // Leaves out numbers that a vertex has no use for, so that those after them keep their dimensions.
-  void skip(uint32_t count) { m_dimension += count; }
 
   float get1D() {
     const uint64_t hash = nextHash();
     if (m_kind == SamplerKind::independent) return toUnit(uint32_t(hash >> 32));
-    const uint32_t index = shuffledIndex(uint32_t(hash));
-    // The first dimension is the bit-reversed index, so that scrambling its reversal scrambles the index.
-    return toUnit(reverseBits(owenScrambleReversed(index, uint32_t(hash >> 32))));
+    return firstSobolNumber(shuffledIndex(m_reversedSample, uint32_t(hash)), uint32_t(hash >> 32));
   }
   Vec2 get2D() {
     const uint64_t hash = nextHash();
     if (m_kind == SamplerKind::independent) return {toUnit(uint32_t(hash >> 32)), toUnit(uint32_t(hash))};
-    const uint32_t index = shuffledIndex(uint32_t(hash));
-    const uint32_t seedX = uint32_t(hash >> 32), seedY = uint32_t(mixBits(hash));
-    return {toUnit(reverseBits(owenScrambleReversed(index, seedX))),
-            toUnit(reverseBits(owenScrambleReversed(sobolSecondReversed(index), seedY)))};
+    const uint32_t index = shuffledIndex(m_reversedSample, uint32_t(hash));
+    return {firstSobolNumber(index, uint32_t(hash >> 32)), secondSobolNumber(index, uint32_t(mixBits(hash)))};
   }
 
  private:
+  friend class SamplerBlock;
+
   uint64_t nextHash() {
     // Independent numbers differ by sample and by whether they are redrawn; Sobol' points share their
     // scrambling among the samples of a pixel.
     ++m_dimension;
     uint64_t stream = 0;
     if (m_kind == SamplerKind::independent)
-      stream = (uint64_t(m_sample) + 1) << 32 | uint64_t(isFor(m_redrawn, m_dimension)) << 63;
+      stream = independentStream(m_sample) + redrawnStream(m_redrawn, m_dimension);
     return mixBits(m_base ^ mixBits(stream + m_dimension));
   }
-  uint32_t shuffledIndex(uint32_t seed) const {
-    return reverseBits(owenScrambleReversed(m_reversedSample, seed));
-  }
-  static float toUnit(uint32_t x) { return std::min(float(x) * 0x1p-32f, kOneMinusEpsilon); }
 
   SamplerKind m_kind;
   uint32_t m_sample, m_reversedSample;
