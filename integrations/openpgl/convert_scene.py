@@ -4,9 +4,9 @@
     integrations/openpgl/convert_scene.py SCENE.xml FOLDER [--pixels 230400] [--bounces 12]
 
 Writes FOLDER/scene.xml and the images that it names. Needs `pip install ".[mitsuba]"`. Converted are meshes, rectangles,
-cubes, disks, spheres; diffuse, glossy, glass and plastic surfaces, masks, blends; area lights and environments. What
-else there is, is left out or approximated, and said on stderr: pictures are alike, not equal, and Cycles is compared to
-Cycles.
+cubes, disks, spheres, cylinders; diffuse, glossy, glass and plastic surfaces, masks, blends; area lights and
+environments; point lights as small spheres, spots as small disks, which shine as wide as disks do. What else there is,
+is left out or approximated, and said on stderr: pictures are alike, not equal, and Cycles is compared to Cycles.
 """
 import argparse
 import math
@@ -20,6 +20,8 @@ mi.set_variant("llvm_ad_rgb")
 from odis.mitsuba.scene_files import load_file  # noqa: E402
 
 SPHERE_COLUMNS, SPHERE_ROWS = 96, 48
+LAMP_COLUMNS, LAMP_ROWS = 16, 8
+LAMP_RADIUS = 1e-3  # of a point light or a spot, over the scene's diagonal
 ENVIRONMENT_SIZE = (2048, 1024)
 CHECKERBOARD_SIZE = (256, 256)
 TINTS = {"RoughConductor", "SmoothConductor"}
@@ -27,6 +29,34 @@ TINTS = {"RoughConductor", "SmoothConductor"}
 
 def text_of(numbers):
     return " ".join(f"{x:.7g}" for x in np.asarray(numbers, float).ravel())
+
+
+def unit_disk(columns):
+    """Corners and triangles of the unit disk, which faces +z."""
+    angle = np.linspace(0, 2 * np.pi, columns, endpoint=False)
+    corners = np.concatenate([[[0, 0, 0]], np.stack([np.cos(angle), np.sin(angle), 0 * angle], 1)])
+    return corners, np.array([[0, 1 + i, 1 + (i + 1) % columns] for i in range(columns)])
+
+
+def unit_sphere(columns, rows):
+    """Corners and triangles of the unit sphere, which face outwards."""
+    theta = np.linspace(0, np.pi, rows + 1)[:, None]
+    phi = np.linspace(0, 2 * np.pi, columns, endpoint=False)[None]
+    corners = np.stack(np.broadcast_arrays(np.sin(theta) * np.cos(phi), np.sin(theta) * np.sin(phi),
+                                           np.cos(theta) + 0 * phi), -1).reshape(-1, 3)
+    at = lambda row, column: row * columns + column % columns
+    faces = [triangle for r in range(rows) for c in range(columns)
+             for triangle in ([at(r, c), at(r + 1, c), at(r + 1, c + 1)], [at(r, c), at(r + 1, c + 1), at(r, c + 1)])]
+    return corners, np.array(faces)
+
+
+def unit_cylinder(columns):
+    """Corners and triangles of the cylinder of radius 1 from z = 0 to 1, without its ends, which faces outwards."""
+    angle = np.linspace(0, 2 * np.pi, columns, endpoint=False)
+    ring = np.stack([np.cos(angle), np.sin(angle), 0 * angle], 1)
+    faces = [triangle for i, j in ((i, (i + 1) % columns) for i in range(columns))
+             for triangle in ([i, j, columns + j], [i, columns + j, columns + i])]
+    return np.concatenate([ring, ring + [0, 0, 1]]), np.array(faces)
 
 
 class Scene:
@@ -142,15 +172,20 @@ class Scene:
         nodes, emitter = [], shape.emitter()
         if emitter is not None:
             radiance, _ = self.color(nodes, mi.traverse(emitter), "radiance", [1.0] * 3)
-            nodes += [f'<emission name="front" color="{text_of(radiance)}" strength="1"/>',
-                      '<diffuse_bsdf name="back" color="0 0 0"/>', '<geometry name="side"/>',
-                      '<mix_closure name="both"/>', '<connect from="front emission" to="both closure1"/>',
-                      '<connect from="back BSDF" to="both closure2"/>',
-                      '<connect from="side backfacing" to="both fac"/>']
-            last = "both closure"
-        else:
-            last = " ".join(self.closure(nodes, shape.bsdf()))
-        body = "\n  ".join(nodes + [f'<connect from="{last}" to="output surface"/>'])
+            return self.emission(radiance)
+        last = " ".join(self.closure(nodes, shape.bsdf()))
+        return self.named("\n  ".join(nodes + [f'<connect from="{last}" to="output surface"/>']))
+
+    def emission(self, radiance):
+        """The shader of a surface that emits on its front."""
+        return self.named("\n  ".join([
+            f'<emission name="front" color="{text_of(radiance)}" strength="1"/>',
+            '<diffuse_bsdf name="back" color="0 0 0"/>', '<geometry name="side"/>', '<mix_closure name="both"/>',
+            '<connect from="front emission" to="both closure1"/>', '<connect from="back BSDF" to="both closure2"/>',
+            '<connect from="side backfacing" to="both fac"/>', '<connect from="both closure" to="output surface"/>']))
+
+    def named(self, body):
+        """The name of a shader, made unless there is one of these nodes."""
         for name, known in self.shaders:
             if known == body:
                 return name
@@ -165,12 +200,33 @@ class Scene:
         if mesh is None:
             self.say(f"{kind} is left out")
             return
-        positions, faces, uvs, smooth = mesh
+        self.add_mesh(self.shader(shape), *mesh)
+
+    def add_mesh(self, shader, positions, faces, uvs, smooth):
         coordinates = f'\n    UV="{text_of(uvs[faces.ravel()])}"' if uvs is not None else ""
         self.shapes.append(
-            f'<state shader="{self.shader(shape)}" interpolation="{"smooth" if smooth else "flat"}">\n'
+            f'<state shader="{shader}" interpolation="{"smooth" if smooth else "flat"}">\n'
             f'  <mesh P="{text_of(positions)}"\n    nverts="{" ".join(["3"] * len(faces))}"\n'
             f'    verts="{" ".join(map(str, faces.ravel()))}"{coordinates}/>\n</state>')
+
+    def add_lamp(self, emitter, diagonal):
+        """A light without a shape."""
+        kind, parameters = emitter.class_name(), mi.traverse(emitter)
+        radius = LAMP_RADIUS * diagonal
+        if kind == "PointLight":
+            corners, faces = unit_sphere(LAMP_COLUMNS, LAMP_ROWS)
+            positions = corners * radius + np.array(parameters["position"], float).ravel()
+        elif kind == "SpotLight":
+            self.say("a spot shines as wide as a disk does")
+            corners, faces = unit_disk(LAMP_COLUMNS)
+            matrix = np.array(emitter.world_transform().matrix, float).reshape(4, 4)
+            axes = matrix[:3, :3] / np.linalg.norm(matrix[:3, :3], axis=0)
+            positions = corners @ axes.T * radius + matrix[:3, 3]
+        else:
+            self.say(f"{kind} is left out")
+            return
+        intensity, _ = self.color([], parameters, "intensity", [1.0] * 3)
+        self.add_mesh(self.emission(intensity / (np.pi * radius ** 2)), positions, faces, None, False)
 
     @staticmethod
     def mesh_of(shape, kind):
@@ -187,25 +243,18 @@ class Scene:
             corners, uvs = np.array([[-1, -1, 0], [1, -1, 0], [1, 1, 0], [-1, 1, 0]]), [[0, 0], [1, 0], [1, 1], [0, 1]]
             faces = [[0, 1, 2], [0, 2, 3]]
         elif kind == "Disk":
-            angle = np.linspace(0, 2 * np.pi, SPHERE_COLUMNS, endpoint=False)
-            corners = np.concatenate([[[0, 0, 0]], np.stack([np.cos(angle), np.sin(angle), 0 * angle], 1)])
-            faces, uvs = [[0, 1 + i, 1 + (i + 1) % SPHERE_COLUMNS] for i in range(SPHERE_COLUMNS)], None
+            (corners, faces), uvs = unit_disk(SPHERE_COLUMNS), None
         elif kind == "Sphere":
-            theta = np.linspace(0, np.pi, SPHERE_ROWS + 1)[:, None]
-            phi = np.linspace(0, 2 * np.pi, SPHERE_COLUMNS, endpoint=False)[None]
-            corners = np.stack(np.broadcast_arrays(np.sin(theta) * np.cos(phi), np.sin(theta) * np.sin(phi),
-                                                   np.cos(theta) + 0 * phi), -1).reshape(-1, 3)
-            at = lambda row, column: row * SPHERE_COLUMNS + column % SPHERE_COLUMNS
-            faces = [triangle for r in range(SPHERE_ROWS) for c in range(SPHERE_COLUMNS)
-                     for triangle in ([at(r, c), at(r + 1, c), at(r + 1, c + 1)], [at(r, c), at(r + 1, c + 1), at(r, c + 1)])]
-            uvs = None
+            (corners, faces), uvs = unit_sphere(SPHERE_COLUMNS, SPHERE_ROWS), None
+        elif kind == "Cylinder":
+            (corners, faces), uvs = unit_cylinder(SPHERE_COLUMNS), None
         else:
             return None
         positions = corners @ matrix[:3, :3].T + matrix[:3, 3]
         faces = np.array(faces)
         if np.linalg.det(matrix[:3, :3]) < 0:
             faces = faces[:, ::-1]
-        return positions, faces, None if uvs is None else np.array(uvs, float), kind == "Sphere"
+        return positions, faces, None if uvs is None else np.array(uvs, float), kind in ("Sphere", "Cylinder")
 
     def background(self, emitter):
         """The environment as an image in Cycles' equirectangular mapping, of which +z is the pole."""
@@ -254,8 +303,10 @@ def main():
     # Mitsuba loads shapes in parallel, and their order differs from run to run.
     for shape in sorted(scene.shapes(), key=lambda shape: (str(shape.bbox()), shape.class_name())):
         converted.add_shape(shape)
-    if any(not emitter.is_environment() and emitter.get_shape() is None for emitter in scene.emitters()):
-        converted.say("lights without a shape are left out")
+    box = scene.bbox()
+    for emitter in scene.emitters():
+        if not emitter.is_environment() and emitter.get_shape() is None:
+            converted.add_lamp(emitter, float(np.linalg.norm(np.array(box.max - box.min, float))))
     if scene.environment() is None and not any("<emission" in body for _, body in converted.shaders):
         converted.say("no light is left, and the image will be black")
     bounces = " ".join(f'max_{kind}bounce="{args.bounces}"' for kind in ("", "diffuse_", "glossy_", "transmission_"))

@@ -53,11 +53,50 @@ class ConvertScene(unittest.TestCase):
         command = [sys.executable, PROGRAM, self.folder / "scene.xml", self.folder / "out", "--pixels", "24"]
         return subprocess.run(command, check=True, capture_output=True, text=True).stderr
 
+    def with_light(self, emitter):
+        """What is said, and the mesh that shines: its positions, triangles and radiance."""
+        said = self.convert(SCENE.replace('<emitter type="constant"/>', emitter))
+        text = (self.folder / "out/scene.xml").read_text()
+        shader = re.search(r'<shader name="(\w+)">\n  <emission name="front" color="([^"]*)"', text)
+        mesh = re.search(rf'<state shader="{shader[1]}"[^>]*>\n  <mesh P="([^"]*)"\n[^\n]*\n    verts="([^"]*)"', text)
+        array = lambda numbers: np.array(numbers.split(), float).reshape(-1, 3)
+        return said, array(mesh[1]), array(mesh[2]).astype(int), array(shader[2])[0]
+
     def test_without_light(self):
-        dark = self.convert(SCENE.replace('<emitter type="constant"/>', '<emitter type="point"/>'))
-        self.assertIn("lights without a shape are left out", dark)
+        dark = self.convert(SCENE.replace('<emitter type="constant"/>', '<emitter type="directional"/>'))
+        self.assertIn("DirectionalEmitter is left out", dark)
         self.assertIn("no light is left", dark)
         self.assertNotIn("no light is left", self.said)
+
+    def test_point_light(self):
+        _, positions, faces, radiance = self.with_light(
+            '<emitter type="point"><point name="position" x="1" y="2" z="3"/><rgb name="intensity" value="1 2 4"/></emitter>')
+        np.testing.assert_allclose(positions.mean(0), [1, 2, 3], atol=1e-3)
+        corners = positions[faces]
+        areas = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]) / 2
+        self.assertTrue((np.sum(areas * (corners.mean(1) - [1, 2, 3]), 1) >= 0).all())  # outwards
+        # What a convex surface of constant radiance gives all directions in the mean: a quarter of its area.
+        np.testing.assert_allclose(radiance * np.linalg.norm(areas, axis=1).sum() / 4, [1, 2, 4], rtol=0.1)
+
+    def test_spot(self):
+        said, positions, faces, radiance = self.with_light(
+            '<emitter type="spot"><transform name="to_world"><lookat origin="1,2,3" target="1,5,3" up="0,0,1"/></transform>'
+            '<rgb name="intensity" value="3"/></emitter>')
+        self.assertIn("a spot shines as wide as a disk does", said)
+        np.testing.assert_allclose(positions.mean(0), [1, 2, 3], atol=1e-3)
+        corners = positions[faces]
+        area = np.sum(np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]) / 2, 0)
+        np.testing.assert_allclose(area / np.linalg.norm(area), [0, 1, 0], atol=1e-4)
+        np.testing.assert_allclose(radiance * np.linalg.norm(area), 3, rtol=0.05)  # along its axis
+
+    def test_cylinder(self):
+        self.convert(SCENE.replace('<emitter', '<shape type="cylinder"><point name="p0" x="5" y="0" z="0"/>'
+                                   '<point name="p1" x="5" y="4" z="0"/><float name="radius" value="0.5"/></shape><emitter'))
+        text = (self.folder / "out/scene.xml").read_text()
+        meshes = [np.array(p.split(), float).reshape(-1, 3) for p in re.findall(r'<mesh P="([^"]*)"', text)]
+        tube = next(mesh for mesh in meshes if len(mesh) > 100)
+        np.testing.assert_allclose(np.hypot(tube[:, 0] - 5, tube[:, 2]), 0.5, atol=1e-5)
+        np.testing.assert_allclose(np.unique(tube[:, 1].round(5)), [0, 4])
 
     def test_textures(self):
         """Linear, the row of v = 0 last, as Cycles reads them."""
