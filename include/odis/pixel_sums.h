@@ -81,24 +81,25 @@ inline std::vector<float> estimatePixelValues(ArrayView<const PixelSums> image, 
                blocksY = (height + kValueBlock - 1) / kValueBlock;
   std::vector<double> sum(blocksX * blocksY, 0.0), count(sum.size(), 0.0);
   double total = 0, samples = 0;
-  const auto blockOf = [&](size_t pixel) {
-    return (pixel / width / kValueBlock) * blocksX + pixel % width / kValueBlock;
+  const auto forEachPixel = [&](const auto& visit) {
+    for (uint32_t y = 0; y < height; ++y)
+      for (uint32_t x = 0; x < width; ++x)
+        visit(size_t(y) * width + x, y / kValueBlock * blocksX + x / kValueBlock);
   };
-  for (size_t pixel = 0; pixel < image.size(); ++pixel) {
+  forEachPixel([&](size_t pixel, size_t block) {
     const double* s = image[pixel].sum;
     const double value = luminance({float(s[0]), float(s[1]), float(s[2])});
-    sum[blockOf(pixel)] += value;
-    count[blockOf(pixel)] += image[pixel].count;
+    sum[block] += value;
+    count[block] += image[pixel].count;
     total += value;
     samples += image[pixel].count;
-  }
+  });
   const double mean = samples > 0 ? total / samples : 1;
   std::vector<float> result(image.size());
-  for (size_t pixel = 0; pixel < image.size(); ++pixel) {
-    const size_t block = blockOf(pixel);
+  forEachPixel([&](size_t pixel, size_t block) {
     const double value = count[block] > 0 ? sum[block] / count[block] : mean;
     result[pixel] = float(std::max(value + 0.1 * mean, 1e-20));
-  }
+  });
   return result;
 }
 

@@ -207,14 +207,15 @@ void Frame::Data::takeStock(uint64_t vertices) {
 
 // Settles how many samples each pixel has.
 void Frame::Data::spreadSamples() {
-  std::vector<PixelNoise> noise;
-  noise.reserve(pilot.size());
-  for (size_t pixel = 0; pixel < pilot.size(); ++pixel) {
-    PixelSums sums = pilot[pixel];
-    addSums(sums, later[pixel]);
-    noise.push_back(noiseOf(sums));
-  }
-  schedule.spread(sampleCounts(noise, int(options.width), options.samplesPerPixel));
+  std::vector<PixelNoise> noise(pilot.size());
+  tasks->forEach(options.height, [&](size_t row) {
+    for (size_t pixel = row * options.width; pixel < (row + 1) * options.width; ++pixel) {
+      PixelSums sums = pilot[pixel];
+      addSums(sums, later[pixel]);
+      noise[pixel] = noiseOf(sums);
+    }
+  });
+  schedule.spread(sampleCounts(*tasks, noise, int(options.width), options.samplesPerPixel));
 }
 
 // Learns from the vertices of a guided pass, and rebuilds the guide where it is time.
@@ -246,7 +247,7 @@ void Frame::Data::resume() {
 // Whether the first guided samples, compared with the pilot's, were not worth their time.
 bool Frame::Data::guidingDoesNotPay() const {
   if (done > 0 || !learns() || options.guidedCost == 0) return false;
-  const std::optional<double> ratio = guidedOverUnguided(pilot, later, options.width);
+  const std::optional<double> ratio = guidedOverUnguided(*tasks, pilot, later, options.width);
   return ratio && *ratio * options.guidedCost > 1;
 }
 

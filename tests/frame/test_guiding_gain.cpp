@@ -10,6 +10,11 @@ namespace {
 
 constexpr uint32_t kWidth = 96;
 
+std::optional<double> guidedOverUnguided(ArrayView<const PixelSums> unguided,
+                                         ArrayView<const PixelSums> guided) {
+  return core::guidedOverUnguided(*core::libraryTasks(3), unguided, guided, kWidth);
+}
+
 // An image whose pixels have the value 1 + x / 32, and one sample each, whose variance is `variance` times
 // the value squared; exponentially distributed noise has heavy tails. Each costs `rays`.
 std::vector<PixelSums> noisyImage(double variance, uint32_t rays, uint32_t seed) {
@@ -26,7 +31,7 @@ std::vector<PixelSums> noisyImage(double variance, uint32_t rays, uint32_t seed)
 
 TEST(GuidingGain, IsTheRatioOfVariancesTimesThatOfRays) {
   for (const double variance : {0.2, 0.5, 1.0, 2.0}) {
-    const auto ratio = core::guidedOverUnguided(noisyImage(1, 10, 1), noisyImage(variance, 8, 2), kWidth);
+    const auto ratio = guidedOverUnguided(noisyImage(1, 10, 1), noisyImage(variance, 8, 2));
     ASSERT_TRUE(ratio);
     // The mean of the pixels around has an eighth of the guided samples' variance.
     const double expected = (variance + variance / 8) / (1 + variance / 8) * 0.8;
@@ -39,7 +44,7 @@ TEST(GuidingGain, ComparesPixelsThatHaveBoth) {
   std::vector<PixelSums> pilot = noisyImage(1, 10, 3);
   for (size_t i = 0; i < pilot.size(); ++i)
     if (i % kWidth % 2 != 0 || i / kWidth % 2 != 0) pilot[i] = {};
-  const auto ratio = core::guidedOverUnguided(pilot, noisyImage(0.25, 10, 4), kWidth);
+  const auto ratio = guidedOverUnguided(pilot, noisyImage(0.25, 10, 4));
   ASSERT_TRUE(ratio);
   EXPECT_NEAR(*ratio, 0.28 / 1.03, 0.05);
 }
@@ -47,12 +52,12 @@ TEST(GuidingGain, ComparesPixelsThatHaveBoth) {
 TEST(GuidingGain, IsUnknownWithFewPixelsOrWithoutLight) {
   const std::vector<PixelSums> image = noisyImage(1, 1, 5), none(image.size());
   const ArrayView<const PixelSums> few(image.data(), size_t(kWidth) * 20);
-  EXPECT_FALSE(core::guidedOverUnguided(few, few, kWidth));
-  EXPECT_FALSE(core::guidedOverUnguided(image, none, kWidth));
-  EXPECT_FALSE(core::guidedOverUnguided(none, image, kWidth));
+  EXPECT_FALSE(guidedOverUnguided(few, few));
+  EXPECT_FALSE(guidedOverUnguided(image, none));
+  EXPECT_FALSE(guidedOverUnguided(none, image));
   std::vector<PixelSums> black(image.size());
   for (PixelSums& pixel : black) addSample(pixel, {}, 1);
-  EXPECT_FALSE(core::guidedOverUnguided(black, black, kWidth));
+  EXPECT_FALSE(guidedOverUnguided(black, black));
 }
 
 // [pass] whether it has a guide.

@@ -10,6 +10,10 @@
 namespace odis::core {
 namespace {
 
+std::vector<uint32_t> sampleCounts(std::span<const PixelNoise> noise, int width, double mean) {
+  return core::sampleCounts(*libraryTasks(3), noise, width, mean);
+}
+
 constexpr int kSize = 64;
 size_t at(int x, int y) {
   return size_t(y) * kSize + size_t(x);

@@ -175,15 +175,21 @@ void CellStore::addNewCells() {
 }
 
 void CellStore::add(std::span<const BatchSamples* const> batches) {
-  // The cells get their numbers in the order of the vertices.
+  // Cells that are known are found by many threads; new ones get their numbers in the order of the vertices.
   std::vector<BatchCells> cells(batches.size());
+  m_tasks->forEach(batches.size(), [&](size_t b) {
+    cells[b].cellOf = batches[b]->cellOf;
+    cells[b].cells.reserve(batches[b]->cells.size());
+    for (const BatchSamples::Cell& cell : batches[b]->cells) cells[b].cells.push_back(m_index.find(cell.key));
+  });
   m_transientBytes = 0;
   for (size_t b = 0; b < batches.size(); ++b) {
-    for (const BatchSamples::Cell& cell : batches[b]->cells) {
-      cells[b].cells.push_back(insert(cell.key));
-      if (cells[b].cells.back() == kNoCell) m_samplesLeftOut += cell.count;
+    for (size_t i = 0; i < cells[b].cells.size(); ++i) {
+      if (cells[b].cells[i] != kNoCell) continue;
+      const BatchSamples::Cell& cell = batches[b]->cells[i];
+      cells[b].cells[i] = insert(cell.key);
+      if (cells[b].cells[i] == kNoCell) m_samplesLeftOut += cell.count;
     }
-    cells[b].cellOf = batches[b]->cellOf;
     m_transientBytes += batches[b]->bytes();
     addCounts(m_vertexCounts, batches[b]->counts);
   }

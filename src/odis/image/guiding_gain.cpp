@@ -62,9 +62,46 @@ double trimmedSum(std::vector<double>& values) {
   return sum;
 }
 
+// Samples of two kinds: the unguided ones and the guided ones.
+struct Kinds {
+  std::vector<double> squares[2];  // of the distances of each pixel's samples from what is around
+  double rays[2] = {}, counts[2] = {};
+
+  void append(const Kinds& more) {
+    for (int k = 0; k < 2; ++k) {
+      squares[k].insert(squares[k].end(), more.squares[k].begin(), more.squares[k].end());
+      rays[k] += more.rays[k];
+      counts[k] += more.counts[k];
+    }
+  }
+};
+
+// Those of a row of the image. `least` is added to the pixels' values.
+Kinds compareRow(ArrayView<const PixelSums> unguided, const GuidedImage& samples, uint32_t y, double least) {
+  Kinds result;
+  for (uint32_t x = 0; x < samples.width; ++x) {
+    const size_t i = size_t(y) * samples.width + x;
+    const PixelSums* kinds[] = {&unguided[i], &samples.pixels[i]};
+    if (kinds[0]->count == 0 || kinds[1]->count == 0) continue;
+    auto [near, nearCount] = samples.around(x - std::min(x, 1u), y - std::min(y, 1u), x + 2, y + 2, i);
+    const uint32_t blockX = x / kPixelBlock * kPixelBlock, blockY = y / kPixelBlock * kPixelBlock;
+    const auto [block, blockCount] =
+        samples.around(blockX, blockY, blockX + kPixelBlock, blockY + kPixelBlock, i);
+    if (nearCount == 0 || blockCount == 0) continue;
+    for (double& channel : near) channel /= double(nearCount);
+    const double value = std::max(grayOf(block) / double(blockCount), 0.0) + least;
+    for (int k = 0; k < 2; ++k) {
+      result.squares[k].push_back(meanSquare(*kinds[k], near) / (value * value));
+      result.rays[k] += kinds[k]->rays;
+      result.counts[k] += kinds[k]->count;
+    }
+  }
+  return result;
+}
+
 }  // namespace
 
-std::optional<double> guidedOverUnguided(ArrayView<const PixelSums> unguided,
+std::optional<double> guidedOverUnguided(const Tasks& tasks, ArrayView<const PixelSums> unguided,
                                          ArrayView<const PixelSums> guided, uint32_t width) {
   const GuidedImage samples{guided, width, uint32_t(guided.size() / width)};
   Color sum{};
@@ -76,29 +113,14 @@ std::optional<double> guidedOverUnguided(ArrayView<const PixelSums> unguided,
   const double least = kLeastPixelValue * grayOf(sum) / double(std::max<uint64_t>(count, 1));
   if (!(least > 0)) return {};
 
-  std::vector<double> squares[2];  // of unguided samples, of guided ones
-  double rays[2] = {}, counts[2] = {};
-  for (uint32_t y = 0; y < samples.height; ++y)
-    for (uint32_t x = 0; x < width; ++x) {
-      const size_t i = size_t(y) * width + x;
-      if (unguided[i].count == 0 || guided[i].count == 0) continue;
-      auto [near, nearCount] = samples.around(x - std::min(x, 1u), y - std::min(y, 1u), x + 2, y + 2, i);
-      const uint32_t blockX = x / kPixelBlock * kPixelBlock, blockY = y / kPixelBlock * kPixelBlock;
-      const auto [block, blockCount] =
-          samples.around(blockX, blockY, blockX + kPixelBlock, blockY + kPixelBlock, i);
-      if (nearCount == 0 || blockCount == 0) continue;
-      for (double& channel : near) channel /= double(nearCount);
-      const double value = std::max(grayOf(block) / double(blockCount), 0.0) + least;
-      const PixelSums* kinds[] = {&unguided[i], &guided[i]};
-      for (int k = 0; k < 2; ++k) {
-        squares[k].push_back(meanSquare(*kinds[k], near) / (value * value));
-        rays[k] += kinds[k]->rays;
-        counts[k] += kinds[k]->count;
-      }
-    }
-  if (squares[0].size() < kLeastPixels || !(rays[0] > 0)) return {};
-  const double before = trimmedSum(squares[0]) * rays[0] / counts[0];
-  return before > 0 ? std::optional(trimmedSum(squares[1]) * rays[1] / counts[1] / before) : std::nullopt;
+  std::vector<Kinds> rows(samples.height);
+  tasks.forEach(rows.size(), [&](size_t y) { rows[y] = compareRow(unguided, samples, uint32_t(y), least); });
+  Kinds all;
+  for (const Kinds& row : rows) all.append(row);
+  if (all.squares[0].size() < kLeastPixels || !(all.rays[0] > 0)) return {};
+  const double before = trimmedSum(all.squares[0]) * all.rays[0] / all.counts[0];
+  if (!(before > 0)) return {};
+  return trimmedSum(all.squares[1]) * all.rays[1] / all.counts[1] / before;
 }
 
 }  // namespace odis::core

@@ -4,6 +4,7 @@
 #include <optional>
 
 #include "odis/pixel_sums.h"
+#include "odis/work/tasks.h"
 
 namespace odis::core {
 
@@ -14,7 +15,7 @@ namespace odis::core {
 // Variances are relative to the pixels' values squared. Both kinds are compared with the mean of the guided
 // samples of the eight pixels around, and what that mean is off by counts for both: the ratio is nearer to 1
 // than that of the variances. As in the error that images are compared by, the worst 0.1 % are left out.
-std::optional<double> guidedOverUnguided(ArrayView<const PixelSums> unguided,
+std::optional<double> guidedOverUnguided(const Tasks& tasks, ArrayView<const PixelSums> unguided,
                                          ArrayView<const PixelSums> guided, uint32_t width);
 
 }  // namespace odis::core

@@ -54,10 +54,13 @@ struct Board {
 
   size_t size() const { return size_t(columns) * size_t(rows); }
   size_t index(int x, int y) const { return size_t(y) * size_t(columns) + size_t(x); }
+  // By many threads at once, each a row.
   template <typename Visit>
-  void forEach(int color, const Visit& visit) const {
-    for (int y = 0; y < rows; ++y)
+  void forEach(const Tasks& tasks, int color, const Visit& visit) const {
+    tasks.forEach(size_t(rows), [&](size_t row) {
+      const int y = int(row);
       for (int x = (y + color) % 2; x < columns; x += 2) visit(x, y);
+    });
   }
   template <typename Visit>
   void forEachPixel(int x, int y, const Visit& visit) const {
@@ -101,9 +104,9 @@ class SumTable {
 };
 
 // What the blocks of one colour have seen.
-SumTable seenBy(const Board& board, int color, std::span<const PixelNoise> noise) {
+SumTable seenBy(const Tasks& tasks, const Board& board, int color, std::span<const PixelNoise> noise) {
   std::vector<NoiseSums> blocks(board.size());
-  board.forEach(color, [&](int x, int y) {
+  board.forEach(tasks, color, [&](int x, int y) {
     NoiseSums& sums = blocks[board.index(x, y)];
     board.forEachPixel(x, y, [&](size_t pixel) {
       ++sums.pixels;
@@ -113,7 +116,7 @@ SumTable seenBy(const Board& board, int color, std::span<const PixelNoise> noise
   });
   const SumTable values(board, blocks);
   const double least = std::max(kLeastValue * values.all().meanValue(), 1e-30);
-  board.forEach(color, [&](int x, int y) {
+  board.forEach(tasks, color, [&](int x, int y) {
     NoiseSums& sums = blocks[board.index(x, y)];
     const double value = std::max(values.around(x, y, kValueReach).meanValue(), 0.0) + least;
     board.forEachPixel(x, y, [&](size_t pixel) {
@@ -158,28 +161,28 @@ PixelNoise noiseOf(const PixelSums& sums) {
   return noise;
 }
 
-std::vector<uint32_t> sampleCounts(std::span<const PixelNoise> noise, int width, double mean) {
+std::vector<uint32_t> sampleCounts(const Tasks& tasks, std::span<const PixelNoise> noise, int width,
+                                   double mean) {
   if (noise.empty()) return {};
   const Board board{width, int(noise.size() / size_t(width))};
   std::vector<uint32_t> counts(noise.size(), uint32_t(std::lround(mean)));
   for (const int color : {0, 1}) {
-    const SumTable others = seenBy(board, 1 - color, noise);
+    const SumTable others = seenBy(tasks, board, 1 - color, noise);
     if (!(others.all().meanVariance() > 0)) continue;
-    std::vector<Demand> demands;
-    double cost = 0;
-    board.forEach(color, [&](int x, int y) {
-      demands.push_back(demandOf(others.around(x, y, kCountReach), others.all()));
-      cost += demands.back().cost;
+    std::vector<Demand> demands(board.size(), {0, 0});  // those of the other colour stay zero
+    board.forEach(tasks, color, [&](int x, int y) {
+      demands[board.index(x, y)] = demandOf(others.around(x, y, kCountReach), others.all());
     });
+    double cost = 0;
+    for (const Demand& demand : demands) cost += demand.cost;
     double scale = 1;
     for (int i = 0; i < kScalings; ++i) {
       double scaled = 0;
       for (const Demand& demand : demands) scaled += demand.share(scale) * demand.cost;
       scale *= cost / scaled;
     }
-    auto demand = demands.begin();
-    board.forEach(color, [&](int x, int y) {
-      const uint32_t count = uint32_t(std::lround(mean * (demand++)->share(scale)));
+    board.forEach(tasks, color, [&](int x, int y) {
+      const uint32_t count = uint32_t(std::lround(mean * demands[board.index(x, y)].share(scale)));
       board.forEachPixel(x, y, [&](size_t pixel) { counts[pixel] = count; });
     });
   }

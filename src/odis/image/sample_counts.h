@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "odis/pixel_sums.h"
+#include "odis/work/tasks.h"
 
 namespace odis::core {
 
@@ -26,6 +27,7 @@ PixelNoise noiseOf(const PixelSums& sums);
 // black ones around it have seen, and the other way round. So, if samples of different pixels are
 // independent, a pixel's count does not depend on its own samples, and their mean is unbiased although
 // their number is random. 150 bytes a block.
-std::vector<uint32_t> sampleCounts(std::span<const PixelNoise> noise, int width, double mean);
+std::vector<uint32_t> sampleCounts(const Tasks& tasks, std::span<const PixelNoise> noise, int width,
+                                   double mean);
 
 }  // namespace odis::core
