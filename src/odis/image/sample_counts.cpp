@@ -54,6 +54,9 @@ struct Board {
 
   size_t size() const { return size_t(columns) * size_t(rows); }
   size_t index(int x, int y) const { return size_t(y) * size_t(columns) + size_t(x); }
+  // Among the blocks of one colour, row by row.
+  size_t sizeOfColor() const { return (size() + 1) / 2; }
+  size_t indexInColor(int x, int y) const { return index(x, y) / 2; }
   // By many threads at once, each a row.
   template <typename Visit>
   void forEach(const Tasks& tasks, int color, const Visit& visit) const {
@@ -169,9 +172,9 @@ std::vector<uint32_t> sampleCounts(const Tasks& tasks, std::span<const PixelNois
   for (const int color : {0, 1}) {
     const SumTable others = seenBy(tasks, board, 1 - color, noise);
     if (!(others.all().meanVariance() > 0)) continue;
-    std::vector<Demand> demands(board.size(), {0, 0});  // those of the other colour stay zero
+    std::vector<Demand> demands(board.sizeOfColor(), {0, 0});
     board.forEach(tasks, color, [&](int x, int y) {
-      demands[board.index(x, y)] = demandOf(others.around(x, y, kCountReach), others.all());
+      demands[board.indexInColor(x, y)] = demandOf(others.around(x, y, kCountReach), others.all());
     });
     double cost = 0;
     for (const Demand& demand : demands) cost += demand.cost;
@@ -182,7 +185,7 @@ std::vector<uint32_t> sampleCounts(const Tasks& tasks, std::span<const PixelNois
       scale *= cost / scaled;
     }
     board.forEach(tasks, color, [&](int x, int y) {
-      const uint32_t count = uint32_t(std::lround(mean * demands[board.index(x, y)].share(scale)));
+      const uint32_t count = uint32_t(std::lround(mean * demands[board.indexInColor(x, y)].share(scale)));
       board.forEachPixel(x, y, [&](size_t pixel) { counts[pixel] = count; });
     });
   }
