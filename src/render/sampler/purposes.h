@@ -20,7 +20,7 @@ enum VertexNumber : uint32_t {
   kShadowRayNumber,        // whether the light is asked for
 };
 
-// The dimension of a number at the vertex of this depth: 1 for the first.
+// The dimension of a number at the vertex of this depth, which is 1 for the first vertex.
 inline uint32_t dimensionOf(int depth, VertexNumber number) {
   return kDimensionsPerVertex * uint32_t(depth) + number;
 }
