@@ -76,7 +76,7 @@ struct Kinds {
   }
 };
 
-// Those of a row of the image. `least` is added to the pixels' values.
+// Compares the samples of a row of the image. `least` is added to the pixels' values.
 Kinds compareRow(ArrayView<const PixelSums> unguided, const GuidedImage& samples, uint32_t y, double least) {
   Kinds result;
   for (uint32_t x = 0; x < samples.width; ++x) {

@@ -54,10 +54,10 @@ struct Board {
 
   size_t size() const { return size_t(columns) * size_t(rows); }
   size_t index(int x, int y) const { return size_t(y) * size_t(columns) + size_t(x); }
-  // Among the blocks of one colour, row by row.
+  // The number of blocks of a colour, at most, and the place of one among them, row by row.
   size_t sizeOfColor() const { return (size() + 1) / 2; }
   size_t indexInColor(int x, int y) const { return index(x, y) / 2; }
-  // By many threads at once, each a row.
+  // Calls `visit` with the column and row of each block of a colour. Threads take a row each.
   template <typename Visit>
   void forEach(const Tasks& tasks, int color, const Visit& visit) const {
     tasks.forEach(size_t(rows), [&](size_t row) {

@@ -31,7 +31,7 @@ struct Arrival {
 
 // The same from its arrival to its departure. Steps fill it in one after another.
 struct Bounce : Arrival {
-  VertexNumbers numbers;       // that the following is decided by
+  VertexNumbers numbers;       // random ones, that what follows is decided by
   GuidedBsdf bsdf;             // that directions are sampled from
   LightReference reference;    // that the choice of lights depends on
   LightEstimate light;         // next-event estimation

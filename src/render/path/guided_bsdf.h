@@ -8,16 +8,6 @@
 
 namespace odis::render {
 
-// The random numbers of a path at a vertex, uniform in [0, 1), as far as any are asked for.
-struct VertexNumbers {
-  float lightChoice;  // chooses a light
-  Vec2 lightPoint;    // samples a point or direction of it
-  float lobe;         // chooses a lobe of the BSDF
-  Vec2 direction;     // samples a direction
-  float survival;     // decides whether the path goes on
-  float shadowRay;    // and whether the light is asked for
-};
-
 class GuidedBsdf {
  public:
   // `cell` is kNoCell where the guide knows nothing; `guidable`: Bsdf::guidableProbability().

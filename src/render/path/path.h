@@ -82,6 +82,16 @@ struct Vertex {
   Vec3 wo;  // towards where the path came from, in the shading frame
 };
 
+// The random numbers of a path at a vertex, uniform in [0, 1), as far as any are asked for.
+struct VertexNumbers {
+  float lightChoice;  // chooses a light
+  Vec2 lightPoint;    // samples a point or direction of it
+  float lobe;         // chooses a lobe of the BSDF
+  Vec2 direction;     // samples a direction
+  float survival;     // decides whether the path goes on
+  float shadowRay;    // and whether the light is asked for
+};
+
 // The shading normal on the side that the path came from; `wo` in the shading frame.
 inline Vec3 facingNormal(const SurfacePoint& at, const Vec3& wo) {
   return wo.z < 0 ? -at.shading.n : at.shading.n;

@@ -21,7 +21,7 @@ enum VertexNumber : uint32_t {
 };
 
 // The dimension of a number at the vertex of this depth, which is 1 for the first vertex.
-inline uint32_t dimensionOf(int depth, VertexNumber number) {
+inline constexpr uint32_t dimensionOf(int depth, VertexNumber number) {
   return kDimensionsPerVertex * uint32_t(depth) + number;
 }
 
@@ -32,14 +32,14 @@ using Purposes = uint32_t;
 // Where in the pixel, through which point of the lens, and when.
 inline constexpr Purposes kPixelAndLens = 1u << 1 | 1u << 2 | 1u << 3;
 // Next-event estimation at the first vertex: which light, and which point or direction of it.
-inline constexpr Purposes kFirstLightChoice = 1u << (kDimensionsPerVertex + kLightChoiceNumber);
-inline constexpr Purposes kFirstLightPoint = 1u << (kDimensionsPerVertex + kLightPointNumber);
+inline constexpr Purposes kFirstLightChoice = 1u << dimensionOf(1, kLightChoiceNumber);
+inline constexpr Purposes kFirstLightPoint = 1u << dimensionOf(1, kLightPointNumber);
 // Where the path goes on: which lobe, BSDF or map, whither.
 inline constexpr Purposes kFirstDirection =
-    1u << (kDimensionsPerVertex + kLobeNumber) | 1u << (kDimensionsPerVertex + kDirectionNumber);
+    1u << dimensionOf(1, kLobeNumber) | 1u << dimensionOf(1, kDirectionNumber);
 // Whether it does, decided here or where it arrives; whether the light is asked for.
 inline constexpr Purposes kFirstSurvival =
-    1u << (kDimensionsPerVertex + kSurvivalNumber) | 1u << (kDimensionsPerVertex + kShadowRayNumber);
+    1u << dimensionOf(1, kSurvivalNumber) | 1u << dimensionOf(1, kShadowRayNumber);
 // The same at all vertices but the first.
 inline constexpr Purposes kLaterLightChoice = kFirstLightChoice << kDimensionsPerVertex;
 inline constexpr Purposes kLaterLightPoint = kFirstLightPoint << kDimensionsPerVertex;
