@@ -100,13 +100,14 @@ std::shared_ptr<Mesh> Mesh::make(MeshData data, const MeshOptions& options, cons
   return std::shared_ptr<Mesh>(new Mesh(std::move(data), options));
 }
 
-Mesh::Mesh(MeshData data, const MeshOptions& options) : m_flipFaceNormals(options.flipNormals) {
+Mesh::Mesh(MeshData data, const MeshOptions& options) {
   if (options.faceNormals)
     data.normals.clear();
   else if (data.normals.empty())
     data.normals = smoothNormals(data);
   // A normal that has no direction stays zero: the triangle's own takes its place.
-  for (Vec3& n : data.normals) n = normalizeOr(Vec3d(n), {0, 0, 0}) * (options.flipNormals ? -1.0f : 1.0f);
+  const float side = options.flipNormals ? -1.0f : 1.0f;
+  for (Vec3& n : data.normals) n = normalizeOr(Vec3d(n), {0, 0, 0}) * side;
 
   m_hasNormals = !data.normals.empty();
   m_hasUvs = !data.uvs.empty();
@@ -116,7 +117,6 @@ Mesh::Mesh(MeshData data, const MeshOptions& options) : m_flipFaceNormals(option
     if (m_hasNormals) m_vertices[i].normal = data.normals[i];
     if (m_hasUvs) m_vertices[i].uv = data.uvs[i];
   }
-  m_triangles = std::move(data.triangles);
   m_attributes = std::move(data.attributes);
   for (MeshAttribute& attribute : m_attributes)
     for (float& value : attribute.values)
@@ -124,13 +124,18 @@ Mesh::Mesh(MeshData data, const MeshOptions& options) : m_flipFaceNormals(option
 
   double sum = 0;
   std::vector<double> sums;
-  sums.reserve(m_triangles.size());
-  for (const Triangle& t : m_triangles) {
-    const Vec3d normal = areaVector(t);
-    sums.push_back(sum += 0.5 * std::sqrt(normal.dot(normal)));
+  sums.reserve(data.triangles.size());
+  m_faces.reserve(data.triangles.size());
+  for (const Triangle& corners : data.triangles) {
+    const Vec3 &a = data.positions[corners[0]], &b = data.positions[corners[1]],
+               &c = data.positions[corners[2]];
+    const Vec3d normal = areaVector(a, b, c);
+    const double area = 0.5 * std::sqrt(normal.dot(normal));
+    m_faces.push_back({corners, faceNormal(a, b, c) * side, float(area)});
+    sums.push_back(sum += area);
   }
   m_area = float(sum);
-  m_cdf.assign(m_triangles.size() + 1, 0.0f);
+  m_cdf.assign(m_faces.size() + 1, 0.0f);
   if (sum > 0)
     for (size_t i = 0; i < sums.size(); ++i) m_cdf[i + 1] = float(sums[i] / sum);
 }
@@ -139,8 +144,8 @@ RTCGeometryTy* Mesh::makeGeometry(RTCDeviceTy* device) const {
   RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
   rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, m_vertices.data(),
                              offsetof(Vertex, position), sizeof(Vertex), m_vertices.size());
-  rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, m_triangles.data(), 0,
-                             sizeof(Triangle), m_triangles.size());
+  rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, m_faces.data(),
+                             offsetof(Face, corners), sizeof(Face), m_faces.size());
   rtcCommitGeometry(geometry);
   return geometry;
 }
@@ -152,8 +157,9 @@ SurfacePoint Mesh::surfacePoint(const Ray&, const RawHit& hit) const {
 }
 
 SurfacePoint Mesh::pointOn(uint32_t triangle, const Vec2& barycentric) const {
-  const Triangle& t = m_triangles[triangle];
-  const Vertex &v0 = m_vertices[t[0]], &v1 = m_vertices[t[1]], &v2 = m_vertices[t[2]];
+  const Face& face = m_faces[triangle];
+  const auto& [c0, c1, c2] = face.corners;
+  const Vertex &v0 = m_vertices[c0], &v1 = m_vertices[c1], &v2 = m_vertices[c2];
   const float b1 = barycentric.x, b2 = barycentric.y, b0 = 1 - b1 - b2;
 
   SurfacePoint at;
@@ -163,8 +169,7 @@ SurfacePoint Mesh::pointOn(uint32_t triangle, const Vec2& barycentric) const {
   const Vec3 p0 = v0.position * b0, p1 = v1.position * b1, p2 = v2.position * b2;
   at.p = p0 + p1 + p2;
   at.pError = positionError(maxAbs(p0) + maxAbs(p1) + maxAbs(p2));
-  at.ng = faceNormal(v0.position, v1.position, v2.position);
-  if (m_flipFaceNormals) at.ng = -at.ng;
+  at.ng = face.normal;
   at.uv = m_hasUvs ? v0.uv * b0 + v1.uv * b1 + v2.uv * b2 : barycentric;
 
   Vec3 n = at.ng;
@@ -173,12 +178,13 @@ SurfacePoint Mesh::pointOn(uint32_t triangle, const Vec2& barycentric) const {
     if (dot(n, at.ng) < 0) at.ng = -at.ng;
   }
   at.shading = CoordinateFrame(n);
-  if (tangents()) findTangents(at, t);
+  if (tangents()) findTangents(at, face.corners);
   return at;
 }
 
-void Mesh::findTangents(SurfacePoint& at, const Triangle& t) const {
-  const Vertex &v0 = m_vertices[t[0]], &v1 = m_vertices[t[1]], &v2 = m_vertices[t[2]];
+void Mesh::findTangents(SurfacePoint& at, const Triangle& corners) const {
+  const auto& [c0, c1, c2] = corners;
+  const Vertex &v0 = m_vertices[c0], &v1 = m_vertices[c1], &v2 = m_vertices[c2];
   const Vec3 e1 = v1.position - v0.position, e2 = v2.position - v0.position;
   at.dpdu = e1;
   at.dpdv = e2;
@@ -217,31 +223,23 @@ float Mesh::pdf(const Vec3& ref, const SurfacePoint& at) const {
   return uniformAreaPdf(ref, at, m_area);
 }
 
-Imath::V3d Mesh::areaVector(const Triangle& t) const {
-  return render::areaVector(m_vertices[t[0]].position, m_vertices[t[1]].position, m_vertices[t[2]].position);
-}
-
-float Mesh::triangleArea(uint32_t triangle) const {
-  const Vec3d normal = areaVector(m_triangles[triangle]);
-  return float(0.5 * std::sqrt(normal.dot(normal)));
-}
-
 PrimitiveExtent Mesh::extent(uint32_t triangle) const {
   PrimitiveExtent result;
   result.area = triangleArea(triangle);
-  result.min = result.max = m_vertices[m_triangles[triangle][0]].position;
-  for (const uint32_t vertex : m_triangles[triangle])
+  const Triangle& corners = m_faces[triangle].corners;
+  result.min = result.max = m_vertices[corners[0]].position;
+  for (const uint32_t vertex : corners)
     for (int i = 0; i < 3; ++i) {
       result.min[i] = std::min(result.min[i], m_vertices[vertex].position[i]);
       result.max[i] = std::max(result.max[i], m_vertices[vertex].position[i]);
     }
   // Between the corners the normals are combinations of theirs: a cone that holds these, and is narrower than
   // half of all directions, holds those.
-  const Vec3 corners[3] = {pointOn(triangle, {0, 0}).shading.n, pointOn(triangle, {1, 0}).shading.n,
+  const Vec3 normals[3] = {pointOn(triangle, {0, 0}).shading.n, pointOn(triangle, {1, 0}).shading.n,
                            pointOn(triangle, {0, 1}).shading.n};
-  result.axis = normalizeOr(Vec3d(corners[0]) + Vec3d(corners[1]) + Vec3d(corners[2]), corners[0]);
+  result.axis = normalizeOr(Vec3d(normals[0]) + Vec3d(normals[1]) + Vec3d(normals[2]), normals[0]);
   result.theta = 0;
-  for (const Vec3& n : corners)
+  for (const Vec3& n : normals)
     result.theta = std::max(result.theta, std::atan2(length(cross(result.axis, n)), dot(result.axis, n)));
   if (result.theta > kPi / 2) result.theta = kPi;
   return result;
@@ -270,16 +268,16 @@ std::optional<Rgb> Mesh::attribute(const std::string& name, const SurfacePoint& 
     return found->channels == 3 ? Rgb(v[0], v[1], v[2]) : Rgb(v[0]);
   };
   if (found->ofFaces()) return valueOf(at.primitive);
-  const Triangle& t = m_triangles[at.primitive];
+  const auto& [c0, c1, c2] = m_faces[at.primitive].corners;
   const Vec2& b = at.barycentric;
-  return valueOf(t[0]) * (1 - b.x - b.y) + valueOf(t[1]) * b.x + valueOf(t[2]) * b.y;
+  return valueOf(c0) * (1 - b.x - b.y) + valueOf(c1) * b.x + valueOf(c2) * b.y;
 }
 
 uint64_t Mesh::bytes() const {
   uint64_t attributes = 0;
   for (const MeshAttribute& attribute : m_attributes)
     attributes += attribute.values.capacity() * sizeof(float);
-  return attributes + m_vertices.capacity() * sizeof(Vertex) + m_triangles.capacity() * sizeof(Triangle) +
+  return attributes + m_vertices.capacity() * sizeof(Vertex) + m_faces.capacity() * sizeof(Face) +
          m_cdf.capacity() * sizeof(float);
 }
 

@@ -52,7 +52,7 @@ class Mesh final : public Shape {
   float area() const override { return m_area; }
   ShapeSample sample(const Vec3& ref, const Vec2& u) const override;  // uniform by area
   float pdf(const Vec3& ref, const SurfacePoint& at) const override;
-  uint64_t primitiveCount() const override { return m_triangles.size(); }
+  uint64_t primitiveCount() const override { return m_faces.size(); }
   SurfacePoint pointOverArea(const Vec2& u) const override;
   float areaWeight(const Vec2&) const override { return 1; }
   PrimitiveExtent extent(uint32_t triangle) const override;
@@ -62,7 +62,7 @@ class Mesh final : public Shape {
   bool hasAttribute(const std::string& name) const override { return findAttribute(name) != nullptr; }
   uint64_t bytes() const override;
 
-  float triangleArea(uint32_t triangle) const;
+  float triangleArea(uint32_t triangle) const { return m_faces[triangle].area; }
   // The point with barycentric coordinates (b1, b2) on a triangle, in the space of the mesh. dpdu
   // and dpdv stay zero, and the shading frame is any about its normal, if the BSDF does not ask for more.
   SurfacePoint pointOn(uint32_t triangle, const Vec2& barycentric) const;
@@ -73,20 +73,24 @@ class Mesh final : public Shape {
     Vec3 position, normal{0, 0, 0};
     Vec2 uv{0, 0};
   };
-  Imath::V3d areaVector(const Triangle& t) const;  // twice the area along the normal
+  // What is known of a triangle, likewise.
+  struct alignas(32) Face {
+    Triangle corners;
+    Vec3 normal;  // unit
+    float area;
+  };
 
   Mesh(MeshData data, const MeshOptions& options);
   const MeshAttribute* findAttribute(const std::string& name) const;
-  void findTangents(SurfacePoint& at, const Triangle& t) const;
+  void findTangents(SurfacePoint& at, const Triangle& corners) const;
 
   std::vector<Vertex> m_vertices;
-  std::vector<Triangle> m_triangles;
+  std::vector<Face> m_faces;
   std::vector<MeshAttribute> m_attributes;
   bool m_hasNormals = false;  // else face normals
   bool m_hasUvs = false;      // else barycentric coordinates stand in for them
   std::vector<float> m_cdf;   // of the triangles by area, size n + 1
   float m_area = 0;
-  bool m_flipFaceNormals = false;
 };
 
 }  // namespace odis::render
