@@ -52,9 +52,10 @@ InspectedPlace placeOfPixel(const render::Scene& scene, const render::LightSampl
   settings.lights = &lights;
   settings.maxDepth = options.maxDepth;
   settings.rrDepth = options.rrDepth;
-  render::Sampler sampler(options.sampler, options.seed, uint32_t(pixel.y * film.width + pixel.x), 0);
+  const render::Sampler sampler(options.sampler, options.seed, uint32_t(pixel.y * film.width + pixel.x), 0);
   float filterWeight;
-  const render::Ray ray = render::cameraRay(scene, pixel, sampler, filterWeight);
+  const render::Ray ray =
+      render::cameraRay(scene, pixel, render::cameraNumbers(scene, sampler), filterWeight);
   render::Path path(ray, sampler);
   std::vector<PathVertex> vertices;
   render::tracePaths(settings, std::span(&path, 1), &vertices);

@@ -67,6 +67,52 @@ Ray beyondEmitters(const Scene& scene, Ray ray) {
   return ray;
 }
 
+using NumbersBlock = std::array<CameraNumbers, SamplerBlock::kSize>;
+
+// The numbers of several samples at once.
+void drawCameraNumbers(const Scene& scene, const SamplerBlock& samplers, NumbersBlock& numbers) {
+  SamplerBlock::Column x, y;
+  samplers.draw2D(kPixelNumber, x, y);
+  for (size_t i = 0; i < numbers.size(); ++i) numbers[i].pixel = Vec2(x[i], y[i]);
+  samplers.draw2D(kLensNumber, x, y);
+  for (size_t i = 0; i < numbers.size(); ++i) numbers[i].lens = Vec2(x[i], y[i]);
+  if (!scene.moves()) return;
+  samplers.draw1D(kTimeNumber, x);
+  for (size_t i = 0; i < numbers.size(); ++i) numbers[i].time = x[i];
+}
+
+Vec2i pixelAt(const FilmSettings& film, uint32_t index) {
+  return {film.crop.x + int(index) % film.crop.width, film.crop.y + int(index) / film.crop.width};
+}
+
+// The path of a sample of a pixel; addCameraRays() gives it its ray.
+Path pathWithoutRay(const Pass& pass, uint32_t pixel, uint32_t sample) {
+  const Scene& scene = *pass.path.scene;
+  const Vec2i at = pixelAt(scene.film(), pixel);
+  const uint32_t place = uint32_t(at.y) * uint32_t(scene.film().width) + uint32_t(at.x);
+  Path path({Vec3(0, 0, 0), Vec3(0, 0, 1)}, {pass.sampler, pass.seed, place, sample, pass.redrawn});
+  path.hidesEnvironment = scene.integrator().hideEmitters;
+  path.visible = !pass.path.features || (!path.hidesEnvironment && !scene.environments().empty());
+  path.identity = {pixel, sample, 1};
+  if (!pass.pixelValues.empty()) path.pixelValue = pass.pixelValues[pixel];
+  return path;
+}
+
+// Gives paths their camera rays, drawing the numbers of several at once.
+void addCameraRays(const Scene& scene, std::span<Path> paths) {
+  for (size_t begin = 0; begin < paths.size(); begin += SamplerBlock::kSize) {
+    const auto some = paths.subspan(begin, std::min(SamplerBlock::kSize, paths.size() - begin));
+    SamplerBlock samplers;
+    for (const Path& path : some) samplers.add(path.sampler);
+    NumbersBlock numbers;
+    drawCameraNumbers(scene, samplers, numbers);
+    for (size_t i = 0; i < some.size(); ++i) {
+      auto& [pixel, sample, filterWeight] = some[i].identity;
+      some[i].ray = cameraRay(scene, pixelAt(scene.film(), pixel), numbers[i], filterWeight);
+    }
+  }
+}
+
 // Traces all samples of a tile, one of each pixel at a time, or several where few pixels are left that have
 // one.
 void renderTile(const Pass& pass, uint32_t tile, TileResult& result) {
@@ -77,10 +123,11 @@ void renderTile(const Pass& pass, uint32_t tile, TileResult& result) {
     for (const uint32_t pixel : pixels) {
       const auto [first, count] = pass.samples(pixel);
       if (round >= count) continue;
-      paths.push_back(cameraPath(pass, pixel, first + round));
+      paths.push_back(pathWithoutRay(pass, pixel, first + round));
       ++traced;
     }
     if (traced > 0 && paths.size() < pixels.size()) continue;
+    addCameraRays(*pass.path.scene, paths);
     if (pass.firstHitsOnly)
       traceFirstHits(pass.path, paths);
     else
@@ -96,29 +143,25 @@ uint32_t tileCount(const Crop& crop) {
   return uint32_t(tilesX(crop) * ((crop.height + kTileSize - 1) / kTileSize));
 }
 
-Ray cameraRay(const Scene& scene, Vec2i pixel, Sampler& sampler, float& filterWeight,
-              std::optional<float> time) {
-  const FilterSample offset = scene.film().filter->sample(sampler.get2D());
+CameraNumbers cameraNumbers(const Scene& scene, const Sampler& sampler) {
+  SamplerBlock block;
+  block.add(sampler);
+  NumbersBlock numbers;
+  drawCameraNumbers(scene, block, numbers);
+  return numbers[0];
+}
+
+Ray cameraRay(const Scene& scene, Vec2i pixel, const CameraNumbers& numbers, float& filterWeight) {
+  const FilterSample offset = scene.film().filter->sample(numbers.pixel);
   const Vec2 film = Vec2(pixel.x + 0.5f, pixel.y + 0.5f) + offset.offset;
   filterWeight = offset.weight * scene.sensor().weight(film);
-  const Vec2 lens = sampler.get2D();
-  if (!time) time = scene.moves() ? sampler.get1D() : 0;
-  const Ray ray = scene.sensor().ray(film, lens, *time);
+  const Ray ray = scene.sensor().ray(film, numbers.lens, numbers.time);
   return scene.integrator().hideEmitters ? beyondEmitters(scene, ray) : ray;
 }
 
-Path cameraPath(const Pass& pass, uint32_t index, uint32_t sample) {
-  const FilmSettings& film = pass.path.scene->film();
-  const Vec2i pixel(film.crop.x + int(index) % film.crop.width, film.crop.y + int(index) / film.crop.width);
-  Sampler sampler(pass.sampler, pass.seed, uint32_t(pixel.y) * uint32_t(film.width) + uint32_t(pixel.x),
-                  sample, pass.redrawn);
-  float filterWeight;
-  const Ray ray = cameraRay(*pass.path.scene, pixel, sampler, filterWeight);
-  Path path(ray, sampler);
-  path.hidesEnvironment = pass.path.scene->integrator().hideEmitters;
-  path.visible = !pass.path.features || (!path.hidesEnvironment && !pass.path.scene->environments().empty());
-  path.identity = {index, sample, filterWeight};
-  if (!pass.pixelValues.empty()) path.pixelValue = pass.pixelValues[index];
+Path cameraPath(const Pass& pass, uint32_t pixel, uint32_t sample) {
+  Path path = pathWithoutRay(pass, pixel, sample);
+  addCameraRays(*pass.path.scene, std::span(&path, 1));
   return path;
 }
 

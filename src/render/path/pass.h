@@ -4,10 +4,10 @@
 #include <odis/odis.hpp>
 
 #include <functional>
-#include <optional>
 
 #include "render/path/path.h"
 #include "render/path/progress.h"
+#include "render/sampler/sampler_block.h"
 
 namespace odis::render {
 
@@ -44,9 +44,14 @@ uint32_t tileCount(const Crop& crop);
 // The path of a sample of a pixel, before it is traced. The position in the pixel is drawn from the
 // reconstruction filter, whose weight is the path's.
 Path cameraPath(const Pass& pass, uint32_t pixel, uint32_t sample);
-// The camera ray of a sample; the filter's weight is returned. Where something moves its time is drawn too,
-// unless it is given.
-Ray cameraRay(const Scene& scene, Vec2i pixel, Sampler& sampler, float& filterWeight,
-              std::optional<float> time = {});
+
+// The random numbers of a camera ray, uniform in [0, 1).
+struct CameraNumbers {
+  Vec2 pixel, lens;  // where in the pixel, through which point of the lens
+  float time = 0;    // when, where something moves; else 0
+};
+CameraNumbers cameraNumbers(const Scene& scene, const Sampler& sampler);
+// The camera ray of a sample; the filter's weight is returned.
+Ray cameraRay(const Scene& scene, Vec2i pixel, const CameraNumbers& numbers, float& filterWeight);
 
 }  // namespace odis::render

@@ -36,10 +36,12 @@ class ReusedFrame {
   // The pixel's own path.
   void trace(size_t index) {
     FramePixel& pixel = m_pixels[index];
-    Sampler sampler = samplerOf(index, 0);
+    const Sampler sampler = samplerOf(index, 0);
     const Crop& crop = m_scene.film().crop;
     const Vec2i place(crop.x + int(index) % crop.width, crop.y + int(index) / crop.width);
-    const Ray ray = cameraRay(m_scene, place, sampler, pixel.filterWeight, m_time);
+    CameraNumbers numbers = cameraNumbers(m_scene, sampler);
+    numbers.time = m_time;
+    const Ray ray = cameraRay(m_scene, place, numbers, pixel.filterWeight);
     pixel.path = traceRestirPath(m_pass.path, ray, sampler, samplerOf(index, kBeyondSeed));
     if (pixel.path.sample.valid) pixel.own = contributionOf(pixel.path.sample, pixel.path.point);
   }

@@ -10,6 +10,13 @@ namespace odis::render {
 // Each vertex of a path has so many dimensions; the camera is vertex 0.
 inline constexpr uint32_t kDimensionsPerVertex = 8;
 
+// What the numbers of a camera ray are for: their dimensions.
+enum CameraNumber : uint32_t {
+  kPixelNumber = 1,  // where in the pixel: two
+  kLensNumber,       // through which point of the lens: two
+  kTimeNumber,       // when
+};
+
 // What the numbers of a vertex are for, in the order of their dimensions.
 enum VertexNumber : uint32_t {
   kLightChoiceNumber = 1,  // which light
@@ -30,7 +37,7 @@ inline constexpr uint32_t dimensionOf(int depth, VertexNumber number) {
 using Purposes = uint32_t;
 
 // Where in the pixel, through which point of the lens, and when.
-inline constexpr Purposes kPixelAndLens = 1u << 1 | 1u << 2 | 1u << 3;
+inline constexpr Purposes kPixelAndLens = 1u << kPixelNumber | 1u << kLensNumber | 1u << kTimeNumber;
 // Next-event estimation at the first vertex: which light, and which point or direction of it.
 inline constexpr Purposes kFirstLightChoice = 1u << dimensionOf(1, kLightChoiceNumber);
 inline constexpr Purposes kFirstLightPoint = 1u << dimensionOf(1, kLightPointNumber);
