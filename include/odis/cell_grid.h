@@ -96,13 +96,16 @@ ODIS_HOST_DEVICE inline uint64_t cellHash(uint64_t key) {
 }
 
 // Finds the cell of a key by linear probing in a table of mask + 1 slots, a power of two, some of which are
-// free. kNoCell if the key is not there or there is no table.
-ODIS_HOST_DEVICE inline uint32_t findSlot(const CellSlot* slots, uint64_t mask, uint64_t key) {
+// free; `hash` is cellHash(key). kNoCell if the key is not there or there is no table.
+ODIS_HOST_DEVICE inline uint32_t findSlot(const CellSlot* slots, uint64_t mask, uint64_t key, uint64_t hash) {
   if (!slots) return kNoCell;
-  for (uint64_t slot = cellHash(key) & mask;; slot = (slot + 1) & mask) {
+  for (uint64_t slot = hash & mask;; slot = (slot + 1) & mask) {
     if (slots[slot].cell == kNoCell) return kNoCell;
     if (slots[slot].key == key) return slots[slot].cell;
   }
+}
+ODIS_HOST_DEVICE inline uint32_t findSlot(const CellSlot* slots, uint64_t mask, uint64_t key) {
+  return findSlot(slots, mask, key, cellHash(key));
 }
 
 }  // namespace odis

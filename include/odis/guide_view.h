@@ -31,9 +31,10 @@ ODIS_HOST_DEVICE inline uint32_t pixelCell(const GuideView& view, const Place& p
   return place.first && place.pixel < view.pixelCount ? view.pixelCells[place.pixel] : kNoCell;
 }
 
-// The finest cell that there is of those around a key of the finest level; kNoCell where there is none.
-ODIS_HOST_DEVICE inline uint32_t findAround(const GuideView& view, uint64_t key) {
-  uint32_t cell = findSlot(view.slots, view.slotMask, key);
+// The finest cell that there is of those around a key of the finest level, whose cellHash() is given; kNoCell
+// where there is none.
+ODIS_HOST_DEVICE inline uint32_t findAround(const GuideView& view, uint64_t key, uint64_t hash) {
+  uint32_t cell = findSlot(view.slots, view.slotMask, key, hash);
   for (int level = 1; level < kCellLevels && cell == kNoCell; ++level) {
     key = CellGrid::parent(key);
     cell = findSlot(view.slots, view.slotMask, key);
@@ -45,7 +46,8 @@ ODIS_HOST_DEVICE inline uint32_t findAround(const GuideView& view, uint64_t key)
 ODIS_HOST_DEVICE inline uint32_t findCell(const GuideView& view, const Place& place) {
   const uint32_t cell = pixelCell(view, place);
   if (cell != kNoCell) return cell;
-  return findAround(view, CellGrid(view.grid).key(place.position, place.normal, 0));
+  const uint64_t key = CellGrid(view.grid).key(place.position, place.normal, 0);
+  return findAround(view, key, cellHash(key));
 }
 
 // Finds the cells of many vertices, which is faster: cells lie all over memory, and here no look-up waits
@@ -53,12 +55,13 @@ ODIS_HOST_DEVICE inline uint32_t findCell(const GuideView& view, const Place& pl
 inline void findCells(const GuideView& view, const Place* places, size_t count, uint32_t* cells) {
   constexpr size_t kChunk = 128;
   const CellGrid grid(view.grid);
-  uint64_t keys[kChunk];
+  uint64_t keys[kChunk], hashes[kChunk];
   for (size_t begin = 0; begin < count; begin += kChunk) {
     const size_t end = begin + kChunk < count ? begin + kChunk : count;
     for (size_t i = begin; i < end; ++i) {
       keys[i - begin] = grid.key(places[i].position, places[i].normal, 0);
-      if (view.slots) __builtin_prefetch(&view.slots[cellHash(keys[i - begin]) & view.slotMask]);
+      hashes[i - begin] = cellHash(keys[i - begin]);
+      if (view.slots) __builtin_prefetch(&view.slots[hashes[i - begin] & view.slotMask]);
     }
     for (size_t i = begin; i < end; ++i) {
       if (view.pixelCells && places[i].first) {
@@ -69,7 +72,7 @@ inline void findCells(const GuideView& view, const Place* places, size_t count, 
       // coarser cells, too.
       const bool same =
           i > begin && keys[i - begin] == keys[i - begin - 1] && !(view.pixelCells && places[i - 1].first);
-      cells[i] = same ? cells[i - 1] : findAround(view, keys[i - begin]);
+      cells[i] = same ? cells[i - 1] : findAround(view, keys[i - begin], hashes[i - begin]);
     }
   }
 }

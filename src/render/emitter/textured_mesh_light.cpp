@@ -90,7 +90,7 @@ LightBounds TexturedMeshLight::bounds(uint32_t part) const {
 EmitterSample TexturedMeshLight::sample(uint32_t part, const Vec3& ref, const Vec2& u) const {
   const Cell cell = cellOf(part);
   const auto draw = [&] {
-    return m_mesh.pointOn(cell.triangle, pointInSubdivision(cell.n, cell.index, squareToTriangle(u)));
+    return m_mesh.placeOn(cell.triangle, pointInSubdivision(cell.n, cell.index, squareToTriangle(u)));
   };
   return emitterSample(
       uniformAreaSample(ref, draw, m_mesh.triangleArea(cell.triangle) / float(cell.n * cell.n)));

@@ -16,6 +16,7 @@ struct LightEstimate {
   float pdf = 0;          // with respect to solid angle; 0 where MIS does not apply
   BsdfValue bsdf;         // in direction wi
   uint32_t group = 0;     // group of lights that the light was drawn from
+  int32_t texel = 0;      // of the map there that wi falls into
 };
 
 // One path as it arrives at one vertex.
@@ -54,15 +55,17 @@ struct ShadowRay {
   Rgb radiance;
 };
 
-// What the paths of a batch share while they are traced; kept from batch to batch for its memory. 48 + 32 +
-// 216 bytes a path and 32 + 16 a shadow ray.
+// What the paths of a batch share while they are traced; kept from batch to batch for its memory. 284 bytes a
+// path and 49 a shadow ray.
 struct Batch {
   std::vector<uint32_t> active;  // paths that have a ray to trace
   std::vector<Ray> rays;         // theirs
   std::vector<Hit> hits;         // what those met
   std::vector<Vertex> vertices;  // the same as points on surfaces
-  std::vector<Place> places;     // and as places of the guide
   std::vector<uint32_t> cells;   // of the guide; kNoCell where there is none
+  std::vector<Place> places;     // of the vertices that may have one
+  std::vector<uint32_t> placed;  // which those are
+  std::vector<uint32_t> found;   // their cells
   std::array<Bounce, kBounceBlock> bounces;
   SamplerBlock samplers;  // those of the bounces' paths
   std::vector<ShadowRay> shadowRays;

@@ -28,7 +28,7 @@ LightEstimate sampleLight(const PathSettings& settings, const Vertex& vertex, co
 // The weight of next-event estimation against the mixture that directions are sampled from.
 float misWeight(const LightEstimate& light, const GuidedBsdf& bsdf) {
   if (!(light.pdf > 0)) return 1;
-  return powerHeuristic(light.pdf, bsdf.pdf(light.bsdf, light.wi));
+  return powerHeuristic(light.pdf, bsdf.pdf(light.bsdf, light.wi, light.texel));
 }
 
 }  // namespace
@@ -48,7 +48,7 @@ void sampleLights(const PathSettings& settings, Bounces bounces) {
       continue;
     }
     bounce.light = sampleLight(settings, vertex, bounce.reference, bounce.numbers);
-    if (bounce.light.pdf > 0) bounce.bsdf.prefetch(bounce.light.wi);
+    if (bounce.light.pdf > 0) bounce.light.texel = bounce.bsdf.fetchTexel(bounce.light.wi);
   }
 }
 

@@ -79,14 +79,17 @@ void GuidedBsdf::prepare(const PathSettings& settings, const Path& path, const V
   if (m_map.sampleable()) m_mixture = {fraction, guidable};
 }
 
-float GuidedBsdf::pdf(const BsdfValue& bsdf, const Vec3& wiWorld) const {
-  if (!m_mixture.guides()) return bsdf.pdf;
-  const float mapPdf = m_rival ? m_rival->pdf(wiWorld) : m_map.pdf(toOdis(wiWorld));
-  return m_mixture.pdf(bsdf.pdf, bsdf.guidablePdf, mapPdf);
+int32_t GuidedBsdf::fetchTexel(const Vec3& wiWorld) const {
+  if (!m_mixture.guides() || m_rival) return 0;
+  const int32_t texel = texelOf(toOdis(wiWorld));
+  m_map.prefetch(texel / kBlockTexels);
+  return texel;
 }
 
-void GuidedBsdf::prefetch(const Vec3& wiWorld) const {
-  if (m_mixture.guides() && !m_rival) m_map.prefetch(texelOf(toOdis(wiWorld)) >> 4);
+float GuidedBsdf::pdf(const BsdfValue& bsdf, const Vec3& wiWorld, int32_t texel) const {
+  if (!m_mixture.guides()) return bsdf.pdf;
+  const float mapPdf = m_rival ? m_rival->pdf(wiWorld) : m_map.texelPdf(texel);
+  return m_mixture.pdf(bsdf.pdf, bsdf.guidablePdf, mapPdf);
 }
 
 GuidedBsdf::Draw GuidedBsdf::draw(const VertexNumbers& numbers) const {

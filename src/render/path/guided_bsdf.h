@@ -16,14 +16,14 @@ class GuidedBsdf {
 
   // The BSDF sampling fraction: 1 where nothing is guided.
   float bsdfFraction() const { return m_mixture.bsdfFraction(); }
-  // The density of the mixture in a direction, with respect to solid angle, `bsdf` being the BSDF's value
-  // there.
-  float pdf(const BsdfValue& bsdf, const Vec3& wiWorld) const;
-  // Fetches what pdf() of this direction reads of the map.
-  void prefetch(const Vec3& wiWorld) const;
+  // The density of the mixture in a direction, with respect to solid angle, is found in two steps, so that
+  // the map is fetched while other vertices take the first one. That gives the texel of the map that the
+  // direction falls into, which the second asks for besides the BSDF's value there.
+  int32_t fetchTexel(const Vec3& wiWorld) const;
+  float pdf(const BsdfValue& bsdf, const Vec3& wiWorld, int32_t texel) const;
 
-  // A direction is sampled in two steps, so that the map is fetched while other vertices take the first one:
-  // where the direction comes from the map, a block of it is chosen.
+  // A direction is sampled in two steps, too: the first chooses a block of the map, where the direction comes
+  // from there.
   struct Draw {
     int block;         // of the map
     Vec2 withinBlock;  // numbers that sample within it

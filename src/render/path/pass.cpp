@@ -9,6 +9,8 @@ namespace odis::render {
 namespace {
 
 constexpr int kTileSize = 16;
+// Paths are traced side by side, at least so many if there are.
+constexpr size_t kLeastPaths = kTileSize * kTileSize;
 
 // Denormal numbers are slow and mean nothing here: flushed to zero (bit 15) and taken as zero (bit 6).
 void flushDenormals() {
@@ -19,22 +21,34 @@ int tilesX(const Crop& crop) {
   return (crop.width + kTileSize - 1) / kTileSize;
 }
 
-// The pixels of a tile in blocks of 4 x 4, so that neighbours in the list are neighbours in the image.
-std::vector<uint32_t> pixelsOfTile(const Crop& crop, uint32_t tile) {
+// The samples of a pixel that are still to be traced.
+struct PixelSamples {
+  uint32_t pixel;
+  SampleRange samples;
+};
+
+// Those of the pixels of a tile that have any, in blocks of 4 x 4 pixels, so that neighbours in the list are
+// neighbours in the image.
+std::vector<PixelSamples> samplesOfTile(const Pass& pass, uint32_t tile) {
   constexpr int kBlock = 4;
+  const Crop& crop = pass.path.scene->film().crop;
   const int x0 = int(tile) % tilesX(crop) * kTileSize, y0 = int(tile) / tilesX(crop) * kTileSize;
-  std::vector<uint32_t> pixels;
+  std::vector<PixelSamples> pixels;
   for (int i = 0; i < kTileSize * kTileSize; ++i) {
     const int block = i / (kBlock * kBlock), within = i % (kBlock * kBlock);
     const int x = x0 + block % (kTileSize / kBlock) * kBlock + within % kBlock;
     const int y = y0 + block / (kTileSize / kBlock) * kBlock + within / kBlock;
-    if (x < crop.width && y < crop.height) pixels.push_back(uint32_t(y) * uint32_t(crop.width) + uint32_t(x));
+    if (x >= crop.width || y >= crop.height) continue;
+    const uint32_t pixel = uint32_t(y) * uint32_t(crop.width) + uint32_t(x);
+    if (const SampleRange samples = pass.samples(pixel); samples.count > 0)
+      pixels.push_back({pixel, samples});
   }
   return pixels;
 }
 
-// What a tile's samples brought; kept from tile to tile for its memory.
+// The paths that are being traced and what a tile's samples brought; kept from tile to tile for its memory.
 struct TileResult {
+  std::vector<Path> paths;
   std::vector<FrameSample> samples;
   std::vector<PathVertex> vertices;
   RayCounts counts;
@@ -113,20 +127,17 @@ void addCameraRays(const Scene& scene, std::span<Path> paths) {
   }
 }
 
-// Traces all samples of a tile, one of each pixel at a time, or several where few pixels are left that have
-// one.
+// Traces all samples of a tile: one of each pixel at a time, or several where few pixels are left.
 void renderTile(const Pass& pass, uint32_t tile, TileResult& result) {
-  const std::vector<uint32_t> pixels = pixelsOfTile(pass.path.scene->film().crop, tile);
-  std::vector<Path> paths;
-  for (uint32_t round = 0, traced = 1; traced > 0; ++round) {
-    traced = 0;
-    for (const uint32_t pixel : pixels) {
-      const auto [first, count] = pass.samples(pixel);
-      if (round >= count) continue;
-      paths.push_back(pathWithoutRay(pass, pixel, first + round));
-      ++traced;
+  std::vector<PixelSamples> left = samplesOfTile(pass, tile);
+  std::vector<Path>& paths = result.paths;
+  while (!left.empty()) {
+    for (auto& [pixel, samples] : left) {
+      paths.push_back(pathWithoutRay(pass, pixel, samples.first++));
+      --samples.count;
     }
-    if (traced > 0 && paths.size() < pixels.size()) continue;
+    std::erase_if(left, [](const PixelSamples& p) { return p.samples.count == 0; });
+    if (!left.empty() && paths.size() < kLeastPaths) continue;
     addCameraRays(*pass.path.scene, paths);
     if (pass.firstHitsOnly)
       traceFirstHits(pass.path, paths);

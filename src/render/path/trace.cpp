@@ -30,20 +30,18 @@ void findGuidingCells(const PathSettings& settings, std::span<const Path> paths,
   batch.cells.assign(batch.vertices.size(), kNoCell);
   if (!settings.guide) return;
   batch.places.clear();
-  for (size_t i = 0; i < batch.vertices.size(); ++i) {
-    const Vertex& vertex = batch.vertices[i];
+  batch.placed.clear();
+  for (uint32_t i = 0; i < batch.vertices.size(); ++i) {
+    const auto& [at, wo] = batch.vertices[i];
     const Path& path = paths[batch.active[i]];
-    batch.places.push_back({{}, {}, path.identity.pixel, path.identity.sample, path.guidable == 0});
-    if (!vertex.at.shape) continue;
-    batch.places.back().position = toOdis(vertex.at.p);
-    batch.places.back().normal = toOdis(facingNormal(vertex.at, vertex.wo));
+    if (!at.shape || !at.shape->bsdf().traits().evaluable || !guidesAt(settings, path)) continue;
+    batch.places.push_back({toOdis(at.p), toOdis(facingNormal(at, wo)), path.identity.pixel,
+                            path.identity.sample, path.guidable == 0});
+    batch.placed.push_back(i);
   }
-  findCells(*settings.guide, batch.places.data(), batch.places.size(), batch.cells.data());
-  for (size_t i = 0; i < batch.cells.size(); ++i) {
-    const Shape* shape = batch.vertices[i].at.shape;
-    const bool deltaOnly = shape && !shape->bsdf().traits().evaluable;
-    if (deltaOnly || !guidesAt(settings, paths[batch.active[i]])) batch.cells[i] = kNoCell;
-  }
+  batch.found.resize(batch.places.size());
+  findCells(*settings.guide, batch.places.data(), batch.places.size(), batch.found.data());
+  for (size_t i = 0; i < batch.placed.size(); ++i) batch.cells[batch.placed[i]] = batch.found[i];
 }
 
 // Takes some paths through all steps of a bounce; returns those that were scattered.

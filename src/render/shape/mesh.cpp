@@ -131,7 +131,8 @@ Mesh::Mesh(MeshData data, const MeshOptions& options) {
                &c = data.positions[corners[2]];
     const Vec3d normal = areaVector(a, b, c);
     const double area = 0.5 * std::sqrt(normal.dot(normal));
-    m_faces.push_back({corners, faceNormal(a, b, c) * side, float(area)});
+    const float magnitude = std::max({maxAbs(a), maxAbs(b), maxAbs(c)});
+    m_faces.push_back({corners, faceNormal(a, b, c) * side, float(area), magnitude});
     sums.push_back(sum += area);
   }
   m_area = float(sum);
@@ -156,7 +157,7 @@ SurfacePoint Mesh::surfacePoint(const Ray&, const RawHit& hit) const {
   return at;
 }
 
-SurfacePoint Mesh::pointOn(uint32_t triangle, const Vec2& barycentric) const {
+SurfacePoint Mesh::placeOn(uint32_t triangle, const Vec2& barycentric) const {
   const Face& face = m_faces[triangle];
   const auto& [c0, c1, c2] = face.corners;
   const Vertex &v0 = m_vertices[c0], &v1 = m_vertices[c1], &v2 = m_vertices[c2];
@@ -166,18 +167,22 @@ SurfacePoint Mesh::pointOn(uint32_t triangle, const Vec2& barycentric) const {
   at.shape = this;
   at.primitive = triangle;
   at.barycentric = barycentric;
-  const Vec3 p0 = v0.position * b0, p1 = v1.position * b1, p2 = v2.position * b2;
-  at.p = p0 + p1 + p2;
-  at.pError = positionError(maxAbs(p0) + maxAbs(p1) + maxAbs(p2));
+  at.p = v0.position * b0 + v1.position * b1 + v2.position * b2;
   at.ng = face.normal;
   at.uv = m_hasUvs ? v0.uv * b0 + v1.uv * b1 + v2.uv * b2 : barycentric;
-
-  Vec3 n = at.ng;
+  at.shading.n = at.ng;
   if (m_hasNormals) {
-    n = normalizeOr(v0.normal * b0 + v1.normal * b1 + v2.normal * b2, at.ng);
-    if (dot(n, at.ng) < 0) at.ng = -at.ng;
+    at.shading.n = normalizeOr(v0.normal * b0 + v1.normal * b1 + v2.normal * b2, at.ng);
+    if (dot(at.shading.n, at.ng) < 0) at.ng = -at.ng;
   }
-  at.shading = CoordinateFrame(n);
+  return at;
+}
+
+SurfacePoint Mesh::pointOn(uint32_t triangle, const Vec2& barycentric) const {
+  SurfacePoint at = placeOn(triangle, barycentric);
+  const Face& face = m_faces[triangle];
+  at.pError = positionError(face.magnitude);
+  at.shading = CoordinateFrame(at.shading.n);
   if (tangents()) findTangents(at, face.corners);
   return at;
 }
@@ -204,19 +209,24 @@ void Mesh::findTangents(SurfacePoint& at, const Triangle& corners) const {
   at.shading = CoordinateFrame::fromTangent(at.shading.n, at.dpdu);
 }
 
-SurfacePoint Mesh::pointOverArea(const Vec2& u) const {
+Mesh::Draw Mesh::drawOverArea(const Vec2& u) const {
   // The first triangle whose end lies above u: those without area begin where they end, and are never found.
-  const auto end = std::upper_bound(m_cdf.begin() + 1, m_cdf.end(), u.x);
-  if (end == m_cdf.end()) return {};  // of a mesh without area
-  const auto triangle = uint32_t(end - m_cdf.begin() - 1);
+  const auto end = std::upper_bound(m_cdf.begin() + 1, m_cdf.end() - 1, u.x);
   const float rest = std::min((u.x - end[-1]) / (end[0] - end[-1]), kOneMinusEpsilon);
-  return pointOn(triangle, squareToTriangle({rest, u.y}));
+  return {uint32_t(end - m_cdf.begin() - 1), squareToTriangle({rest, u.y})};
+}
+
+SurfacePoint Mesh::pointOverArea(const Vec2& u) const {
+  if (!(m_area > 0)) return {};
+  const auto [triangle, barycentric] = drawOverArea(u);
+  return pointOn(triangle, barycentric);
 }
 
 ShapeSample Mesh::sample(const Vec3& ref, const Vec2& u) const {
   if (!(m_area > 0)) return {};
+  const auto [triangle, barycentric] = drawOverArea(u);
   return uniformAreaSample(
-      ref, [&] { return pointOverArea(u); }, m_area);
+      ref, [&] { return placeOn(triangle, barycentric); }, m_area);
 }
 
 float Mesh::pdf(const Vec3& ref, const SurfacePoint& at) const {
@@ -235,8 +245,8 @@ PrimitiveExtent Mesh::extent(uint32_t triangle) const {
     }
   // Between the corners the normals are combinations of theirs: a cone that holds these, and is narrower than
   // half of all directions, holds those.
-  const Vec3 normals[3] = {pointOn(triangle, {0, 0}).shading.n, pointOn(triangle, {1, 0}).shading.n,
-                           pointOn(triangle, {0, 1}).shading.n};
+  const Vec3 normals[3] = {placeOn(triangle, {0, 0}).shading.n, placeOn(triangle, {1, 0}).shading.n,
+                           placeOn(triangle, {0, 1}).shading.n};
   result.axis = normalizeOr(Vec3d(normals[0]) + Vec3d(normals[1]) + Vec3d(normals[2]), normals[0]);
   result.theta = 0;
   for (const Vec3& n : normals)
@@ -247,7 +257,7 @@ PrimitiveExtent Mesh::extent(uint32_t triangle) const {
 
 ShapeSample Mesh::samplePrimitive(uint32_t triangle, const Vec3& ref, const Vec2& u) const {
   return uniformAreaSample(
-      ref, [&] { return pointOn(triangle, squareToTriangle(u)); }, triangleArea(triangle));
+      ref, [&] { return placeOn(triangle, squareToTriangle(u)); }, triangleArea(triangle));
 }
 
 float Mesh::primitivePdf(const Vec3& ref, const SurfacePoint& at) const {

@@ -66,6 +66,8 @@ class Mesh final : public Shape {
   // The point with barycentric coordinates (b1, b2) on a triangle, in the space of the mesh. dpdu
   // and dpdv stay zero, and the shading frame is any about its normal, if the BSDF does not ask for more.
   SurfacePoint pointOn(uint32_t triangle, const Vec2& barycentric) const;
+  // The same, as far as lights ask: no position error, no tangents, of the shading frame the normal alone.
+  SurfacePoint placeOn(uint32_t triangle, const Vec2& barycentric) const;
 
  private:
   // All that is known of a vertex, in one piece: a hit touches three of these and one triangle.
@@ -78,10 +80,17 @@ class Mesh final : public Shape {
     Triangle corners;
     Vec3 normal;  // unit
     float area;
+    float magnitude;  // the largest absolute coordinate of its corners
+  };
+  // A point drawn by area.
+  struct Draw {
+    uint32_t triangle;
+    Vec2 barycentric;
   };
 
   Mesh(MeshData data, const MeshOptions& options);
   const MeshAttribute* findAttribute(const std::string& name) const;
+  Draw drawOverArea(const Vec2& u) const;  // of a mesh that has any
   void findTangents(SurfacePoint& at, const Triangle& corners) const;
 
   std::vector<Vertex> m_vertices;

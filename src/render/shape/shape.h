@@ -14,7 +14,7 @@ struct RTCDeviceTy;
 namespace odis::render {
 
 struct ShapeSample {
-  SurfacePoint at;  // p, ng, shading, uv, shape and primitive are set
+  SurfacePoint at;  // p, ng, shading.n, uv, shape, primitive and barycentric are set
   Vec3 wi;          // unit, from the reference point to at.p
   float distance = 0;
   float pdf = 0;  // solid angle at the reference point; 0 if nothing could be sampled
