@@ -18,7 +18,9 @@ class Diffuse final : public Bsdf {
 
   BsdfSample sample(const SurfacePoint& at, const Vec3& wo, float, const Vec2& u) const override {
     const Vec3 wi = squareToCosineHemisphere(u);
-    return finishSample(wi, evaluate(at, wo, wi), Lobe::smooth);
+    const float pdf = cosineHemispherePdf(wi.z);
+    if (!(wo.z > 0) || !(pdf > 0)) return {};
+    return {wi, m_reflectance(at), pdf, pdf, 1, Lobe::smooth};
   }
 
   BsdfValue evaluate(const SurfacePoint& at, const Vec3& wo, const Vec3& wi) const override {

@@ -9,6 +9,18 @@
 
 namespace odis::render {
 
+Rgb RgbParameter::lookUp(const SurfacePoint& at) const {
+  if (at.texture != m_texture.get()) {
+    at.texture = m_texture.get();
+    at.textureValue = m_texture->rgbAt(at);
+  }
+  return m_clamped ? clampUnit(at.textureValue) : at.textureValue;
+}
+
+float ScalarParameter::lookUp(const SurfacePoint& at) const {
+  return clamped(m_texture->scalarAt(at));
+}
+
 RgbParameter readReflectance(const Properties& properties, Builder& builder, const std::string& name,
                              float fallback) {
   const RgbParameter result(

@@ -25,18 +25,13 @@ class RgbParameter {
     if (m_texture && clamped) m_mean = clampUnit(m_mean);
   }
 
-  Rgb operator()(const SurfacePoint& at) const {
-    if (!m_texture) return m_mean;
-    if (at.texture != m_texture.get()) {
-      at.texture = m_texture.get();
-      at.textureValue = m_texture->rgbAt(at);
-    }
-    return m_clamped ? clampUnit(at.textureValue) : at.textureValue;
-  }
+  Rgb operator()(const SurfacePoint& at) const { return m_texture ? lookUp(at) : m_mean; }
   const Rgb& mean() const { return m_mean; }
   bool isConstant() const { return !m_texture; }
 
  private:
+  Rgb lookUp(const SurfacePoint& at) const;
+
   TexturePtr m_texture;
   Rgb m_mean;
   bool m_clamped = false;  // to [0, 1]
@@ -54,15 +49,14 @@ class ScalarParameter {
     m_mean = clamped(mean.x == mean.y && mean.y == mean.z ? mean.x : luminance(mean));
   }
 
-  float operator()(const SurfacePoint& at) const {
-    return m_texture ? clamped(m_texture->scalarAt(at)) : m_mean;
-  }
+  float operator()(const SurfacePoint& at) const { return m_texture ? lookUp(at) : m_mean; }
   float mean() const { return m_mean; }
   bool isConstant() const { return !m_texture; }
   bool isZero() const { return !m_texture && m_mean == 0; }
 
  private:
   float clamped(float x) const { return std::min(std::max(m_least, x), m_most); }
+  float lookUp(const SurfacePoint& at) const;
 
   TexturePtr m_texture;
   float m_mean, m_least = 0, m_most = 0;

@@ -9,8 +9,8 @@ namespace {
 
 // Traces the paths' rays and turns what they hit into vertices.
 void findVertices(const PathSettings& settings, std::span<const Path> paths, Batch& batch) {
-  batch.rays.clear();
-  for (const uint32_t index : batch.active) batch.rays.push_back(paths[index].ray);
+  batch.rays.resize(batch.active.size());
+  for (size_t i = 0; i < batch.rays.size(); ++i) batch.rays[i] = paths[batch.active[i]].ray;
   batch.hits.resize(batch.rays.size());
   settings.scene->intersect(batch.rays, batch.hits);
   batch.vertices.resize(batch.hits.size());

@@ -1,6 +1,7 @@
 #include "render/scene/intersector.h"
 
 #include <fmt/format.h>
+#include <xmmintrin.h>
 
 #include <map>
 #include <new>
@@ -41,19 +42,28 @@ constexpr size_t kPacket = 16;
 // Puts the first rays into a packet and says how many they are. Places that are left over repeat the last
 // ray: some builds of Embree look at them though they are not valid.
 size_t fillPacket(RTCRay16& packet, int* valid, std::span<const Ray> rays) {
+  static_assert(sizeof(Ray) == 8 * sizeof(float));  // two rows of four numbers
   const size_t count = std::min(rays.size(), kPacket);
-  for (size_t i = 0; i < kPacket; ++i) valid[i] = i < count ? -1 : 0;
+  for (size_t first = 0; first < kPacket; first += 4) {
+    const auto load = [&](size_t i, size_t row) {
+      return _mm_loadu_ps(&rays[std::min(first + i, count - 1)].origin.x + 4 * row);
+    };
+    __m128 x = load(0, 0), y = load(1, 0), z = load(2, 0), dx = load(3, 0);
+    _MM_TRANSPOSE4_PS(x, y, z, dx);
+    _mm_store_ps(packet.org_x + first, x);
+    _mm_store_ps(packet.org_y + first, y);
+    _mm_store_ps(packet.org_z + first, z);
+    _mm_store_ps(packet.dir_x + first, dx);
+    __m128 dy = load(0, 1), dz = load(1, 1), tMax = load(2, 1), time = load(3, 1);
+    _MM_TRANSPOSE4_PS(dy, dz, tMax, time);
+    _mm_store_ps(packet.dir_y + first, dy);
+    _mm_store_ps(packet.dir_z + first, dz);
+    _mm_store_ps(packet.tfar + first, tMax);
+    _mm_store_ps(packet.time + first, time);
+  }
   for (size_t i = 0; i < kPacket; ++i) {
-    const Ray& ray = rays[std::min(i, count - 1)];
-    packet.org_x[i] = ray.origin.x;
-    packet.org_y[i] = ray.origin.y;
-    packet.org_z[i] = ray.origin.z;
-    packet.dir_x[i] = ray.direction.x;
-    packet.dir_y[i] = ray.direction.y;
-    packet.dir_z[i] = ray.direction.z;
+    valid[i] = i < count ? -1 : 0;
     packet.tnear[i] = 0;
-    packet.time[i] = ray.time;
-    packet.tfar[i] = ray.tMax;
     packet.mask[i] = ~0u;
     packet.flags[i] = 0;
   }
