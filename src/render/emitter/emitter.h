@@ -70,6 +70,14 @@ class EnvironmentEmitter : public Emitter {
   virtual Rgb radiance(const Vec3& wi) const = 0;
   // Solid-angle density with which sample(0, ref) gives wi.
   virtual float pdf(const Vec3& ref, const Vec3& wi) const = 0;
+  // Both, for those that find them together in less time.
+  struct RadianceAndPdf {
+    Rgb radiance;
+    float pdf;
+  };
+  virtual RadianceAndPdf radianceAndPdf(const Vec3& ref, const Vec3& wi) const {
+    return {radiance(wi), pdf(ref, wi)};
+  }
 };
 
 using EmitterPtr = std::shared_ptr<Emitter>;

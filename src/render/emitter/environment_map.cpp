@@ -34,20 +34,6 @@ constexpr float kFloor = 1e-3f;
 // If no more than this share of the light exceeds the mean, the map is taken for constant.
 constexpr double kConstant = 0.01;
 
-// (u, v) of a direction in the image's space, and the sine of its angle to the pole.
-struct Spherical {
-  Vec2 uv;
-  float sinTheta;
-};
-
-Spherical toSpherical(const Vec3& d) {
-  const float sinTheta = std::sqrt(d.x * d.x + d.z * d.z);
-  float u = std::atan2(d.x, -d.z) * (0.5f * kInvPi);
-  u -= std::floor(u);
-  // The arc tangent keeps its precision at the poles, where the arc cosine of d.y has lost it.
-  return {{u, std::atan2(sinTheta, d.y) * kInvPi}, sinTheta};
-}
-
 void liftToFloor(std::span<float> weights) {
   double sum = 0;
   for (float w : weights) sum += w;
@@ -116,6 +102,17 @@ std::vector<float> EnvironmentMap::patchWeights() {
   return weights;
 }
 
+EnvironmentMap::Place EnvironmentMap::placeOf(const Vec3& wi) const {
+  const Vec3 local = transformVector(m_toLocal, wi);
+  const float stretch = length(local);
+  const Vec3 d = local * (1 / stretch);
+  const float sinTheta = std::sqrt(d.x * d.x + d.z * d.z);
+  float u = std::atan2(d.x, -d.z) * (0.5f * kInvPi);
+  u -= std::floor(u);
+  // The arc tangent keeps its precision at the poles, where the arc cosine of d.y has lost it.
+  return {{u, std::atan2(sinTheta, d.y) * kInvPi}, sinTheta, stretch};
+}
+
 Rgb EnvironmentMap::lookUp(const Vec2& uv) const {
   if (uv.y > m_horizon) return {0, 0, 0};
   const float s = uv.x * float(m_width) - 0.5f, t = uv.y * float(m_height - 1);
@@ -127,7 +124,7 @@ Rgb EnvironmentMap::lookUp(const Vec2& uv) const {
 }
 
 Rgb EnvironmentMap::radiance(const Vec3& wi) const {
-  return lookUp(toSpherical(normalize(transformVector(m_toLocal, wi))).uv);
+  return lookUp(placeOf(wi).uv);
 }
 
 EmitterSample EnvironmentMap::sample(uint32_t, const Vec3&, const Vec2& u) const {
@@ -154,16 +151,22 @@ Vec2 EnvironmentMap::inTable(const Vec2& uv) const {
 }
 
 Vec2 EnvironmentMap::invert(const Vec3& wi) const {
-  return m_table.invert(inTable(toSpherical(normalize(transformVector(m_toLocal, wi))).uv));
+  return m_table.invert(inTable(placeOf(wi).uv));
+}
+
+float EnvironmentMap::pdfAt(const Place& place) const {
+  if (!(place.sinTheta > 0)) return 0;
+  return m_table.pdf(inTable(place.uv)) / (2 * kPi * kPi * place.sinTheta) /
+         (place.stretch * place.stretch * place.stretch * m_determinant);
 }
 
 float EnvironmentMap::pdf(const Vec3&, const Vec3& wi) const {
-  const Vec3 local = transformVector(m_toLocal, wi);
-  const float inverseScale = length(local);
-  const Spherical at = toSpherical(local / inverseScale);
-  if (!(at.sinTheta > 0)) return 0;
-  return m_table.pdf(inTable(at.uv)) / (2 * kPi * kPi * at.sinTheta) /
-         (inverseScale * inverseScale * inverseScale * m_determinant);
+  return pdfAt(placeOf(wi));
+}
+
+EnvironmentEmitter::RadianceAndPdf EnvironmentMap::radianceAndPdf(const Vec3&, const Vec3& wi) const {
+  const Place place = placeOf(wi);
+  return {lookUp(place.uv), pdfAt(place)};
 }
 
 std::vector<EmitterPtr> makeEnvironmentMap(const Properties& node, Builder& builder) {

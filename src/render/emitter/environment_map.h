@@ -19,15 +19,24 @@ class EnvironmentMap final : public EnvironmentEmitter {
   float meanIrradiance() const override { return average(m_integral) / 4; }
   Rgb radiance(const Vec3& wi) const override;
   float pdf(const Vec3& ref, const Vec3& wi) const override;
+  RadianceAndPdf radianceAndPdf(const Vec3& ref, const Vec3& wi) const override;
   bool invertible() const override { return true; }
   Vec2 invert(const Vec3& wi) const override;
   uint64_t bytes() const { return m_pixels.size() * sizeof(Rgb) + m_table.bytes(); }
 
  private:
   const Rgb& pixel(int x, int y) const { return m_pixels[size_t(y) * size_t(m_width) + size_t(x)]; }
-  // Where the table has a direction of the image's space.
+  // A direction of the world as the image has it.
+  struct Place {
+    Vec2 uv;
+    float sinTheta;  // of its angle to the pole
+    float stretch;   // the length that it has in the image's space
+  };
+  Place placeOf(const Vec3& wi) const;
+  // Where the table has a place of the image.
   Vec2 inTable(const Vec2& uv) const;
   Rgb lookUp(const Vec2& uv) const;
+  float pdfAt(const Place& place) const;
   std::vector<float> patchWeights();
 
   int m_width, m_height;

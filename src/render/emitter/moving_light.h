@@ -19,12 +19,14 @@ inline EmitterSample sampleLightAt(float time, const Emitter& emitter, uint32_t 
 inline float pdfAt(const SurfaceEmitter& emitter, const Vec3& ref, const SurfacePoint& at) {
   return emitter.motion() ? pdfOfMoving(emitter, ref, at) : emitter.pdf(ref, at);
 }
-// EnvironmentEmitter::radiance() and pdf() at a time.
+// EnvironmentEmitter::radiance() and radianceAndPdf() at a time.
 inline Rgb radianceAt(float time, const EnvironmentEmitter& emitter, const Vec3& wi) {
   return emitter.motion() ? radianceOfMoving(time, emitter, wi) : emitter.radiance(wi);
 }
-inline float pdfAt(float time, const EnvironmentEmitter& emitter, const Vec3& ref, const Vec3& wi) {
-  return emitter.motion() ? pdfOfMoving(time, emitter, ref, wi) : emitter.pdf(ref, wi);
+inline EnvironmentEmitter::RadianceAndPdf radianceAndPdfAt(float time, const EnvironmentEmitter& emitter,
+                                                           const Vec3& ref, const Vec3& wi) {
+  if (!emitter.motion()) return emitter.radianceAndPdf(ref, wi);
+  return {radianceOfMoving(time, emitter, wi), pdfOfMoving(time, emitter, ref, wi)};
 }
 
 // Bounds of a part of an emitter at all times that the shutter is open.

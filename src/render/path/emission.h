@@ -20,9 +20,12 @@ template <class Use>
 void forEachEmission(const Scene& scene, const Ray& ray, const SurfacePoint* at, const LightReference* from,
                      const Use& use) {
   if (!at) {
-    for (const EnvironmentEmitter* e : scene.environments())
-      use(Emission{radianceAt(ray.time, *e, ray.direction), *e, 0,
-                   from ? pdfAt(ray.time, *e, from->p, ray.direction) : 0});
+    for (const EnvironmentEmitter* e : scene.environments()) {
+      const auto [radiance, pdf] =
+          from ? radianceAndPdfAt(ray.time, *e, from->p, ray.direction)
+               : EnvironmentEmitter::RadianceAndPdf{radianceAt(ray.time, *e, ray.direction), 0};
+      use(Emission{radiance, *e, 0, pdf});
+    }
   } else if (const SurfaceEmitter* e = at->shape->emitter()) {
     use(Emission{e->radiance(*at, -ray.direction), *e, e->part(*at), from ? pdfAt(*e, from->p, *at) : 0});
   }
