@@ -186,6 +186,7 @@ RayCounts runPass(const Pass& pass, Progress& progress, const std::function<bool
         for (uint32_t tile = range.begin(); tile < range.end(); ++tile) {
           if (stop()) return;
           thread_local TileResult result;
+          result.paths.clear();
           result.samples.clear();
           result.vertices.clear();
           result.counts = {};

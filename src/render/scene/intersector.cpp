@@ -46,7 +46,8 @@ size_t fillPacket(RTCRay16& packet, int* valid, std::span<const Ray> rays) {
   const size_t count = std::min(rays.size(), kPacket);
   for (size_t first = 0; first < kPacket; first += 4) {
     const auto load = [&](size_t i, size_t row) {
-      return _mm_loadu_ps(&rays[std::min(first + i, count - 1)].origin.x + 4 * row);
+      const Ray& ray = rays[std::min(first + i, count - 1)];
+      return _mm_loadu_ps(reinterpret_cast<const float*>(&ray) + 4 * row);
     };
     __m128 x = load(0, 0), y = load(1, 0), z = load(2, 0), dx = load(3, 0);
     _MM_TRANSPOSE4_PS(x, y, z, dx);
