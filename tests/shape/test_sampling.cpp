@@ -68,6 +68,23 @@ TEST(ShapeSampling, SphereFromItself) {
   }
   EXPECT_NEAR(sum / 10000, 8, 0.2);
 }
+TEST(ShapeSampling, SphereKnowsTheUvOfItsSamples) {
+  const std::array<Vec3d, 3> turned = {Vec3d(0, 0, 1), Vec3d(1, 0, 0), Vec3d(0, 1, 0)};
+  for (const bool flipped : {false, true}) {
+    const auto sphere = std::make_shared<Sphere>(Vec3d(1, 2, 3), 2.0, turned, flipped);
+    const auto scene = sceneOf({sphere});
+    Random random(13);
+    for (int i = 0; i < 1000; ++i) {
+      const Vec3 ref(4, -1, 2);
+      const ShapeSample sample = sphere->sample(ref, random.pair());
+      SurfacePoint met;
+      if (!scene->intersect({ref, sample.wi}, met) || absDot(met.ng, sample.wi) < 0.2f) continue;
+      const Vec2 difference = sphere->uvOf(sample.at) - met.uv;
+      EXPECT_NEAR(difference.x - std::round(difference.x), 0, 1e-4);  // u wraps around
+      EXPECT_NEAR(difference.y, 0, 1e-4);
+    }
+  }
+}
 TEST(ShapeSampling, Rectangle) {
   expectMatch(meshOf(rectangleMesh()), {0.5f, -0.2f, 0.7f});
 }

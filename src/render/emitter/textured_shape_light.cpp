@@ -31,6 +31,7 @@ EmitterSample TexturedShapeLight::sample(uint32_t, const Vec3& ref, const Vec2& 
   ShapeSample point;
   if (u.x < 0.5f) {
     point = shape().sample(ref, {2 * u.x, u.y});
+    point.at.uv = shape().uvOf(point.at);
   } else {
     point.at = shape().pointAtUv(m_table.sample({2 * u.x - 1, u.y}).x);
     const Vec3 d = point.at.p - ref;

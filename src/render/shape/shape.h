@@ -14,7 +14,7 @@ struct RTCDeviceTy;
 namespace odis::render {
 
 struct ShapeSample {
-  SurfacePoint at;  // p, ng, shading.n, uv, shape, primitive and barycentric are set
+  SurfacePoint at;  // p, ng, shading.n, shape, primitive, barycentric, and uv unless Shape::uvOf() finds them
   Vec3 wi;          // unit, from the reference point to at.p
   float distance = 0;
   float pdf = 0;  // solid angle at the reference point; 0 if nothing could be sampled
@@ -65,6 +65,8 @@ class Shape {
   // Samples a point as seen from `ref`, by solid angle where the shape knows how (spheres by their cone),
   // else by area.
   virtual ShapeSample sample(const Vec3& ref, const Vec2& u) const = 0;
+  // The texture coordinates of what sample() gave: some shapes leave them to those that ask.
+  virtual Vec2 uvOf(const SurfacePoint& sampled) const { return sampled.uv; }
   // Density with respect to solid angle with which sample(ref, .) gives the direction to `at`.
   virtual float pdf(const Vec3& ref, const SurfacePoint& at) const = 0;
   virtual uint64_t primitiveCount() const { return 1; }

@@ -39,21 +39,38 @@ bool Sphere::hit(const PreciseRay& ray, double& t) const {
   return ray.contains(t);
 }
 
-SurfacePoint Sphere::pointToward(const Vec3d& unit) const {
-  const Vec3d local(unit.dot(m_axes[0]), unit.dot(m_axes[1]), unit.dot(m_axes[2]));
+Vec3d Sphere::toLocal(const Vec3d& unit) const {
+  return {unit.dot(m_axes[0]), unit.dot(m_axes[1]), unit.dot(m_axes[2])};
+}
+
+Vec2 Sphere::uvToward(const Vec3d& local) {
   const double rho = std::sqrt(local.x * local.x + local.y * local.y);
   float phi = std::atan2(float(local.y), float(local.x));
   if (phi < 0) phi += 2 * kPi;
+  return {phi * (0.5f * kInvPi), std::atan2(float(rho), float(local.z)) * kInvPi};
+}
 
+Vec2 Sphere::uvOf(const SurfacePoint& sampled) const {
+  return uvToward(toLocal(Vec3d(m_flipNormals ? -sampled.ng : sampled.ng)));
+}
+
+SurfacePoint Sphere::placeToward(const Vec3d& unit) const {
   SurfacePoint at;
   at.shape = this;
   at.p = Vec3(m_center + unit * m_radius);
+  at.ng = at.shading.n = Vec3(m_flipNormals ? -unit : unit);
+  return at;
+}
+
+SurfacePoint Sphere::pointToward(const Vec3d& unit) const {
+  SurfacePoint at = placeToward(unit);
   at.pError = positionError(
       float(std::max({std::abs(m_center.x), std::abs(m_center.y), std::abs(m_center.z)}) + m_radius));
-  at.uv = {phi * (0.5f * kInvPi), std::atan2(float(rho), float(local.z)) * kInvPi};
-  at.ng = Vec3(m_flipNormals ? -unit : unit);
+  const Vec3d local = toLocal(unit);
+  at.uv = uvToward(local);
   at.shading = CoordinateFrame(at.ng);
   if (!tangents()) return at;
+  const double rho = std::sqrt(local.x * local.x + local.y * local.y);
   const double cosPhi = rho > 0 ? local.x / rho : 1, sinPhi = rho > 0 ? local.y / rho : 0;
   at.dpdu = Vec3((m_axes[1] * local.x - m_axes[0] * local.y) * (2 * M_PI * m_radius));
   at.dpdv = Vec3((m_axes[0] * (local.z * cosPhi) + m_axes[1] * (local.z * sinPhi) - m_axes[2] * rho) *
@@ -88,7 +105,7 @@ ShapeSample Sphere::sample(const Vec3& ref, const Vec2& u) const {
   const double height = coneHeight(ref);
   if (height < 0)
     return uniformAreaSample(
-        ref, [&] { return pointToward(Vec3d(squareToSphere(u))); }, area());
+        ref, [&] { return placeToward(Vec3d(squareToSphere(u))); }, area());
 
   // Draw a direction in the cone, and find where it enters the sphere: the angle at the centre follows from
   // the two sides of the triangle and the angle at the reference point.
@@ -99,13 +116,13 @@ ShapeSample Sphere::sample(const Vec3& ref, const Vec2& u) const {
   const double toSurface =
       distance * cosTheta - std::sqrt(std::max(0.0, m_radius * m_radius - distance * distance * sinSquared));
   const CoordinateFrame frame(Vec3(toCenter / distance));
-  const double phi = 2 * M_PI * u.y, sinTheta = std::sqrt(sinSquared);
-  const Vec3d direction = (Vec3d(frame.s) * std::cos(phi) + Vec3d(frame.t) * std::sin(phi)) * sinTheta +
-                          toCenter * (cosTheta / distance);
+  const float phi = 2 * kPi * u.y;
+  const Vec3d around(frame.s * std::cos(phi) + frame.t * std::sin(phi));
+  const Vec3d direction = around * std::sqrt(sinSquared) + toCenter * (cosTheta / distance);
   const Vec3d fromCenter = direction * toSurface - toCenter;
 
   ShapeSample sample;
-  sample.at = pointToward(fromCenter / std::sqrt(fromCenter.dot(fromCenter)));
+  sample.at = placeToward(fromCenter / std::sqrt(fromCenter.dot(fromCenter)));
   sample.wi = Vec3(direction / std::sqrt(direction.dot(direction)));
   sample.distance = float(toSurface);
   sample.pdf = float(1 / (2 * M_PI * height));

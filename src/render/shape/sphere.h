@@ -19,6 +19,7 @@ class Sphere final : public Shape {
   float area() const override;
   // Uniform in the cone of directions that the sphere subtends; uniform by area as seen from its inside.
   ShapeSample sample(const Vec3& ref, const Vec2& u) const override;
+  Vec2 uvOf(const SurfacePoint& sampled) const override;
   float pdf(const Vec3& ref, const SurfacePoint& at) const override;
   SurfacePoint pointAtUv(const Vec2& uv) const override;
   float areaElement(const Vec2& uv) const override {
@@ -33,7 +34,11 @@ class Sphere final : public Shape {
  private:
   // 1 - cos of half the cone's angle; negative inside the sphere.
   double coneHeight(const Vec3& ref) const;
+  // Coordinates along the axes, and uv from these.
+  Vec3d toLocal(const Vec3d& unit) const;
+  static Vec2 uvToward(const Vec3d& local);
   SurfacePoint pointToward(const Vec3d& unit) const;  // at center + radius * unit
+  SurfacePoint placeToward(const Vec3d& unit) const;  // as much of it as ShapeSample has
 
   Vec3d m_center;
   double m_radius;
