@@ -224,9 +224,9 @@ SurfacePoint Mesh::pointOverArea(const Vec2& u) const {
 
 ShapeSample Mesh::sample(const Vec3& ref, const Vec2& u) const {
   if (!(m_area > 0)) return {};
-  const auto [triangle, barycentric] = drawOverArea(u);
+  const Draw draw = drawOverArea(u);
   return uniformAreaSample(
-      ref, [&] { return placeOn(triangle, barycentric); }, m_area);
+      ref, [&] { return placeOn(draw.triangle, draw.barycentric); }, m_area);
 }
 
 float Mesh::pdf(const Vec3& ref, const SurfacePoint& at) const {
