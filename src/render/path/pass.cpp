@@ -9,7 +9,7 @@ namespace odis::render {
 namespace {
 
 constexpr int kTileSize = 16;
-// Paths are traced side by side, at least so many if there are.
+// A tile's paths are traced in batches of at least this size, but for the last one.
 constexpr size_t kLeastPaths = kTileSize * kTileSize;
 
 // Denormal numbers are slow and mean nothing here: flushed to zero (bit 15) and taken as zero (bit 6).

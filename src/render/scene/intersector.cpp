@@ -44,24 +44,21 @@ constexpr size_t kPacket = 16;
 size_t fillPacket(RTCRay16& packet, int* valid, std::span<const Ray> rays) {
   static_assert(sizeof(Ray) == 8 * sizeof(float));  // two rows of four numbers
   const size_t count = std::min(rays.size(), kPacket);
-  for (size_t first = 0; first < kPacket; first += 4) {
-    const auto load = [&](size_t i, size_t row) {
-      const Ray& ray = rays[std::min(first + i, count - 1)];
-      return _mm_loadu_ps(reinterpret_cast<const float*>(&ray) + 4 * row);
-    };
-    __m128 x = load(0, 0), y = load(1, 0), z = load(2, 0), dx = load(3, 0);
-    _MM_TRANSPOSE4_PS(x, y, z, dx);
-    _mm_store_ps(packet.org_x + first, x);
-    _mm_store_ps(packet.org_y + first, y);
-    _mm_store_ps(packet.org_z + first, z);
-    _mm_store_ps(packet.dir_x + first, dx);
-    __m128 dy = load(0, 1), dz = load(1, 1), tMax = load(2, 1), time = load(3, 1);
-    _MM_TRANSPOSE4_PS(dy, dz, tMax, time);
-    _mm_store_ps(packet.dir_y + first, dy);
-    _mm_store_ps(packet.dir_z + first, dz);
-    _mm_store_ps(packet.tfar + first, tMax);
-    _mm_store_ps(packet.time + first, time);
-  }
+  float* const columns[2][4] = {{packet.org_x, packet.org_y, packet.org_z, packet.dir_x},
+                                {packet.dir_y, packet.dir_z, packet.tfar, packet.time}};
+  for (size_t first = 0; first < kPacket; first += 4)
+    for (size_t row = 0; row < 2; ++row) {
+      const auto load = [&](size_t i) {
+        const Ray& ray = rays[std::min(first + i, count - 1)];
+        return _mm_loadu_ps(reinterpret_cast<const float*>(&ray) + 4 * row);
+      };
+      __m128 a = load(0), b = load(1), c = load(2), d = load(3);
+      _MM_TRANSPOSE4_PS(a, b, c, d);
+      _mm_store_ps(columns[row][0] + first, a);
+      _mm_store_ps(columns[row][1] + first, b);
+      _mm_store_ps(columns[row][2] + first, c);
+      _mm_store_ps(columns[row][3] + first, d);
+    }
   for (size_t i = 0; i < kPacket; ++i) {
     valid[i] = i < count ? -1 : 0;
     packet.tnear[i] = 0;
