@@ -25,7 +25,15 @@ constexpr uint64_t kWholePrimitives = 2;
 }  // namespace
 
 AreaLight::AreaLight(const Shape& shape, TexturePtr radiance)
-    : m_shape(shape), m_radiance(std::move(radiance)), m_whole(shape.primitiveCount() <= kWholePrimitives) {}
+    : m_shape(shape), m_radiance(std::move(radiance)), m_whole(shape.primitiveCount() <= kWholePrimitives) {
+  const auto* mesh = dynamic_cast<const Mesh*>(&shape);
+  if (!mesh || !mesh->isFlat() || !m_radiance->isConstant()) return;
+  m_mesh = mesh;
+  m_triangles.reserve(mesh->primitiveCount());
+  for (uint32_t i = 0; i < mesh->primitiveCount(); ++i)
+    m_triangles.push_back({mesh->corners(i), mesh->placeOn(i, {0, 0}).ng,
+                           m_whole ? mesh->area() : mesh->triangleArea(i), m_radiance->mean()});
+}
 
 uint32_t AreaLight::partCount() const {
   return m_whole ? 1 : uint32_t(m_shape.primitiveCount());
@@ -48,6 +56,11 @@ LightBounds AreaLight::bounds(uint32_t part) const {
 
 EmitterSample AreaLight::sample(uint32_t part, const Vec3& ref, const Vec2& u) const {
   return emitterSample(m_whole ? m_shape.sample(ref, u) : m_shape.samplePrimitive(part, ref, u));
+}
+
+const LightTriangle* AreaLight::drawTriangle(uint32_t part, Vec2& u) const {
+  if (!m_mesh) return nullptr;
+  return &m_triangles[m_whole ? m_mesh->drawTriangle(u) : part];
 }
 
 EmitterSample AreaLight::emitterSample(const ShapeSample& point) const {

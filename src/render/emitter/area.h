@@ -1,8 +1,10 @@
 // Light leaving a surface. Manual page in area.cpp.
 #pragma once
 
-#include "render/emitter/emitter.h"
-#include "render/shape/shape.h"
+#include <vector>
+
+#include "render/emitter/light_triangles.h"
+#include "render/shape/mesh.h"
 #include "render/texture/texture.h"
 
 namespace odis::render {
@@ -15,6 +17,7 @@ class AreaLight : public SurfaceEmitter {
   uint32_t partCount() const override;
   LightBounds bounds(uint32_t part) const override;
   EmitterSample sample(uint32_t part, const Vec3& ref, const Vec2& u) const override;
+  const LightTriangle* drawTriangle(uint32_t part, Vec2& u) const override;
   Rgb radiance(const SurfacePoint& at, const Vec3& wo) const override;
   uint32_t part(const SurfacePoint& at) const override { return m_whole ? 0 : at.primitive; }
   float pdf(const Vec3& ref, const SurfacePoint& at) const override;
@@ -27,7 +30,9 @@ class AreaLight : public SurfaceEmitter {
  private:
   const Shape& m_shape;
   TexturePtr m_radiance;
-  bool m_whole;  // one part
+  bool m_whole;                            // one part
+  const Mesh* m_mesh = nullptr;            // the shape, if it is flat triangles that shine evenly:
+  std::vector<LightTriangle> m_triangles;  // these
 };
 
 }  // namespace odis::render

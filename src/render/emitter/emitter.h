@@ -19,6 +19,8 @@ struct EmitterSample {
   bool delta = false;     // point, spot, directional: cannot be hit, so the MIS weight is one
 };
 
+struct LightTriangle;  // see light_triangles.h
+
 class Emitter {
  public:
   virtual ~Emitter() = default;
@@ -30,6 +32,9 @@ class Emitter {
   virtual LightBounds bounds(uint32_t /*part*/) const { return {}; }
   // Samples light arriving at `ref` from one part.
   virtual EmitterSample sample(uint32_t part, const Vec3& ref, const Vec2& u) const = 0;
+  // The triangle that sample() draws from a part and, in `u`, the numbers that draw a point of it. Null for
+  // emitters that are not flat triangles that shine evenly.
+  virtual const LightTriangle* drawTriangle(uint32_t /*part*/, Vec2& /*u*/) const { return nullptr; }
   // What an emitter infinitely far away gives a surface, on average over all ways to face (W/m^2, average
   // over channels), for choosing among lights. Approximate is fine.
   virtual float meanIrradiance() const { return 0; }

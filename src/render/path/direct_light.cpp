@@ -1,4 +1,5 @@
 // Next-event estimation: the choice of a light, its MIS weight, shadow rays.
+#include "render/emitter/light_triangles.h"
 #include "render/emitter/moving_light.h"
 #include "render/path/bounce.h"
 
@@ -6,23 +7,17 @@ namespace odis::render {
 
 namespace {
 
-LightEstimate sampleLight(const PathSettings& settings, const Vertex& vertex, const LightReference& reference,
-                          const VertexNumbers& numbers) {
-  LightEstimate result;
+// Fills in what a sample of a light, chosen with a probability, brings to a vertex; nothing if that is black.
+void estimateLight(const Vertex& vertex, const EmitterSample& light, float probability,
+                   LightEstimate& result) {
+  if (!(light.pdf > 0) || isBlack(light.radiance)) return;
   const SurfacePoint& at = vertex.at;
-  const LightSampler::Choice choice =
-      settings.lights->sample(reference, numbers.lightChoice, numbers.lightPoint);
-  if (!choice.emitter) return result;
-  const EmitterSample light = sampleLightAt(at.time, *choice.emitter, choice.part, at.p, choice.u);
-  if (!(light.pdf > 0) || isBlack(light.radiance)) return result;
-  result.group = choice.group;
   result.wi = light.wi;
   result.distance = light.distance;
   result.bsdf = at.shape->bsdf().evaluate(at, vertex.wo, at.shading.toLocal(light.wi));
-  if (isBlack(result.bsdf.value)) return result;
-  result.radiance = result.bsdf.value * light.radiance / (light.pdf * choice.probability);
-  result.pdf = light.delta ? 0 : light.pdf * choice.probability;
-  return result;
+  if (isBlack(result.bsdf.value)) return;
+  result.radiance = result.bsdf.value * light.radiance / (light.pdf * probability);
+  result.pdf = light.delta ? 0 : light.pdf * probability;
 }
 
 // The weight of next-event estimation against the mixture that directions are sampled from.
@@ -38,18 +33,39 @@ LightReference lightReference(const SurfacePoint& at, const Vec3& wo) {
 }
 
 void sampleLights(const PathSettings& settings, Bounces bounces) {
+  static_assert(kBounceBlock <= kLanes);
+  LightTriangles triangles;
+  // Of each triangle, the bounce that has chosen it, and with which probability.
+  std::array<Bounce*, kBounceBlock> chosenBy;
+  std::array<float, kBounceBlock> probability;
   for (Bounce& bounce : bounces) {
     const Vertex& vertex = *bounce.vertex;
+    bounce.light = {};
     bounce.reference = lightReference(vertex.at, vertex.wo);
     if (settings.learnedLights && bounce.cell != kNoCell)
       bounce.reference.learned = learnedLights(*settings.guide, bounce.cell);
-    if (!vertex.at.shape->bsdf().traits().evaluable) {
-      bounce.light = {};
+    if (!vertex.at.shape->bsdf().traits().evaluable) continue;
+    LightSampler::Choice choice =
+        settings.lights->sample(bounce.reference, bounce.numbers.lightChoice, bounce.numbers.lightPoint);
+    if (!choice.emitter) continue;
+    bounce.light.group = choice.group;
+    const LightTriangle* triangle =
+        choice.emitter->motion() ? nullptr : choice.emitter->drawTriangle(choice.part, choice.u);
+    if (!triangle) {
+      estimateLight(vertex,
+                    sampleLightAt(vertex.at.time, *choice.emitter, choice.part, vertex.at.p, choice.u),
+                    choice.probability, bounce.light);
       continue;
     }
-    bounce.light = sampleLight(settings, vertex, bounce.reference, bounce.numbers);
-    if (bounce.light.pdf > 0) bounce.light.texel = bounce.bsdf.fetchTexel(bounce.light.wi);
+    chosenBy[triangles.size()] = &bounce;
+    probability[triangles.size()] = choice.probability;
+    triangles.add(*triangle, choice.u, vertex.at.p);
   }
+  if (triangles.size() > 0) triangles.find();
+  for (size_t i = 0; i < triangles.size(); ++i)
+    estimateLight(*chosenBy[i]->vertex, triangles[i], probability[i], chosenBy[i]->light);
+  for (Bounce& bounce : bounces)
+    if (bounce.light.pdf > 0) bounce.light.texel = bounce.bsdf.fetchTexel(bounce.light.wi);
 }
 
 void weighLights(Bounces bounces) {

@@ -209,11 +209,31 @@ void Mesh::findTangents(SurfacePoint& at, const Triangle& corners) const {
   at.shading = CoordinateFrame::fromTangent(at.shading.n, at.dpdu);
 }
 
-Mesh::Draw Mesh::drawOverArea(const Vec2& u) const {
+uint32_t Mesh::drawTriangle(Vec2& u) const {
   // The first triangle whose end lies above u: those without area begin where they end, and are never found.
   const auto end = std::upper_bound(m_cdf.begin() + 1, m_cdf.end() - 1, u.x);
-  const float rest = std::min((u.x - end[-1]) / (end[0] - end[-1]), kOneMinusEpsilon);
-  return {uint32_t(end - m_cdf.begin() - 1), squareToTriangle({rest, u.y})};
+  u.x = std::min((u.x - end[-1]) / (end[0] - end[-1]), kOneMinusEpsilon);
+  return uint32_t(end - m_cdf.begin() - 1);
+}
+
+Mesh::Draw Mesh::drawOverArea(Vec2 u) const {
+  const uint32_t triangle = drawTriangle(u);
+  return {triangle, squareToTriangle(u)};
+}
+
+std::array<Vec3, 3> Mesh::corners(uint32_t triangle) const {
+  const auto& [c0, c1, c2] = m_faces[triangle].corners;
+  return {m_vertices[c0].position, m_vertices[c1].position, m_vertices[c2].position};
+}
+
+bool Mesh::isFlat() const {
+  constexpr float kRounding = 1e-6f;  // radians
+  const auto isFlat = [&](const Face& face) {
+    const Vec3& first = m_vertices[face.corners[0]].normal;
+    return m_vertices[face.corners[1]].normal == first && m_vertices[face.corners[2]].normal == first &&
+           lengthSquared(cross(first, face.normal)) < sqr(kRounding);
+  };
+  return !m_hasNormals || std::all_of(m_faces.begin(), m_faces.end(), isFlat);
 }
 
 SurfacePoint Mesh::pointOverArea(const Vec2& u) const {

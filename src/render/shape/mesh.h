@@ -62,6 +62,11 @@ class Mesh final : public Shape {
   bool hasAttribute(const std::string& name) const override { return findAttribute(name) != nullptr; }
   uint64_t bytes() const override;
 
+  // Draws a triangle by area, of a mesh that has any; u.x is stretched to [0, 1) again.
+  uint32_t drawTriangle(Vec2& u) const;
+  std::array<Vec3, 3> corners(uint32_t triangle) const;
+  // Whether all over each triangle the shading normal is the geometric one, but for rounding.
+  bool isFlat() const;
   float triangleArea(uint32_t triangle) const { return m_faces[triangle].area; }
   // The point with barycentric coordinates (b1, b2) on a triangle, in the space of the mesh. dpdu
   // and dpdv stay zero, and the shading frame is any about its normal, if the BSDF does not ask for more.
@@ -90,7 +95,7 @@ class Mesh final : public Shape {
 
   Mesh(MeshData data, const MeshOptions& options);
   const MeshAttribute* findAttribute(const std::string& name) const;
-  Draw drawOverArea(const Vec2& u) const;  // of a mesh that has any
+  Draw drawOverArea(Vec2 u) const;  // as drawTriangle()
   void findTangents(SurfacePoint& at, const Triangle& corners) const;
 
   std::vector<Vertex> m_vertices;

@@ -1,0 +1,49 @@
+// Numbers of several paths side by side. Loops over lanes that call short functions without branches become
+// vector instructions where they are compiled for them (ODIS_WIDE).
+#pragma once
+
+#include <xmmintrin.h>
+
+#include <cstddef>
+
+#include "render/math/vec.h"
+
+namespace odis::render {
+
+// For so many paths.
+inline constexpr size_t kLanes = 16;
+
+// A number of each. Not a std::array, whose elements GCC 12 does not turn into vectors.
+struct alignas(64) Column {
+  float of[kLanes];
+
+  float& operator[](size_t lane) { return of[lane]; }
+  float operator[](size_t lane) const { return of[lane]; }
+};
+
+// A vector of each.
+struct Columns3 {
+  Column x, y, z;
+
+  Vec3 operator[](size_t lane) const { return {x[lane], y[lane], z[lane]}; }
+  void set(size_t lane, const Vec3& v) {
+    x[lane] = v.x;
+    y[lane] = v.y;
+    z[lane] = v.z;
+  }
+};
+
+// Four numbers that lie side by side, of each of the lanes `first` to `first` + 3, go to four columns, which
+// are aligned to 16 bytes. row(lane) says where a lane has its four.
+template <class Row>
+void toColumns(size_t first, const Row& row, float* a, float* b, float* c, float* d) {
+  __m128 r0 = _mm_loadu_ps(row(first)), r1 = _mm_loadu_ps(row(first + 1)), r2 = _mm_loadu_ps(row(first + 2)),
+         r3 = _mm_loadu_ps(row(first + 3));
+  _MM_TRANSPOSE4_PS(r0, r1, r2, r3);
+  _mm_store_ps(a + first, r0);
+  _mm_store_ps(b + first, r1);
+  _mm_store_ps(c + first, r2);
+  _mm_store_ps(d + first, r3);
+}
+
+}  // namespace odis::render
