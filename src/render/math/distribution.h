@@ -34,6 +34,32 @@ inline uint32_t findCell(std::span<const float> cdf, float u) {
   return uint32_t(std::upper_bound(cdf.begin(), cdf.end(), u) - cdf.begin()) - 1;
 }
 
+// Where to look for a cell of a table: its entries for as many u, evenly spread, as there are pieces. Long
+// tables are searched from memory that each step of a binary search would wait for (the cutpoint method of
+// Chen and Asau 1974, "On Generating Random Variates from an Empirical Distribution").
+inline constexpr uint32_t kCellsPerPiece = 8;
+inline uint32_t pieceCount(size_t cells) {
+  return uint32_t(cells + kCellsPerPiece - 1) / kCellsPerPiece;
+}
+// Fills `first` (one entry more than pieces).
+inline void buildPieces(std::span<const float> cdf, std::span<uint32_t> first) {
+  const uint32_t pieces = uint32_t(first.size()) - 1;
+  for (uint32_t piece = 0; piece < pieces; ++piece)
+    first[piece] = findCell(cdf, float(piece) / float(pieces));
+  first[pieces] = uint32_t(cdf.size()) - 2;
+}
+// findCell() by these.
+inline uint32_t findCell(std::span<const float> cdf, std::span<const uint32_t> first, float u) {
+  u = std::min(std::max(u, 0.0f), kOneMinusEpsilon);
+  const uint32_t pieces = uint32_t(first.size()) - 1;
+  // Rounding may take u to the piece beside its own.
+  const uint32_t piece = std::min(uint32_t(u * float(pieces)), pieces - 1);
+  uint32_t begin = first[piece], end = first[piece + 1];
+  while (cdf[begin] > u) --begin;
+  while (cdf[end + 1] <= u) ++end;
+  return uint32_t(std::upper_bound(cdf.begin() + begin, cdf.begin() + end + 1, u) - cdf.begin()) - 1;
+}
+
 inline float cellPdf(std::span<const float> cdf, uint32_t cell) {
   return (cdf[cell + 1] - cdf[cell]) * float(cdf.size() - 1);
 }
@@ -62,10 +88,12 @@ class PiecewiseConstant1D {
 
   // At least one weight.
   explicit PiecewiseConstant1D(std::span<const float> weights)
-      : m_cdf(weights.size() + 1), m_sum(buildCdf(weights, m_cdf)) {}
+      : m_cdf(weights.size() + 1), m_sum(buildCdf(weights, m_cdf)), m_first(pieceCount(weights.size()) + 1) {
+    buildPieces(m_cdf, m_first);
+  }
 
   Sample sample(float u) const {
-    const uint32_t cell = findCell(m_cdf, u);
+    const uint32_t cell = findCell(m_cdf, m_first, u);
     return {invertCell(m_cdf, cell, u), cellPdf(m_cdf, cell), cell};
   }
   float pdf(float x) const {
@@ -76,11 +104,12 @@ class PiecewiseConstant1D {
   // The number that sample() takes to x in [0, 1), but for rounding.
   float invert(float x) const { return unsampleCell(m_cdf, cellAt(x, size()), x); }
   double sum() const { return m_sum; }  // of the weights; 0 if the uniform distribution stands in
-  uint64_t bytes() const { return m_cdf.size() * sizeof(float); }
+  uint64_t bytes() const { return m_cdf.size() * sizeof(float) + m_first.size() * sizeof(uint32_t); }
 
  private:
   std::vector<float> m_cdf;
   double m_sum;
+  std::vector<uint32_t> m_first;
 };
 
 class PiecewiseConstant2D {
@@ -92,12 +121,16 @@ class PiecewiseConstant2D {
 
   // width * height weights, row after row; x runs along a row, y across rows. At least one cell.
   PiecewiseConstant2D(std::span<const float> weights, uint32_t width, uint32_t height)
-      : m_width(width), m_rows(size_t(width + 1) * height), m_marginal(rowSums(weights)) {}
+      : m_width(width),
+        m_pieces(pieceCount(width)),
+        m_rows(size_t(width + 1) * height),
+        m_first(size_t(m_pieces + 1) * height),
+        m_marginal(rowSums(weights)) {}
 
   Sample sample(const Vec2& u) const {
     const PiecewiseConstant1D::Sample y = m_marginal.sample(u.y);
     const std::span<const float> cdf = row(y.cell);
-    const uint32_t cell = findCell(cdf, u.x);
+    const uint32_t cell = findCell(cdf, first(y.cell), u.x);
     return {{invertCell(cdf, cell, u.x), y.x}, cellPdf(cdf, cell) * y.pdf};
   }
   float pdf(const Vec2& x) const {
@@ -111,25 +144,32 @@ class PiecewiseConstant2D {
     return {unsampleCell(cdf, cellAt(x.x, m_width), x.x), m_marginal.invert(x.y)};
   }
   double sum() const { return m_marginal.sum(); }
-  uint64_t bytes() const { return m_rows.size() * sizeof(float) + m_marginal.bytes(); }
+  uint64_t bytes() const {
+    return m_rows.size() * sizeof(float) + m_first.size() * sizeof(uint32_t) + m_marginal.bytes();
+  }
 
  private:
   std::span<const float> row(uint32_t y) const {
     return {m_rows.data() + size_t(y) * (m_width + 1), size_t(m_width) + 1};
   }
-  // Fills the table of every row on the way.
+  std::span<const uint32_t> first(uint32_t y) const {
+    return {m_first.data() + size_t(y) * (m_pieces + 1), size_t(m_pieces) + 1};
+  }
+  // Fills the tables of every row on the way.
   PiecewiseConstant1D rowSums(std::span<const float> weights) {
     const size_t height = m_rows.size() / (m_width + 1);
     std::vector<float> sums(height);
     for (size_t y = 0; y < height; ++y) {
       const std::span<float> cdf(m_rows.data() + y * (m_width + 1), size_t(m_width) + 1);
       sums[y] = float(buildCdf(weights.subspan(y * m_width, m_width), cdf));
+      buildPieces(cdf, {m_first.data() + y * (m_pieces + 1), size_t(m_pieces) + 1});
     }
     return PiecewiseConstant1D(sums);
   }
 
-  uint32_t m_width;
-  std::vector<float> m_rows;  // height tables of width + 1 entries
+  uint32_t m_width, m_pieces;
+  std::vector<float> m_rows;      // height tables of width + 1 entries
+  std::vector<uint32_t> m_first;  // and of m_pieces + 1 entries
   PiecewiseConstant1D m_marginal;
 };
 
