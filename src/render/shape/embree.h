@@ -19,23 +19,23 @@ inline void embreeIntersect(RTCScene scene, RTCRayHit& rayHit) {
 #endif
 }
 
-inline void embreeIntersect(RTCScene scene, const int* valid, RTCRayHit16& rayHits) {
+inline void embreeIntersect(RTCScene scene, const int* valid, RTCRayHit8& rayHits) {
 #if ODIS_EMBREE_MAJOR >= 4
-  rtcIntersect16(valid, scene, &rayHits);
+  rtcIntersect8(valid, scene, &rayHits);
 #else
   RTCIntersectContext context;
   rtcInitIntersectContext(&context);
-  rtcIntersect16(valid, scene, &context, &rayHits);
+  rtcIntersect8(valid, scene, &context, &rayHits);
 #endif
 }
 
-inline void embreeOccluded(RTCScene scene, const int* valid, RTCRay16& rays) {
+inline void embreeOccluded(RTCScene scene, const int* valid, RTCRay8& rays) {
 #if ODIS_EMBREE_MAJOR >= 4
-  rtcOccluded16(valid, scene, &rays);
+  rtcOccluded8(valid, scene, &rays);
 #else
   RTCIntersectContext context;
   rtcInitIntersectContext(&context);
-  rtcOccluded16(valid, scene, &context, &rays);
+  rtcOccluded8(valid, scene, &context, &rays);
 #endif
 }
 
