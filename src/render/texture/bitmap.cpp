@@ -48,6 +48,12 @@ int wrap(int i, int n, WrapMode mode) {
   return kZero;
 }
 
+// floor() as an int, of what fits one.
+int floorOf(float x) {
+  const int i = int(x);
+  return i - int(float(i) > x);
+}
+
 // Texel coordinates that fit an int; NaN and the absurd become the origin.
 float tame(float x) {
   return std::abs(x) < 1e9f ? x : 0.0f;
@@ -94,14 +100,13 @@ BitmapTexture::Patch BitmapTexture::patch(const Vec2& uv) const {
   const int width = m_image->width(), height = m_image->height();
   const Vec2 st = m_options.toUv.apply(uv);
   const float x = tame(st.x * float(width) - 0.5f), y = tame(st.y * float(height) - 0.5f);
-  const float floorX = std::floor(x), floorY = std::floor(y);
-  const int x0 = int(floorX), y0 = int(floorY);
+  const int x0 = floorOf(x), y0 = floorOf(y);
   return {wrap(x0, width, m_options.wrapU),
           wrap(x0 + 1, width, m_options.wrapU),
           wrap(y0, height, m_options.wrapV),
           wrap(y0 + 1, height, m_options.wrapV),
-          x - floorX,
-          y - floorY};
+          x - float(x0),
+          y - float(y0)};
 }
 
 template <class T, class Fetch>
@@ -115,7 +120,7 @@ T BitmapTexture::interpolate(const Vec2& uv, Fetch&& fetch) const {
   if (m_options.nearest) {
     const int width = m_image->width(), height = m_image->height();
     const Vec2 st = m_options.toUv.apply(uv);
-    const int x = int(std::floor(tame(st.x * float(width)))), y = int(std::floor(tame(st.y * float(height))));
+    const int x = floorOf(tame(st.x * float(width))), y = floorOf(tame(st.y * float(height)));
     return texel<T>(wrap(x, width, m_options.wrapU), wrap(y, height, m_options.wrapV), fetch);
   }
   const Patch p = patch(uv);
