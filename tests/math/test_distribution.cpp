@@ -55,8 +55,8 @@ TEST(PiecewiseConstant1D, SamplesFollowTheWeights) {
   EXPECT_EQ(d.bytes(), 9 * sizeof(float) + 2 * sizeof(uint32_t));
 }
 
-// Long tables are searched by pieces: that finds the cells that a search of the whole table does.
-TEST(PiecewiseConstant1D, PiecesFindTheSameCells) {
+// Long tables are searched by an index: that finds the cells that a search of the whole table does.
+TEST(PiecewiseConstant1D, AnIndexFindsTheSameCells) {
   std::mt19937 engine(3);
   std::uniform_real_distribution<float> uniform(0, 1);
   for (const size_t size : {1, 2, 7, 8, 9, 100, 1000, 5000}) {
@@ -65,16 +65,16 @@ TEST(PiecewiseConstant1D, PiecesFindTheSameCells) {
     for (float& w : weights) w = uniform(engine) < 0.5f ? 0.0f : uniform(engine);
     weights[size / 3] = 1000;
     buildCdf(weights, cdf);
-    std::vector<uint32_t> pieces(pieceCount(size) + 1);
-    buildPieces(cdf, pieces);
+    std::vector<uint32_t> index(pieceCount(size) + 1);
+    buildIndex(cdf, index);
     const auto expectSame = [&](float u) {
-      ASSERT_EQ(findCell(cdf, pieces, u), findCell(cdf, u)) << size << " cells, u = " << u;
+      ASSERT_EQ(findCell(cdf, index, u), findCell(cdf, u)) << size << " cells, u = " << u;
     };
     for (int i = 0; i < 2000; ++i) expectSame(uniform(engine));
     for (const float bound : cdf)
       for (const float u : {std::nextafter(bound, -1.0f), bound, std::nextafter(bound, 2.0f)}) expectSame(u);
-    for (size_t piece = 0; piece < pieces.size(); ++piece) {
-      const float begin = float(piece) / float(pieces.size() - 1);
+    for (size_t piece = 0; piece < index.size(); ++piece) {
+      const float begin = float(piece) / float(index.size() - 1);
       for (const float u : {std::nextafter(begin, -1.0f), begin, std::nextafter(begin, 2.0f)}) expectSame(u);
     }
   }

@@ -34,27 +34,28 @@ inline uint32_t findCell(std::span<const float> cdf, float u) {
   return uint32_t(std::upper_bound(cdf.begin(), cdf.end(), u) - cdf.begin()) - 1;
 }
 
-// Where to look for a cell of a table: its entries for as many u, evenly spread, as there are pieces. Long
-// tables are searched from memory that each step of a binary search would wait for (the cutpoint method of
-// Chen and Asau 1974, "On Generating Random Variates from an Empirical Distribution").
+// An index of a long table: the unit interval is cut into pieces, and for the beginning of each the index
+// says which cell that falls into (the cutpoint method of Chen and Asau 1974, "On Generating Random Variates
+// from an Empirical Distribution"). A binary search of the whole table would wait for memory at most of its
+// steps.
 inline constexpr uint32_t kCellsPerPiece = 8;
 inline uint32_t pieceCount(size_t cells) {
   return uint32_t(cells + kCellsPerPiece - 1) / kCellsPerPiece;
 }
-// Fills `first` (one entry more than pieces).
-inline void buildPieces(std::span<const float> cdf, std::span<uint32_t> first) {
-  const uint32_t pieces = uint32_t(first.size()) - 1;
+// Fills the index, which has one entry more than there are pieces: the last cell.
+inline void buildIndex(std::span<const float> cdf, std::span<uint32_t> index) {
+  const uint32_t pieces = uint32_t(index.size()) - 1;
   for (uint32_t piece = 0; piece < pieces; ++piece)
-    first[piece] = findCell(cdf, float(piece) / float(pieces));
-  first[pieces] = uint32_t(cdf.size()) - 2;
+    index[piece] = findCell(cdf, float(piece) / float(pieces));
+  index[pieces] = uint32_t(cdf.size()) - 2;
 }
-// findCell() by these.
-inline uint32_t findCell(std::span<const float> cdf, std::span<const uint32_t> first, float u) {
+// What findCell() finds, by the index.
+inline uint32_t findCell(std::span<const float> cdf, std::span<const uint32_t> index, float u) {
   u = std::min(std::max(u, 0.0f), kOneMinusEpsilon);
-  const uint32_t pieces = uint32_t(first.size()) - 1;
+  const uint32_t pieces = uint32_t(index.size()) - 1;
   // Rounding may take u to the piece beside its own.
   const uint32_t piece = std::min(uint32_t(u * float(pieces)), pieces - 1);
-  uint32_t begin = first[piece], end = first[piece + 1];
+  uint32_t begin = index[piece], end = index[piece + 1];
   while (cdf[begin] > u) --begin;
   while (cdf[end + 1] <= u) ++end;
   return uint32_t(std::upper_bound(cdf.begin() + begin, cdf.begin() + end + 1, u) - cdf.begin()) - 1;
@@ -88,12 +89,12 @@ class PiecewiseConstant1D {
 
   // At least one weight.
   explicit PiecewiseConstant1D(std::span<const float> weights)
-      : m_cdf(weights.size() + 1), m_sum(buildCdf(weights, m_cdf)), m_first(pieceCount(weights.size()) + 1) {
-    buildPieces(m_cdf, m_first);
+      : m_cdf(weights.size() + 1), m_sum(buildCdf(weights, m_cdf)), m_index(pieceCount(weights.size()) + 1) {
+    buildIndex(m_cdf, m_index);
   }
 
   Sample sample(float u) const {
-    const uint32_t cell = findCell(m_cdf, m_first, u);
+    const uint32_t cell = findCell(m_cdf, m_index, u);
     return {invertCell(m_cdf, cell, u), cellPdf(m_cdf, cell), cell};
   }
   float pdf(float x) const {
@@ -104,12 +105,12 @@ class PiecewiseConstant1D {
   // The number that sample() takes to x in [0, 1), but for rounding.
   float invert(float x) const { return unsampleCell(m_cdf, cellAt(x, size()), x); }
   double sum() const { return m_sum; }  // of the weights; 0 if the uniform distribution stands in
-  uint64_t bytes() const { return m_cdf.size() * sizeof(float) + m_first.size() * sizeof(uint32_t); }
+  uint64_t bytes() const { return m_cdf.size() * sizeof(float) + m_index.size() * sizeof(uint32_t); }
 
  private:
   std::vector<float> m_cdf;
   double m_sum;
-  std::vector<uint32_t> m_first;
+  std::vector<uint32_t> m_index;
 };
 
 class PiecewiseConstant2D {
@@ -124,13 +125,13 @@ class PiecewiseConstant2D {
       : m_width(width),
         m_pieces(pieceCount(width)),
         m_rows(size_t(width + 1) * height),
-        m_first(size_t(m_pieces + 1) * height),
+        m_index(size_t(m_pieces + 1) * height),
         m_marginal(rowSums(weights)) {}
 
   Sample sample(const Vec2& u) const {
     const PiecewiseConstant1D::Sample y = m_marginal.sample(u.y);
     const std::span<const float> cdf = row(y.cell);
-    const uint32_t cell = findCell(cdf, first(y.cell), u.x);
+    const uint32_t cell = findCell(cdf, index(y.cell), u.x);
     return {{invertCell(cdf, cell, u.x), y.x}, cellPdf(cdf, cell) * y.pdf};
   }
   float pdf(const Vec2& x) const {
@@ -145,31 +146,31 @@ class PiecewiseConstant2D {
   }
   double sum() const { return m_marginal.sum(); }
   uint64_t bytes() const {
-    return m_rows.size() * sizeof(float) + m_first.size() * sizeof(uint32_t) + m_marginal.bytes();
+    return m_rows.size() * sizeof(float) + m_index.size() * sizeof(uint32_t) + m_marginal.bytes();
   }
 
  private:
   std::span<const float> row(uint32_t y) const {
     return {m_rows.data() + size_t(y) * (m_width + 1), size_t(m_width) + 1};
   }
-  std::span<const uint32_t> first(uint32_t y) const {
-    return {m_first.data() + size_t(y) * (m_pieces + 1), size_t(m_pieces) + 1};
+  std::span<const uint32_t> index(uint32_t y) const {
+    return {m_index.data() + size_t(y) * (m_pieces + 1), size_t(m_pieces) + 1};
   }
-  // Fills the tables of every row on the way.
+  // Fills the table and the index of every row on the way.
   PiecewiseConstant1D rowSums(std::span<const float> weights) {
     const size_t height = m_rows.size() / (m_width + 1);
     std::vector<float> sums(height);
     for (size_t y = 0; y < height; ++y) {
       const std::span<float> cdf(m_rows.data() + y * (m_width + 1), size_t(m_width) + 1);
       sums[y] = float(buildCdf(weights.subspan(y * m_width, m_width), cdf));
-      buildPieces(cdf, {m_first.data() + y * (m_pieces + 1), size_t(m_pieces) + 1});
+      buildIndex(cdf, {m_index.data() + y * (m_pieces + 1), size_t(m_pieces) + 1});
     }
     return PiecewiseConstant1D(sums);
   }
 
   uint32_t m_width, m_pieces;
   std::vector<float> m_rows;      // height tables of width + 1 entries
-  std::vector<uint32_t> m_first;  // and of m_pieces + 1 entries
+  std::vector<uint32_t> m_index;  // and their indices of m_pieces + 1 entries
   PiecewiseConstant1D m_marginal;
 };
 
