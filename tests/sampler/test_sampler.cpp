@@ -125,7 +125,7 @@ TEST(SamplerBlock, DrawsWhatEachSamplerDrawsByItself) {
         }
         for (const int depth : {1, 2, 40})
           for (const VertexNumber number : {kLightChoiceNumber, kDirectionNumber, kShadowRayNumber}) {
-            SamplerBlock::Column x, y, first;
+            Column x, y, first;
             block.draw2D(dimensionOf(depth, number), x, y);
             block.draw1D(dimensionOf(depth, number), first);
             for (size_t i = 0; i < count; ++i) {

@@ -40,10 +40,10 @@ class LightTriangles {
   std::array<const LightTriangle*, kLanes> m_triangles;
   Column m_u, m_v;
   Columns3 m_ref;
-  // Of the triangles.
+  // The triangles, in columns.
   Columns3 m_corners[3], m_normal, m_radiance;
   Column m_area;
-  // Of the samples.
+  // What find() computes.
   Columns3 m_wi;
   Column m_distance, m_pdf;  // the latter zero behind the triangle
 };

@@ -10,7 +10,7 @@
 
 namespace odis::render {
 
-// For so many paths.
+// How many paths lie side by side.
 inline constexpr size_t kLanes = 16;
 
 // A number of each. Not a std::array, whose elements GCC 12 does not turn into vectors.

@@ -33,9 +33,8 @@ LightReference lightReference(const SurfacePoint& at, const Vec3& wo) {
 }
 
 void sampleLights(const PathSettings& settings, Bounces bounces) {
-  static_assert(kBounceBlock <= kLanes);
   LightTriangles triangles;
-  // Of each triangle, the bounce that has chosen it, and with which probability.
+  // The bounce that has chosen each triangle, and the probability with which it did.
   std::array<Bounce*, kBounceBlock> chosenBy;
   std::array<float, kBounceBlock> probability;
   for (Bounce& bounce : bounces) {

@@ -85,7 +85,7 @@ using NumbersBlock = std::array<CameraNumbers, SamplerBlock::kSize>;
 
 // The numbers of several samples at once.
 void drawCameraNumbers(const Scene& scene, const SamplerBlock& samplers, NumbersBlock& numbers) {
-  SamplerBlock::Column x, y;
+  Column x, y;
   samplers.draw2D(kPixelNumber, x, y);
   for (size_t i = 0; i < numbers.size(); ++i) numbers[i].pixel = Vec2(x[i], y[i]);
   samplers.draw2D(kLensNumber, x, y);

@@ -25,7 +25,7 @@ void drawNumbers(const PathSettings& settings, Batch& batch, Bounces bounces) {
   if (bounces.empty()) return;
   batch.samplers.clear();
   for (const Bounce& bounce : bounces) batch.samplers.add(bounce.path->sampler);
-  SamplerBlock::Column x, y;
+  Column x, y;
   const int depth = bounces.front().depth;
   const auto draw1D = [&](VertexNumber number, float VertexNumbers::*member) {
     batch.samplers.draw1D(dimensionOf(depth, number), x);

@@ -45,11 +45,11 @@ void SamplerBlock::add(const Sampler& sampler) {
 }
 
 void SamplerBlock::draw1D(uint32_t dimension, Column& x) const {
-  draw(dimension, x.data(), nullptr);
+  draw(dimension, x.of, nullptr);
 }
 
 void SamplerBlock::draw2D(uint32_t dimension, Column& x, Column& y) const {
-  draw(dimension, x.data(), y.data());
+  draw(dimension, x.of, y.of);
 }
 
 void SamplerBlock::draw(uint32_t dimension, float* x, float* y) const {

@@ -3,6 +3,7 @@
 
 #include <array>
 
+#include "render/math/columns.h"
 #include "render/sampler/sampler.h"
 
 namespace odis::render {
@@ -11,13 +12,13 @@ namespace odis::render {
 // what each would draw by itself.
 class SamplerBlock {
  public:
-  static constexpr size_t kSize = 16;
-  using Column = std::array<float, kSize>;  // a number of each, in the order of add(); the rest is undefined
+  static constexpr size_t kSize = kLanes;
 
   void clear() { m_count = 0; }
   void add(const Sampler& sampler);
 
-  // The numbers of a dimension, which counts from 1: those of get1D() and get2D().
+  // The numbers of a dimension, which counts from 1: those of get1D() and get2D(), in the order of add(). The
+  // rest of a column is undefined.
   void draw1D(uint32_t dimension, Column& x) const;
   void draw2D(uint32_t dimension, Column& x, Column& y) const;
 
