@@ -25,10 +25,14 @@ void addDirections(const Emitter& emitter, const Vec2& from, float side, float w
 
 LightSampler::Choice LightSampler::sampleGroup(const LightReference& ref, uint32_t group, float uChoice,
                                                const Vec2& u) const {
-  float within = 0;
-  Choice choice = drawFromGroup(ref, group, uChoice, within);
+  Beginning beginning;
+  Choice choice;
+  if (beginInGroup(ref, group, uChoice, beginning, choice)) {
+    beginning.descent = m_tree.descend(ref, beginning.descent);
+    arrive(beginning, choice);
+  }
   if (!choice.emitter) return {};
-  choice.probability = within;
+  choice.probability = beginning.within;
   choice.group = group;
   choice.u = u;
   const uint32_t emitter = choice.emitter->index();

@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "render/emitter/light_descents.h"
 #include "render/emitter/moving_light.h"
 #include "render/math/distribution.h"
 
@@ -73,8 +74,7 @@ LightSampler::LightSampler(const std::vector<const Emitter*>& emitters)
   for (size_t i = 0; i < m_infinite.size(); ++i) m_probability[m_infinite[i]] = m_cdf[i + 1] - m_cdf[i];
 }
 
-float LightSampler::treeProbability(const LightReference& ref) const {
-  if (m_infinite.empty()) return 1;
+float LightSampler::treeBesideInfinite(const LightReference& ref) const {
   const float irradiance = m_tree.irradiance(ref);
   if (irradiance == 0) return 0;
   return lerp(kUniformShare, irradiance / (irradiance + m_infiniteIrradiance), 0.5f);
@@ -161,67 +161,103 @@ float LightSampler::mixed(const LearnedLights& learned, float probability, uint3
          learned.fraction * (learned.cdf[group + 1] - learned.cdf[group]) * withinGroup;
 }
 
-LightSampler::Choice LightSampler::drawFromAll(const LightReference& ref, float u) const {
-  const float treeProbability = this->treeProbability(ref);
-  if (u >= treeProbability) {
-    const float rest = 1 - treeProbability;
-    const uint32_t emitter = m_infinite[findCell(m_cdf, (u - treeProbability) / rest)];
-    return {m_emitters[emitter], 0, rest * m_probability[emitter], m_groupOf[emitter]};
-  }
-  const LightTree::Choice light = m_tree.sample(ref, std::min(u / treeProbability, kOneMinusEpsilon));
-  if (light.light == LightTree::kNone) return {};
-  const uint32_t emitter = m_emitterOf[light.light];
-  return {m_emitters[emitter], light.light - m_firstLight[emitter], treeProbability * light.probability,
-          m_infiniteGroups + m_tree.groupOf(light.light)};
-}
-
-LightSampler::Choice LightSampler::drawFromGroup(const LightReference& ref, uint32_t group, float u,
-                                                 float& within) const {
-  if (group < m_infiniteGroups) {
-    const uint32_t begin = groupBegin(group), end = groupEnd(group);
-    const uint32_t index = std::clamp(findCell(m_cdf, lerp(u, m_cdf[begin], m_cdf[end])), begin, end - 1);
-    const uint32_t emitter = m_infinite[index];
-    within = withinGroup(ref, *m_emitters[emitter], 0);
-    return {m_emitters[emitter], 0, (1 - treeProbability(ref)) * m_probability[emitter], group};
-  }
-  const float probability = treeProbability(ref) * m_tree.groupProbability(ref, group - m_infiniteGroups);
-  if (!(probability > 0)) return {};
-  const LightTree::Choice light = m_tree.sampleGroup(ref, group - m_infiniteGroups, u);
-  if (light.light == LightTree::kNone) return {};
-  const uint32_t emitter = m_emitterOf[light.light];
-  within = light.probability;
-  return {m_emitters[emitter], light.light - m_firstLight[emitter], probability * light.probability, group};
-}
-
-LightSampler::Choice LightSampler::sample(const LightReference& ref, float uChoice, const Vec2& u) const {
+bool LightSampler::begin(const LightReference& ref, float uChoice, Beginning& beginning,
+                         Choice& choice) const {
   const LearnedLights& learned = ref.learned;
-  Choice choice;
-  if (!(learned.fraction > 0)) {
-    choice = drawFromAll(ref, uChoice);
-    choice.u = u;
-    if (choice.emitter && isDivided(choice.emitter->index()))
-      choice.group = regionAt(choice.emitter->index(), u);
-    return choice;
-  }
-  float within = 0;
   if (uChoice < learned.fraction) {
     const std::span<const float> cdf(learned.cdf, groupCount() + 1);
     uChoice = std::min(uChoice / learned.fraction, kOneMinusEpsilon);
     const uint32_t group = groupAt(cdf, uChoice);
     const float rest = (uChoice - cdf[group]) / (cdf[group + 1] - cdf[group]);
-    choice = drawFromGroup(ref, group, std::min(rest, kOneMinusEpsilon), within);
-  } else {
-    choice =
-        drawFromAll(ref, std::min((uChoice - learned.fraction) / (1 - learned.fraction), kOneMinusEpsilon));
-    if (choice.emitter) within = withinGroup(ref, *choice.emitter, choice.part);
+    return beginInGroup(ref, group, std::min(rest, kOneMinusEpsilon), beginning, choice);
   }
-  if (!choice.emitter) return choice;
-  // A region is drawn anew, from all of its emitter's: thus u stays stratified over the emitter.
+  if (learned.fraction > 0)
+    uChoice = std::min((uChoice - learned.fraction) / (1 - learned.fraction), kOneMinusEpsilon);
+  const float treeProbability = this->treeProbability(ref);
+  if (uChoice < treeProbability) {
+    beginning.treeProbability = treeProbability;
+    beginning.descent = m_tree.fromRoot(std::min(uChoice / treeProbability, kOneMinusEpsilon));
+    return true;
+  }
+  const float rest = 1 - treeProbability;
+  const uint32_t emitter = m_infinite[findCell(m_cdf, (uChoice - treeProbability) / rest)];
+  choice = {m_emitters[emitter], 0, rest * m_probability[emitter], m_groupOf[emitter]};
+  if (learned.fraction > 0) beginning.within = withinGroup(ref, *m_emitters[emitter], 0);
+  return false;
+}
+
+bool LightSampler::beginInGroup(const LightReference& ref, uint32_t group, float u, Beginning& beginning,
+                                Choice& choice) const {
+  beginning.treeProbability = treeProbability(ref);
+  if (group >= m_infiniteGroups) {
+    beginning.descent = m_tree.throughGroup(group - m_infiniteGroups, u);
+    return true;
+  }
+  const uint32_t begin = groupBegin(group), end = groupEnd(group);
+  const uint32_t index = std::clamp(findCell(m_cdf, lerp(u, m_cdf[begin], m_cdf[end])), begin, end - 1);
+  const uint32_t emitter = m_infinite[index];
+  choice = {m_emitters[emitter], 0, (1 - beginning.treeProbability) * m_probability[emitter], group};
+  beginning.within = withinGroup(ref, *m_emitters[emitter], 0);
+  return false;
+}
+
+void LightSampler::arrive(Beginning& beginning, Choice& choice) const {
+  const LightTree::Descent& descent = beginning.descent;
+  const float probability = beginning.treeProbability * descent.toGroup;
+  if (descent.light() == LightTree::kNone || !(probability > 0)) return;
+  const uint32_t emitter = m_emitterOf[descent.light()];
+  choice = {m_emitters[emitter], descent.light() - m_firstLight[emitter], probability * descent.probability,
+            m_infiniteGroups + m_tree.groupOf(descent.light())};
+  beginning.within = descent.probability;
+}
+
+void LightSampler::finish(const LightReference& ref, float within, const Vec2& u, Choice& choice) const {
+  if (!choice.emitter) return;
   choice.u = u;
   const uint32_t emitter = choice.emitter->index();
+  if (!(ref.learned.fraction > 0)) {
+    if (isDivided(emitter)) choice.group = regionAt(emitter, u);
+    return;
+  }
+  // A region is drawn anew, from all of its emitter's: thus u stays stratified over the emitter.
   if (isDivided(emitter)) choice.group = drawRegion(ref, choice.probability, emitter, choice.u);
-  choice.probability = mixed(learned, choice.probability, choice.group, within);
+  choice.probability = mixed(ref.learned, choice.probability, choice.group, within);
+}
+
+LightSampler::Choice LightSampler::sample(const LightReference& ref, float uChoice, const Vec2& u) const {
+  Choice choice;
+  Beginning beginning;
+  if (begin(ref, uChoice, beginning, choice)) {
+    beginning.descent = m_tree.descend(ref, beginning.descent);
+    arrive(beginning, choice);
+  }
+  finish(ref, beginning.within, u, choice);
   return choice;
+}
+
+void LightSampler::sample(std::span<const Request> requests, std::span<Choice> choices) const {
+  std::array<Beginning, kLanes> beginnings;
+  LightDescents descents;
+  std::array<uint8_t, kLanes> descending;  // which request each descent is for
+  for (size_t i = 0; i < requests.size(); ++i) {
+    const LightReference& ref = *requests[i].ref;
+    choices[i] = {};
+    if (!begin(ref, requests[i].uChoice, beginnings[i], choices[i])) continue;
+    if (beginnings[i].descent.arrived()) {
+      arrive(beginnings[i], choices[i]);
+      continue;
+    }
+    descending[descents.size()] = uint8_t(i);
+    descents.add(ref, beginnings[i].descent);
+  }
+  if (descents.size() > 0) descents.find(m_tree);
+  for (size_t d = 0; d < descents.size(); ++d) {
+    const size_t i = descending[d];
+    beginnings[i].descent = descents[d];
+    arrive(beginnings[i], choices[i]);
+  }
+  for (size_t i = 0; i < requests.size(); ++i)
+    finish(*requests[i].ref, beginnings[i].within, requests[i].u, choices[i]);
 }
 
 float LightSampler::probability(const LightReference& ref, const Emitter& emitter, uint32_t part,

@@ -40,6 +40,13 @@ class LightSampler {
   // Chooses with uChoice in [0, 1). The point u of [0, 1)^2 comes back as it is, or moved into the region
   // of an environment that was chosen by what was learned.
   Choice sample(const LightReference& ref, float uChoice, const Vec2& u) const;
+  // The same for up to kLanes references at once.
+  struct Request {
+    const LightReference* ref;
+    float uChoice;
+    Vec2 u;
+  };
+  void sample(std::span<const Request> requests, std::span<Choice> choices) const;
   // The probability with which sample() chooses the part of the emitter. It is zero only for parts that give
   // the reference nothing. Of a divided environment it is that of its region around `wi`, over what the
   // region has of the environment's own density: always what the density of a direction is to be multiplied
@@ -66,12 +73,24 @@ class LightSampler {
   void divide(uint32_t lights);
   uint32_t regions() const { return m_side * m_side; }
   // The probability of choosing from the tree.
-  float treeProbability(const LightReference& ref) const;
-  // Choices without what was learned, from all lights or from a group; probabilities are those of sample()
-  // then.
-  Choice drawFromAll(const LightReference& ref, float u) const;
-  // `within` becomes the probability within the group, as withinGroup() has it.
-  Choice drawFromGroup(const LightReference& ref, uint32_t group, float u, float& within) const;
+  float treeProbability(const LightReference& ref) const {
+    return m_infinite.empty() ? 1.0f : treeBesideInfinite(ref);
+  }
+  float treeBesideInfinite(const LightReference& ref) const;
+  // What a choice needs to know until it is made.
+  struct Beginning {
+    float treeProbability;
+    float within;  // the probability within the group, as withinGroup() has it
+    LightTree::Descent descent;
+  };
+  // Makes a choice without u, whose probability is the one without what was learned; or says that it takes a
+  // descent of the tree, after which arrive() makes it.
+  bool begin(const LightReference& ref, float uChoice, Beginning& beginning, Choice& choice) const;
+  bool beginInGroup(const LightReference& ref, uint32_t group, float u, Beginning& beginning,
+                    Choice& choice) const;
+  void arrive(Beginning& beginning, Choice& choice) const;
+  // Chooses a region of what is divided, and brings in what was learned.
+  void finish(const LightReference& ref, float within, const Vec2& u, Choice& choice) const;
   // Draws a region of a divided environment, whose probability without what was learned is given, and
   // stretches u into it. Says which group that is.
   uint32_t drawRegion(const LightReference& ref, float probability, uint32_t emitter, Vec2& u) const;

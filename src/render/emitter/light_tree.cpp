@@ -8,10 +8,6 @@ namespace odis::render {
 
 namespace {
 
-struct Angle {
-  float sin, cos;
-};
-
 constexpr int kAngleSteps = 254;  // to pi, so that a right angle is one of them
 
 const std::array<Angle, kAngleSteps + 1> kAngles = [] {
@@ -29,22 +25,6 @@ uint8_t packAngle(float theta) {
 
 // What rounding may turn an axis by, generously.
 constexpr float kAxisError = 2e-4f;
-// Cosines above minus this are not taken for black, nor any for less than this: the rest is rounding.
-constexpr float kGrazing = 1e-5f;
-// Where both children give something, neither is drawn less often than this.
-constexpr float kLeastProbability = 0x1p-20f;
-constexpr float kLeastSquaredDistance = 1e-30f, kMostImportance = 1e37f;
-
-// cos(max(0, a - b)) and its sine; angles in [0, pi].
-Angle difference(const Angle& a, const Angle& b) {
-  if (a.cos >= b.cos) return {0, 1};
-  return {a.sin * b.cos - a.cos * b.sin, a.cos * b.cos + a.sin * b.sin};
-}
-
-Angle angleOf(float cosine) {
-  return {safeSqrt(1 - cosine * cosine), cosine};
-}
-
 }  // namespace
 
 LightTree::Node LightTree::pack(const LightBounds& bounds, uint32_t link) {
@@ -52,60 +32,34 @@ LightTree::Node LightTree::pack(const LightBounds& bounds, uint32_t link) {
   node.center = (bounds.min + bounds.max) * 0.5f;
   node.radiusSquared = lengthSquared(bounds.max - node.center);
   node.intensity = bounds.phi * axialIntensity(bounds.thetaO);
-  for (int i = 0; i < 3; ++i) node.axis[i] = int16_t(std::lround(bounds.axis[i] * 32767));
+  for (int i = 0; i < 3; ++i) node.axis[i] = int16_t(std::lround(bounds.axis[i] * kAxisScale));
   node.thetaO = packAngle(std::min(bounds.thetaO + kAxisError, kPi));
   node.thetaE = packAngle(bounds.thetaE);
   node.link = link;
   return node;
 }
 
+const Angle& LightTree::angle(uint8_t steps) {
+  return kAngles[steps];
+}
+
 float LightTree::importance(const Node& node, const LightReference& ref) {
-  const Vec3 toLight = node.center - ref.p;
-  const float squared = lengthSquared(toLight), nearest = std::max(node.radiusSquared, kLeastSquaredDistance);
-  // Among the lights every direction is possible.
-  if (!(squared > nearest)) return std::min(node.intensity / nearest, kMostImportance);
-  const float inverse = 1 / squared;
-  const Vec3 wi = toLight * std::sqrt(inverse);
-  const float sinSquared = node.radiusSquared * inverse;
-  const Angle sphere{std::sqrt(sinSquared), std::sqrt(1 - sinSquared)};
-
-  // The least angle between a normal of the lights and the direction to the reference.
-  const Vec3 axis(node.axis[0], node.axis[1], node.axis[2]);
-  const float cosAxis = std::clamp(dot(axis, wi) * (-1.0f / 32767), -1.0f, 1.0f);
-  const Angle emission = difference(difference(angleOf(cosAxis), kAngles[node.thetaO]), sphere);
-  if (emission.cos < kAngles[node.thetaE].cos - kGrazing) return 0;
-
-  // The least angle between the surface's normal and a direction to the lights.
-  const float cosSurface = dot(ref.n, wi);
-  const Angle incidence = difference(angleOf(ref.both ? std::abs(cosSurface) : cosSurface), sphere);
-  if (incidence.cos < -kGrazing) return 0;
-
-  const float value =
-      node.intensity * std::max(emission.cos, kGrazing) * std::max(incidence.cos, kGrazing) * inverse;
-  return std::clamp(value, std::numeric_limits<float>::min(), kMostImportance);
+  return render::importance(
+      {node.center, node.radiusSquared, node.intensity, Vec3(node.axis[0], node.axis[1], node.axis[2]),
+       angle(node.thetaO), angle(node.thetaE).cos},
+      ref.p, ref.n, ref.both);
 }
 
 float LightTree::firstProbability(const Pair& pair, const LightReference& ref) {
-  const float first = importance(pair.child[0], ref), second = importance(pair.child[1], ref);
-  if (first == 0) return second == 0 ? -1.0f : 0.0f;
-  if (second == 0) return 1;
-  return std::clamp(first / (first + second), kLeastProbability, 1 - kLeastProbability);
+  return render::firstProbability(importance(pair.child[0], ref), importance(pair.child[1], ref));
 }
 
-LightTree::Choice LightTree::descend(const LightReference& ref, uint32_t link, float u) const {
-  float probability = 1;
-  while (!(link & kLeaf)) {
-    const Pair& pair = m_pairs[link];
-    const float first = firstProbability(pair, ref);
-    if (first < 0) return {};
-    // What is left of u after a decision is uniform again.
-    const bool second = u >= first;
-    const float taken = second ? 1 - first : first;
-    u = std::min((second ? u - first : u) / taken, kOneMinusEpsilon);
-    probability *= taken;
-    link = pair.child[second].link;
+LightTree::Descent LightTree::descend(const LightReference& ref, Descent from) const {
+  while (!from.arrived()) {
+    const Pair& pair = m_pairs[from.link];
+    from.turn(firstProbability(pair, ref), pair.child[0].link, pair.child[1].link);
   }
-  return {link & ~kLeaf, probability};
+  return from;
 }
 
 float LightTree::walk(const LightReference& ref, uint32_t link, uint64_t trail) const {
@@ -116,17 +70,14 @@ float LightTree::walk(const LightReference& ref, uint32_t link, uint64_t trail) 
     if (first < 0) return 0;
     probability *= trail & 1 ? 1 - first : first;
     if (probability == 0) return 0;
-    link = pair.child[trail & 1].link;
+    link = pair.child[trail & 1].link & ~kGroup;
   }
   return probability;
 }
 
-LightTree::Choice LightTree::sample(const LightReference& ref, float u) const {
-  return empty() ? Choice{} : descend(ref, m_root, u);
-}
-
 float LightTree::probability(const LightReference& ref, uint32_t light) const {
-  return m_trails[light] == 0 ? 0 : walk(ref, m_root, m_trails[light]);
+  if (m_trails[light] == 0) return 0;
+  return groupProbability(ref, m_groupOf[light]) * probabilityInGroup(ref, light);
 }
 
 float LightTree::probabilityInGroup(const LightReference& ref, uint32_t light) const {
@@ -157,6 +108,11 @@ void LightTree::makeGroups(uint32_t most) {
     intensities[brightest] = pair.child[0].intensity;
     m_groups.push_back({parent.trail | end << 1, pair.child[1].link});
     intensities.push_back(pair.child[1].intensity);
+  }
+  for (const Group& group : m_groups) {
+    uint32_t* link = &m_root;
+    for (uint64_t trail = group.trail; trail != 1; trail >>= 1) link = &m_pairs[*link].child[trail & 1].link;
+    if (link != &m_root) *link |= kGroup;
   }
   // Each light's group is the one whose turns begin its own.
   for (size_t light = 0; light < m_trails.size(); ++light)

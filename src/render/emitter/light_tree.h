@@ -6,9 +6,11 @@
 
 #include <cstdint>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "render/emitter/light_bounds.h"
+#include "render/emitter/light_importance.h"
 
 namespace odis::render {
 
@@ -25,7 +27,7 @@ class LightTree {
   static constexpr uint32_t kNone = ~0u;
 
   LightTree() = default;
-  // Lights without phi are left out and never drawn. At most 2^31 lights; 1 to 256 groups.
+  // Lights without phi are left out and never drawn. Less than 2^30 lights; 1 to 256 groups.
   explicit LightTree(std::span<const LightBounds> lights, uint32_t mostGroups = 1);
 
   struct Choice {
@@ -33,7 +35,10 @@ class LightTree {
     float probability = 0;   // discrete
   };
   // Draws a light with u in [0, 1). Takes time logarithmic in their number.
-  Choice sample(const LightReference& ref, float u) const;
+  Choice sample(const LightReference& ref, float u) const {
+    const Descent end = descend(ref, fromRoot(u));
+    return {end.light(), end.toGroup * end.probability};
+  }
   // The probability with which sample() draws the light. It is zero only for lights that give the reference
   // nothing, because they or it look away.
   float probability(const LightReference& ref, uint32_t light) const;
@@ -51,10 +56,29 @@ class LightTree {
   }
   // Draws a light of the group; its probability is that within the group.
   Choice sampleGroup(const LightReference& ref, uint32_t group, float u) const {
-    return descend(ref, m_groups[group].link, u);
+    const Descent end = descend(ref, {m_groups[group].link, u, 1, 1, 1});
+    return {end.light(), end.probability};
   }
   // The probability with which sampleGroup() draws a light of its group.
   float probabilityInGroup(const LightReference& ref, uint32_t light) const;
+
+  // A descent: where it has come to, and how it goes on.
+  struct Descent {
+    uint32_t link;   // as nodes have it; kNone if the descent has ended in the dark
+    float u;         // draws a light
+    uint64_t trail;  // turns that are taken before anything is drawn, as m_trails has them
+    float toGroup;   // the probability of coming to the group that the descent is in, 1 before it is in one
+    float probability;  // of the rest of the way
+
+    bool arrived() const { return link & kLeaf; }
+    uint32_t light() const { return link == kNone ? kNone : link & ~kLeaf; }
+    // Goes on to one of two children; `toFirst` is firstProbability().
+    void turn(float toFirst, uint32_t first, uint32_t second);
+  };
+  // The beginning of a descent to any light, and of one to the lights of a group.
+  Descent fromRoot(float u) const { return {m_root, u, 1, 1, 1}; }
+  Descent throughGroup(uint32_t group, float u) const { return {m_root, u, m_groups[group].trail, 1, 1}; }
+  Descent descend(const LightReference& ref, Descent from) const;
 
   bool empty() const { return m_root == kNone; }
   // 73 bytes a light.
@@ -71,7 +95,7 @@ class LightTree {
     float intensity;         // towards the axis, W/sr
     int16_t axis[3];         // times 32767
     uint8_t thetaO, thetaE;  // in steps of pi / 254, rounded up
-    uint32_t link;           // an index of m_pairs, or a light and kLeaf
+    uint32_t link;           // an index of m_pairs, or a light and kLeaf; with kGroup where a group begins
   };
   struct alignas(64) Pair {
     Node child[2];
@@ -81,16 +105,17 @@ class LightTree {
     uint32_t link;   // where it ends
   };
   class Build;
-  static constexpr uint32_t kLeaf = 1u << 31;
+  friend class LightDescents;
+  static constexpr uint32_t kLeaf = 1u << 31, kGroup = 1u << 30;
 
   static Node pack(const LightBounds& bounds, uint32_t link);
   // What the lights below the node may give the reference, in W/m^2; zero only if nothing.
   static float importance(const Node& node, const LightReference& ref);
+  // A packed angle.
+  static const Angle& angle(uint8_t steps);
   // The probability of the first child; negative if neither gives anything.
   static float firstProbability(const Pair& pair, const LightReference& ref);
 
-  // Draws a light from below `link`.
-  Choice descend(const LightReference& ref, uint32_t link, float u) const;
   // The probability of taking the turns of a trail from `link` on.
   float walk(const LightReference& ref, uint32_t link, uint64_t trail) const;
   void makeGroups(uint32_t most);
@@ -103,5 +128,27 @@ class LightTree {
   std::vector<Group> m_groups;
   uint32_t m_root = kNone;  // a link
 };
+
+inline void LightTree::Descent::turn(float toFirst, uint32_t first, uint32_t second) {
+  const bool drawn = trail == 1;
+  const bool toSecond = drawn ? u >= toFirst : trail & 1;
+  const float taken = toSecond ? 1 - toFirst : toFirst;
+  if (toFirst < 0 || taken == 0) {
+    link = kNone;
+    probability = 0;
+    return;
+  }
+  probability *= taken;
+  // What is left of u after a decision is uniform again.
+  if (drawn)
+    u = std::min((toSecond ? u - toFirst : u) / taken, kOneMinusEpsilon);
+  else
+    trail >>= 1;
+  link = toSecond ? second : first;
+  if (link & kGroup) {
+    link &= ~kGroup;
+    toGroup = std::exchange(probability, 1.0f);
+  }
+}
 
 }  // namespace odis::render

@@ -33,10 +33,11 @@ LightReference lightReference(const SurfacePoint& at, const Vec3& wo) {
 }
 
 void sampleLights(const PathSettings& settings, Bounces bounces) {
-  LightTriangles triangles;
-  // The bounce that has chosen each triangle, and the probability with which it did.
-  std::array<Bounce*, kBounceBlock> chosenBy;
-  std::array<float, kBounceBlock> probability;
+  // The bounces that choose a light, and what they choose.
+  std::array<Bounce*, kBounceBlock> choosing;
+  std::array<LightSampler::Request, kBounceBlock> requests;
+  std::array<LightSampler::Choice, kBounceBlock> choices;
+  size_t count = 0;
   for (Bounce& bounce : bounces) {
     const Vertex& vertex = *bounce.vertex;
     bounce.light = {};
@@ -44,25 +45,34 @@ void sampleLights(const PathSettings& settings, Bounces bounces) {
     if (settings.learnedLights && bounce.cell != kNoCell)
       bounce.reference.learned = learnedLights(*settings.guide, bounce.cell);
     if (!vertex.at.shape->bsdf().traits().evaluable) continue;
-    LightSampler::Choice choice =
-        settings.lights->sample(bounce.reference, bounce.numbers.lightChoice, bounce.numbers.lightPoint);
+    choosing[count] = &bounce;
+    requests[count++] = {&bounce.reference, bounce.numbers.lightChoice, bounce.numbers.lightPoint};
+  }
+  settings.lights->sample({requests.data(), count}, choices);
+
+  LightTriangles triangles;
+  // Which of them has chosen each triangle.
+  std::array<size_t, kBounceBlock> chosenBy;
+  for (size_t i = 0; i < count; ++i) {
+    const LightSampler::Choice& choice = choices[i];
     if (!choice.emitter) continue;
-    bounce.light.group = choice.group;
+    const Vertex& vertex = *choosing[i]->vertex;
+    choosing[i]->light.group = choice.group;
+    Vec2 u = choice.u;
     const LightTriangle* triangle =
-        choice.emitter->motion() ? nullptr : choice.emitter->drawTriangle(choice.part, choice.u);
-    if (!triangle) {
-      estimateLight(vertex,
-                    sampleLightAt(vertex.at.time, *choice.emitter, choice.part, vertex.at.p, choice.u),
-                    choice.probability, bounce.light);
-      continue;
+        choice.emitter->motion() ? nullptr : choice.emitter->drawTriangle(choice.part, u);
+    if (triangle) {
+      chosenBy[triangles.size()] = i;
+      triangles.add(*triangle, u, vertex.at.p);
+    } else {
+      estimateLight(vertex, sampleLightAt(vertex.at.time, *choice.emitter, choice.part, vertex.at.p, u),
+                    choice.probability, choosing[i]->light);
     }
-    chosenBy[triangles.size()] = &bounce;
-    probability[triangles.size()] = choice.probability;
-    triangles.add(*triangle, choice.u, vertex.at.p);
   }
   if (triangles.size() > 0) triangles.find();
   for (size_t i = 0; i < triangles.size(); ++i)
-    estimateLight(*chosenBy[i]->vertex, triangles[i], probability[i], chosenBy[i]->light);
+    estimateLight(*choosing[chosenBy[i]]->vertex, triangles[i], choices[chosenBy[i]].probability,
+                  choosing[chosenBy[i]]->light);
   for (Bounce& bounce : bounces)
     if (bounce.light.pdf > 0) bounce.light.texel = bounce.bsdf.fetchTexel(bounce.light.wi);
 }
