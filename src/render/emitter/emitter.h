@@ -35,6 +35,8 @@ class Emitter {
   // The triangle that sample() draws from a part and, in `u`, the numbers that draw a point of it. Null for
   // emitters that are not flat triangles that shine evenly.
   virtual const LightTriangle* drawTriangle(uint32_t /*part*/, Vec2& /*u*/) const { return nullptr; }
+  // Fetches from memory what sample() will read for u.
+  virtual void prefetch(const Vec2& /*u*/) const {}
   // What an emitter infinitely far away gives a surface, on average over all ways to face (W/m^2, average
   // over channels), for choosing among lights. Approximate is fine.
   virtual float meanIrradiance() const { return 0; }

@@ -127,11 +127,12 @@ Rgb EnvironmentMap::radiance(const Vec3& wi) const {
   return lookUp(placeOf(wi).uv);
 }
 
-EmitterSample EnvironmentMap::sample(uint32_t, const Vec3&, const Vec2& u) const {
+EmitterSample EnvironmentMap::sampleDirection(const Vec2& u, Vec2& uv) const {
   const PiecewiseConstant2D::Sample s = m_table.sample(u);
   // Cell 0 of the table begins at the centre of column 0.
   float x = s.x.x + 0.5f / float(m_width);
   if (x >= 1) x -= 1;
+  uv = {x, s.x.y};
   const float theta = kPi * s.x.y, phi = 2 * kPi * x, sinTheta = std::sin(theta);
   if (!(sinTheta > 0)) return {};
   const Vec3 local(std::sin(phi) * sinTheta, std::cos(theta), -std::cos(phi) * sinTheta);
@@ -140,8 +141,20 @@ EmitterSample EnvironmentMap::sample(uint32_t, const Vec3&, const Vec2& u) const
   // The solid angle of an element of uv is 2 pi^2 sin(theta); a transform that is not a rotation stretches it
   // further.
   const float pdf = s.pdf / (2 * kPi * kPi * sinTheta) * (scale * scale * scale) / m_determinant;
-  return {
-      .wi = world / scale, .distance = kInfinity, .radiance = lookUp({x, s.x.y}), .pdf = pdf, .delta = false};
+  return {.wi = world / scale, .distance = kInfinity, .pdf = pdf};
+}
+
+EmitterSample EnvironmentMap::sample(uint32_t, const Vec3&, const Vec2& u) const {
+  Vec2 uv;
+  EmitterSample result = sampleDirection(u, uv);
+  if (result.pdf > 0) result.radiance = lookUp(uv);
+  return result;
+}
+
+void EnvironmentMap::prefetch(const Vec2& u) const {
+  const auto [x, y] = m_table.prefetch(u);
+  __builtin_prefetch(&pixel(int(x), int(y)));
+  __builtin_prefetch(&pixel(int(x), int(y) + 1));
 }
 
 Vec2 EnvironmentMap::inTable(const Vec2& uv) const {

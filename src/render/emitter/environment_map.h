@@ -15,6 +15,7 @@ class EnvironmentMap final : public EnvironmentEmitter {
   EnvironmentMap(std::vector<Rgb> pixels, int width, int height, const Matrix4& toWorld, float horizon = 1);
 
   EmitterSample sample(uint32_t part, const Vec3& ref, const Vec2& u) const override;
+  void prefetch(const Vec2& u) const override;
   // A surface faces each direction with a mean cosine of 1/4, that of those behind it taken as zero.
   float meanIrradiance() const override { return average(m_integral) / 4; }
   Rgb radiance(const Vec3& wi) const override;
@@ -22,6 +23,8 @@ class EnvironmentMap final : public EnvironmentEmitter {
   RadianceAndPdf radianceAndPdf(const Vec3& ref, const Vec3& wi) const override;
   bool invertible() const override { return true; }
   Vec2 invert(const Vec3& wi) const override;
+  // A sample without its radiance, and where the image has that.
+  EmitterSample sampleDirection(const Vec2& u, Vec2& uv) const;
   uint64_t bytes() const { return m_pixels.size() * sizeof(Rgb) + m_table.bytes(); }
 
  private:

@@ -50,8 +50,9 @@ Rgb SkyDome::radiance(const Vec3& wi) const {
   return unstretchedRadiance(local);
 }
 
-EmitterSample SkyDome::sample(uint32_t part, const Vec3& ref, const Vec2& u) const {
-  EmitterSample result = m_table.sample(part, ref, u);
+EmitterSample SkyDome::sample(uint32_t, const Vec3&, const Vec2& u) const {
+  Vec2 uv;
+  EmitterSample result = m_table.sampleDirection(u, uv);
   if (result.pdf > 0) result.radiance = radiance(result.wi);
   return result;
 }

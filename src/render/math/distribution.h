@@ -134,6 +134,17 @@ class PiecewiseConstant2D {
     const uint32_t cell = findCell(cdf, index(y.cell), u.x);
     return {{invertCell(cdf, cell, u.x), y.x}, cellPdf(cdf, cell) * y.pdf};
   }
+  // The row that sample() takes u to and, by the index alone, about the cell of it; fetches what the search
+  // for that reads from memory.
+  struct Cell {
+    uint32_t x, y;
+  };
+  Cell prefetch(const Vec2& u) const {
+    const uint32_t y = m_marginal.sample(u.y).cell;
+    const uint32_t x = index(y)[std::min(uint32_t(u.x * float(m_pieces)), m_pieces - 1)];
+    __builtin_prefetch(&row(y)[x]);
+    return {x, y};
+  }
   float pdf(const Vec2& x) const {
     if (!(x.x >= 0 && x.x < 1 && x.y >= 0 && x.y < 1)) return 0;
     const std::span<const float> cdf = row(cellAt(x.y, m_marginal.size()));

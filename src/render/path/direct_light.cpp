@@ -51,28 +51,33 @@ void sampleLights(const PathSettings& settings, Bounces bounces) {
   settings.lights->sample({requests.data(), count}, choices);
 
   LightTriangles triangles;
-  // Which of them has chosen each triangle.
-  std::array<size_t, kBounceBlock> chosenBy;
+  // Which of them have chosen each triangle, and which other lights.
+  std::array<size_t, kBounceBlock> byTriangles, others;
+  size_t otherCount = 0;
   for (size_t i = 0; i < count; ++i) {
-    const LightSampler::Choice& choice = choices[i];
+    LightSampler::Choice& choice = choices[i];
     if (!choice.emitter) continue;
-    const Vertex& vertex = *choosing[i]->vertex;
     choosing[i]->light.group = choice.group;
-    Vec2 u = choice.u;
     const LightTriangle* triangle =
-        choice.emitter->motion() ? nullptr : choice.emitter->drawTriangle(choice.part, u);
+        choice.emitter->motion() ? nullptr : choice.emitter->drawTriangle(choice.part, choice.u);
     if (triangle) {
-      chosenBy[triangles.size()] = i;
-      triangles.add(*triangle, u, vertex.at.p);
+      byTriangles[triangles.size()] = i;
+      triangles.add(*triangle, choice.u, choosing[i]->vertex->at.p);
     } else {
-      estimateLight(vertex, sampleLightAt(vertex.at.time, *choice.emitter, choice.part, vertex.at.p, u),
-                    choice.probability, choosing[i]->light);
+      choice.emitter->prefetch(choice.u);
+      others[otherCount++] = i;
     }
+  }
+  for (size_t k = 0; k < otherCount; ++k) {
+    const auto& [emitter, part, probability, group, u] = choices[others[k]];
+    const Vertex& vertex = *choosing[others[k]]->vertex;
+    estimateLight(vertex, sampleLightAt(vertex.at.time, *emitter, part, vertex.at.p, u), probability,
+                  choosing[others[k]]->light);
   }
   if (triangles.size() > 0) triangles.find();
   for (size_t i = 0; i < triangles.size(); ++i)
-    estimateLight(*choosing[chosenBy[i]]->vertex, triangles[i], choices[chosenBy[i]].probability,
-                  choosing[chosenBy[i]]->light);
+    estimateLight(*choosing[byTriangles[i]]->vertex, triangles[i], choices[byTriangles[i]].probability,
+                  choosing[byTriangles[i]]->light);
   for (Bounce& bounce : bounces)
     if (bounce.light.pdf > 0) bounce.light.texel = bounce.bsdf.fetchTexel(bounce.light.wi);
 }
