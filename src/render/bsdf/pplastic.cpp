@@ -68,13 +68,13 @@ class PolarizedPlastic final : public Bsdf {
     const float eta = m_eta(at);
     const Vec3 m = normalize(wo + wi);
     const float cosinePdf = cosineHemispherePdf(wi.z);
-    const float coatPdf = m_specularProbability * facets.pdf(wo, m) / (4 * dot(wi, m));
+    const auto [d, g, facetPdf] = facets.terms(wo, wi, m);
+    const float coatPdf = m_specularProbability * facetPdf / (4 * dot(wi, m));
     const float basePdf = (1 - m_specularProbability) * cosinePdf;
     BsdfValue result;
     result.pdf = coatPdf + basePdf;
     result.guidablePdf = facets.lobe() == Lobe::smooth ? result.pdf : basePdf;
-    result.value = m_specular(at) * (fresnelDielectric(dot(wo, m), eta).reflectance * facets.d(m) *
-                                     facets.g(wo, wi, m) / (4 * wo.z)) +
+    result.value = m_specular(at) * (fresnelDielectric(dot(wo, m), eta).reflectance * d * g / (4 * wo.z)) +
                    m_diffuse(at) * (cosinePdf * transmittance(wo.z, eta) * transmittance(wi.z, eta));
     return result;
   }

@@ -104,11 +104,11 @@ BsdfValue PrincipledPoint::evaluate(const Vec3& wo, const Vec3& wi) const {
 
   // The interface, where the facet faces both directions as the surface does.
   if (cosO * wo.z > 0 && cosI * wi.z > 0) {
-    const float d = facets.d(m), gO = facets.g1(wo, m), gI = facets.g1(wi, m);
+    const auto [d, g, facetPdf] = facets.terms(wo, wi, m);
     const float jacobian =
         reflected ? 1 / (4 * std::abs(cosI)) : sqr(etaPath) * std::abs(cosI) / sqr(cosO + etaPath * cosI);
-    const float visible = jacobian * facets.pdf(upper(wo), m);
-    const float strength = jacobian * d * gO * gI * std::abs(cosO / wo.z);
+    const float visible = jacobian * facetPdf;
+    const float strength = jacobian * d * g * std::abs(cosO / wo.z);
     if (reflected) {
       addPdf(p.reflection * visible, guideFacets);
       result.value += fresnel(cosO, f, front) * strength;

@@ -69,14 +69,14 @@ class ThinPoint {
     result.pdf = result.guidablePdf = cosinePdf * (reflected ? p.diffuseReflection : p.diffuseTransmission);
     if (m_specular > 0 && scatters(wi, h)) {
       const Microfacet f = facets(reflected);
-      const float pdf =
-          f.pdf(wo, h) / (4 * cosH) * (reflected ? p.specularReflection : p.specularTransmission);
+      const auto [d, g, facetPdf] = f.terms(wo, above, h);
+      const float pdf = facetPdf / (4 * cosH) * (reflected ? p.specularReflection : p.specularTransmission);
       result.pdf += pdf;
       if (f.lobe() == Lobe::smooth) result.guidablePdf += pdf;
       const float fresnel = fresnelDielectric(cosH, m_opaque.eta).reflectance;
       const Rgb share =
           reflected ? m_opaque.fresnel(cosH, fresnel, true) : m_opaque.baseColor * (1 - fresnel);
-      result.value = share * (m_specular * f.d(h) * f.g(wo, above, h) / (4 * wo.z));
+      result.value = share * (m_specular * d * g / (4 * wo.z));
     }
     const Rgb diffuse = reflected ? m_opaque.diffuse(wo, above, cosH) * (1 - m_transmitted)
                                   : m_opaque.baseColor * (cosinePdf * m_transmitted);

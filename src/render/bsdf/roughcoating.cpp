@@ -44,9 +44,9 @@ class RoughCoating final : public Bsdf {
     if (wo.z * wi.z < 0) return result;
     const Vec3 up = upper(wo), m = upper(normalize(wo + wi));
     const float f = fresnelDielectric(dot(up, m), m_base.eta).reflectance;
-    result.value +=
-        m_base.specular(at) * (f * m_facets.d(m) * m_facets.g(up, upper(wi), m) / (4 * std::abs(wo.z)));
-    const float pdf = p * m_facets.pdf(up, m) / (4 * absDot(wi, m));
+    const auto [d, g, facetPdf] = m_facets.terms(up, upper(wi), m);
+    result.value += m_base.specular(at) * (f * d * g / (4 * std::abs(wo.z)));
+    const float pdf = p * facetPdf / (4 * absDot(wi, m));
     result.pdf += pdf;
     if (m_facets.lobe() == Lobe::smooth) result.guidablePdf += pdf;
     return result;

@@ -45,12 +45,12 @@ class RoughConductor final : public Bsdf {
   BsdfValue evaluate(const SurfacePoint& at, const Microfacet& facets, const Vec3& wo, const Vec3& wi) const {
     if (!(wi.z > 0)) return {};
     const Vec3 m = normalize(wo + wi);
+    const auto [d, g, facetPdf] = facets.terms(wo, wi, m);
     BsdfValue result;
-    result.pdf = facets.pdf(wo, m) / (4 * dot(wi, m));
+    result.pdf = facetPdf / (4 * dot(wi, m));
     if (!(result.pdf > 0)) return {};
     if (facets.lobe() == Lobe::smooth) result.guidablePdf = result.pdf;
-    result.value =
-        m_ior.reflectance(at, dot(wo, m)) * m_specular(at) * (facets.d(m) * facets.g(wo, wi, m) / (4 * wo.z));
+    result.value = m_ior.reflectance(at, dot(wo, m)) * m_specular(at) * (d * g / (4 * wo.z));
     return result;
   }
 

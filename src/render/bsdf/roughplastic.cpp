@@ -39,13 +39,14 @@ class RoughPlastic final : public Bsdf {
     const float specularProbability = m_base.specularProbability(entering);
     const Vec3 m = normalize(wo + wi);
     const float f = fresnelDielectric(dot(wo, m), m_base.eta).reflectance;
+    const Microfacet::Terms facets = m_facets.terms(wo, wi, m);
 
-    const float coatPdf = specularProbability * m_facets.pdf(wo, m) / (4 * dot(wi, m));
+    const float coatPdf = specularProbability * facets.pdf / (4 * dot(wi, m));
     const float basePdf = (1 - specularProbability) * cosineHemispherePdf(wi.z);
     BsdfValue result;
     result.pdf = coatPdf + basePdf;
     result.guidablePdf = m_facets.lobe() == Lobe::smooth ? result.pdf : basePdf;
-    result.value = m_base.specular(at) * (f * m_facets.d(m) * m_facets.g(wo, wi, m) / (4 * wo.z)) +
+    result.value = m_base.specular(at) * (f * facets.d * facets.g / (4 * wo.z)) +
                    m_base.baseAlbedo(at) * (cosineHemispherePdf(wi.z) * entering *
                                             m_transmittance.external(wi.z) / sqr(m_base.eta));
     return result;

@@ -80,11 +80,11 @@ class LightSampler {
   // What a choice needs to know until it is made.
   struct Beginning {
     float treeProbability;
-    float within;  // the probability within the group, as withinGroup() has it
+    float within = 0;  // the probability within the group, as withinGroup() has it
     LightTree::Descent descent;
   };
-  // Makes a choice without u, whose probability is the one without what was learned; or says that it takes a
-  // descent of the tree, after which arrive() makes it.
+  // Make a choice without u, whose probability is the one without what was learned, and return false; or
+  // return true if that takes a descent of the tree, after which arrive() makes the choice.
   bool begin(const LightReference& ref, float uChoice, Beginning& beginning, Choice& choice) const;
   bool beginInGroup(const LightReference& ref, uint32_t group, float u, Beginning& beginning,
                     Choice& choice) const;
