@@ -77,7 +77,8 @@ inline void findCells(const GuideView& view, const Place* places, size_t count, 
   }
 }
 
-// Fetches everything that a vertex may read of a cell: to be called a few vertices ahead.
+// Fetches what every vertex reads of a cell: to be called a few vertices ahead. Of the texels of its map only
+// those of a block or two are read, which VertexMap::prefetch() fetches.
 inline void prefetchCell(const GuideView& view, uint32_t cell) {
   constexpr size_t kLine = 64;
   const auto fetch = [](const void* data, size_t bytes) {
@@ -86,7 +87,6 @@ inline void prefetchCell(const GuideView& view, uint32_t cell) {
   };
   fetch(view.decisions + cell, sizeof(CellDecisions));
   fetch(view.maps.sums + size_t(cell) * kSumsPerMap, kSumsPerMap * sizeof(float));
-  fetch(view.maps.texels + size_t(cell) * kMapTexels, kMapTexels * sizeof(uint16_t));
   if (view.lightGroups == 0) return;
   const size_t groupBounds = view.lightGroups + 1;
   fetch(view.lightTables + cell * groupBounds, groupBounds * sizeof(float));
