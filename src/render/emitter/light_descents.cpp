@@ -48,7 +48,8 @@ ODIS_WIDE void LightDescents::findProbabilities(LightDescents& of) {
 }
 
 void LightDescents::find(const LightTree& tree) {
-  // Which lanes go on, and between which nodes each has to choose. The others read what nobody asks for.
+  // The lanes that have not arrived yet, and the pair of nodes that each lane chooses between. Lanes that
+  // have arrived keep some pair that can be read; what is computed from it is not used.
   std::array<uint8_t, kLanes> active;
   std::array<const LightTree::Pair*, kLanes> pairs;
   pairs.fill(tree.m_pairs.data());

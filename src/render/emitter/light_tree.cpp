@@ -25,6 +25,7 @@ uint8_t packAngle(float theta) {
 
 // What rounding may turn an axis by, generously.
 constexpr float kAxisError = 2e-4f;
+
 }  // namespace
 
 LightTree::Node LightTree::pack(const LightBounds& bounds, uint32_t link) {

@@ -51,7 +51,7 @@ void sampleLights(const PathSettings& settings, Bounces bounces) {
   settings.lights->sample({requests.data(), count}, choices);
 
   LightTriangles triangles;
-  // Which of them have chosen each triangle, and which other lights.
+  // For each of the triangles, and for each of the other lights, the index of the choice that drew it.
   std::array<size_t, kBounceBlock> byTriangles, others;
   size_t otherCount = 0;
   for (size_t i = 0; i < count; ++i) {
