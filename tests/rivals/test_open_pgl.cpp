@@ -59,6 +59,15 @@ TEST_F(OpenPglTest, SamplesFollowTheirDensity) {
   }
   rival->learn(std::span(&vertices, 1), 0);
   rival->endIteration();
+  // Vertices side by side have a distribution each.
+  const Vec3 up(0, 0, 1), away = normalize(Vec3(0.9f, 0, 0.4f));
+  std::vector<const DirectionSampler*> together;
+  for (size_t i = 0; i < DirectionGuide::kVerticesAtOnce; ++i)
+    together.push_back(rival->at({0.06f * float(i), 0.5f, 0}, up, i % 2 == 0));
+  std::vector<float> densities;
+  for (const DirectionSampler* sampler : together) densities.push_back(sampler->pdf(away));
+  for (size_t i = 0; i < together.size(); ++i)
+    EXPECT_EQ(rival->at({0.06f * float(i), 0.5f, 0}, up, i % 2 == 0)->pdf(away), densities[i]);
   for (const bool scattersBothSides : {false, true}) {
     const DirectionSampler* sampler = rival->at({0.4f, 0.6f, 0}, {0, 0, 1}, scattersBothSides);
     ASSERT_TRUE(sampler);

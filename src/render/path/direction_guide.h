@@ -4,7 +4,7 @@
 
 #include <odis/sampling_map.h>
 
-#include "render/math/vec.h"
+#include "render/math/columns.h"
 
 namespace odis::render {
 
@@ -23,9 +23,12 @@ class DirectionSampler {
 
 class DirectionGuide {
  public:
+  // The path tracer takes the directions of so many vertices side by side.
+  static constexpr size_t kVerticesAtOnce = kLanes;
+
   virtual ~DirectionGuide() = default;
   // The guide at a vertex with this unit normal on the side of the outgoing direction; null where there is
-  // none. It lasts until the same thread asks again. Thread-safe.
+  // none. It lasts until the same thread has asked kVerticesAtOnce more times. Thread-safe.
   virtual const DirectionSampler* at(const Vec3& position, const Vec3& normal,
                                      bool scattersBothSides) const = 0;
 };

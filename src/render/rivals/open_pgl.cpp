@@ -3,6 +3,7 @@
 #include <openpgl/cpp/OpenPGL.h>
 #include <tbb/enumerable_thread_specific.h>
 
+#include <array>
 #include <cstring>
 
 #include "render/sampler/sampler.h"
@@ -32,7 +33,7 @@ PGL_DEVICE_TYPE deviceType() {
   return __builtin_cpu_supports("avx2") ? PGL_DEVICE_TYPE_CPU_8 : PGL_DEVICE_TYPE_CPU_4;
 }
 
-// A thread's place for the distribution at a vertex.
+// A place for the distribution at a vertex.
 class PglVertex final : public DirectionSampler {
  public:
   explicit PglVertex(const pgl::Field* field) : m_distribution(field) {}
@@ -69,6 +70,12 @@ class PglVertex final : public DirectionSampler {
   pgl::SurfaceSamplingDistribution m_distribution;
 };
 
+// A thread's places, which vertices take in turns.
+struct PglVertices {
+  std::array<std::unique_ptr<PglVertex>, DirectionGuide::kVerticesAtOnce> of;
+  size_t next = 0;
+};
+
 class OpenPgl final : public Rival {
  public:
   OpenPgl() : m_device(deviceType()) {
@@ -80,7 +87,8 @@ class OpenPgl final : public Rival {
   const DirectionSampler* at(const Vec3& position, const Vec3& normal,
                              bool scattersBothSides) const override {
     if (!m_trained) return nullptr;
-    std::unique_ptr<PglVertex>& vertex = m_vertices.local();
+    PglVertices& vertices = m_vertices.local();
+    std::unique_ptr<PglVertex>& vertex = vertices.of[vertices.next++ % kVerticesAtOnce];
     if (!vertex) vertex = std::make_unique<PglVertex>(m_field.get());
     return vertex->prepare(*m_field, position, normal, scattersBothSides) ? vertex.get() : nullptr;
   }
@@ -124,7 +132,7 @@ class OpenPgl final : public Rival {
   pgl::Device m_device;
   std::unique_ptr<pgl::Field> m_field;
   pgl::SampleStorage m_samples;
-  mutable tbb::enumerable_thread_specific<std::unique_ptr<PglVertex>> m_vertices;
+  mutable tbb::enumerable_thread_specific<PglVertices> m_vertices;
   bool m_trained = false;
   size_t m_peak = 0;
 };
