@@ -43,6 +43,7 @@ class Mixture {
   // Whether any draw comes from the map: a mask. Where none does, the map is not asked.
   ODIS_HOST_DEVICE auto guides() const { return (m_fraction < Real(1)) & (m_guidable > Real(0)); }
   ODIS_HOST_DEVICE Real bsdfFraction() const { return m_fraction; }
+  ODIS_HOST_DEVICE Real guidableProbability() const { return m_guidable; }
 
   // The density of a direction whose densities under the BSDF and the map are these.
   ODIS_HOST_DEVICE Real pdf(Real bsdfPdf, Real guidablePdf, Real mapPdf) const {

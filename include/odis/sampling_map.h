@@ -110,6 +110,29 @@ class VertexMap {
     return {squareToDirection(pointOfTexel<Real>(texel, {u, v})), element(texels, x) * weights.toPdf};
   }
 
+  // For hosts that take the second step for many vertices side by side: the texels of one block, what they
+  // weigh, and the sums of their rows; weight * toPdf is the density within a texel.
+  struct Block {
+    Real texels[kBlockTexels];
+    Real rows[kBlockSize];
+    Real toPdf;
+  };
+  ODIS_HOST_DEVICE void weigh(Int block, Block& weights) const {
+    const Real rim(m_maps.rim);
+    const Int first = block * Int(kBlockTexels);
+    const Run<Real, uint16_t> texels(m_maps.texels, m_cell * Int(kMapTexels) + first);
+    const Run<Real, float> x(m_maps.directions, first), y(m_maps.directions + kMapTexels, first),
+        z(m_maps.directions + 2 * kMapTexels, first);
+    for (int t = 0; t < kBlockTexels; ++t)
+      weights.texels[t] =
+          texels[t] * (aboveHorizon(x[t] * m_normal.x + y[t] * m_normal.y + z[t] * m_normal.z) + rim);
+    const Real ofBlock = element(row(m_blocks, block >> 2), block & Int(3));
+    weights.toPdf = m_toPdf * ofBlock / sumRows(weights.texels, weights.rows);
+  }
+  // And for the first step: the weights of the blocks, row by row, and the sums of the rows.
+  ODIS_HOST_DEVICE const Real (&blocks() const)[kMapBlocks] { return m_blocks; }
+  ODIS_HOST_DEVICE const Real (&rows() const)[kBlockSize] { return m_rows; }
+
   // Fetches the texels of a block, which sampleWithin() and the density of a direction in it read. On the
   // CPU, for one vertex at a time.
   void prefetch(Int block) const {
@@ -127,30 +150,10 @@ class VertexMap {
   }
 
  private:
-  // The texels of one block: their weights, the sums of their rows, and the density of a unit of weight.
-  struct Block {
-    Real texels[kBlockTexels];
-    Real rows[kBlockSize];
-    Real toPdf;
-  };
-
   // What counts of a cosine, or of a sum of cosines.
   ODIS_HOST_DEVICE Real aboveHorizon(Real cosine) const {
     const Real below = m_belowSign * cosine;
     return select(cosine > below, cosine, below);
-  }
-
-  ODIS_HOST_DEVICE void weigh(Int block, Block& weights) const {
-    const Real rim(m_maps.rim);
-    const Int first = block * Int(kBlockTexels);
-    const Run<Real, uint16_t> texels(m_maps.texels, m_cell * Int(kMapTexels) + first);
-    const Run<Real, float> x(m_maps.directions, first), y(m_maps.directions + kMapTexels, first),
-        z(m_maps.directions + 2 * kMapTexels, first);
-    for (int t = 0; t < kBlockTexels; ++t)
-      weights.texels[t] =
-          texels[t] * (aboveHorizon(x[t] * m_normal.x + y[t] * m_normal.y + z[t] * m_normal.z) + rim);
-    const Real ofBlock = element(row(m_blocks, block >> 2), block & Int(3));
-    weights.toPdf = m_toPdf * ofBlock / sumRows(weights.texels, weights.rows);
   }
 
   // Sums each row of a table of 4 x 4; returns the sum of all.

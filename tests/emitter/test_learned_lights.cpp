@@ -156,7 +156,9 @@ TEST_F(LearnedLightsTest, GroupsAddUpToTheirLights) {
     std::map<uint32_t, float> stated;
     for (int d = 0; d < 2000; ++d) {
       const LightSampler::Choice choice = m_sampler.sample(ref, m_random(), kMiddle);
-      if (choice.emitter) stated[choice.group] = m_sampler.groupProbability(ref, choice.group);
+      if (!choice.emitter) continue;
+      stated[choice.group] = m_sampler.groupProbability(ref, choice.group);
+      EXPECT_NEAR(choice.groupProbability(), stated[choice.group], 1e-5f * stated[choice.group]);
     }
     // Each group's lights, found by drawing.
     std::map<const Emitter*, uint32_t> groupOf;

@@ -200,7 +200,12 @@ TEST(LightRegions, GroupsAreDrawnAsStated) {
     for (const float share : {0.0f, 0.8f}) {
       const LightReference ref = learned(cdf, share);
       std::vector<double> counts(sampler.groupCount());
-      for (int i = 0; i < kDraws; ++i) ++counts[sampler.sample(ref, random(), {random(), random()}).group];
+      for (int i = 0; i < kDraws; ++i) {
+        const LightSampler::Choice choice = sampler.sample(ref, random(), {random(), random()});
+        ++counts[choice.group];
+        const float stated = sampler.groupProbability(ref, choice.group);
+        ASSERT_NEAR(choice.groupProbability(), stated, 1e-5f * stated);
+      }
       double sum = 0, statistic = 0;
       for (uint32_t g = 0; g < counts.size(); ++g) {
         const double expected = kDraws * double(sampler.groupProbability(ref, g));

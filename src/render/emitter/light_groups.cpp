@@ -32,7 +32,7 @@ LightSampler::Choice LightSampler::sampleGroup(const LightReference& ref, uint32
     arrive(beginning, choice);
   }
   if (!choice.emitter) return {};
-  choice.probability = beginning.within;
+  choice.probability = choice.within;
   choice.group = group;
   choice.u = u;
   const uint32_t emitter = choice.emitter->index();

@@ -181,8 +181,8 @@ bool LightSampler::begin(const LightReference& ref, float uChoice, Beginning& be
   }
   const float rest = 1 - treeProbability;
   const uint32_t emitter = m_infinite[findCell(m_cdf, (uChoice - treeProbability) / rest)];
-  choice = {m_emitters[emitter], 0, rest * m_probability[emitter], m_groupOf[emitter]};
-  if (learned.fraction > 0) beginning.within = withinGroup(ref, *m_emitters[emitter], 0);
+  choice = {m_emitters[emitter], 0, rest * m_probability[emitter], withinGroup(ref, *m_emitters[emitter], 0),
+            m_groupOf[emitter]};
   return false;
 }
 
@@ -196,22 +196,21 @@ bool LightSampler::beginInGroup(const LightReference& ref, uint32_t group, float
   const uint32_t begin = groupBegin(group), end = groupEnd(group);
   const uint32_t index = std::clamp(findCell(m_cdf, lerp(u, m_cdf[begin], m_cdf[end])), begin, end - 1);
   const uint32_t emitter = m_infinite[index];
-  choice = {m_emitters[emitter], 0, (1 - beginning.treeProbability) * m_probability[emitter], group};
-  beginning.within = withinGroup(ref, *m_emitters[emitter], 0);
+  choice = {m_emitters[emitter], 0, (1 - beginning.treeProbability) * m_probability[emitter],
+            withinGroup(ref, *m_emitters[emitter], 0), group};
   return false;
 }
 
-void LightSampler::arrive(Beginning& beginning, Choice& choice) const {
+void LightSampler::arrive(const Beginning& beginning, Choice& choice) const {
   const LightTree::Descent& descent = beginning.descent;
   const float probability = beginning.treeProbability * descent.toGroup;
   if (descent.light() == LightTree::kNone || !(probability > 0)) return;
   const uint32_t emitter = m_emitterOf[descent.light()];
   choice = {m_emitters[emitter], descent.light() - m_firstLight[emitter], probability * descent.probability,
-            m_infiniteGroups + m_tree.groupOf(descent.light())};
-  beginning.within = descent.probability;
+            descent.probability, m_infiniteGroups + m_tree.groupOf(descent.light())};
 }
 
-void LightSampler::finish(const LightReference& ref, float within, const Vec2& u, Choice& choice) const {
+void LightSampler::finish(const LightReference& ref, const Vec2& u, Choice& choice) const {
   if (!choice.emitter) return;
   choice.u = u;
   const uint32_t emitter = choice.emitter->index();
@@ -221,7 +220,7 @@ void LightSampler::finish(const LightReference& ref, float within, const Vec2& u
   }
   // A region is drawn anew, from all of its emitter's: thus u stays stratified over the emitter.
   if (isDivided(emitter)) choice.group = drawRegion(ref, choice.probability, emitter, choice.u);
-  choice.probability = mixed(ref.learned, choice.probability, choice.group, within);
+  choice.probability = mixed(ref.learned, choice.probability, choice.group, choice.within);
 }
 
 LightSampler::Choice LightSampler::sample(const LightReference& ref, float uChoice, const Vec2& u) const {
@@ -231,7 +230,7 @@ LightSampler::Choice LightSampler::sample(const LightReference& ref, float uChoi
     beginning.descent = m_tree.descend(ref, beginning.descent);
     arrive(beginning, choice);
   }
-  finish(ref, beginning.within, u, choice);
+  finish(ref, u, choice);
   return choice;
 }
 
@@ -256,8 +255,7 @@ void LightSampler::sample(std::span<const Request> requests, std::span<Choice> c
     beginnings[i].descent = descents[d];
     arrive(beginnings[i], choices[i]);
   }
-  for (size_t i = 0; i < requests.size(); ++i)
-    finish(*requests[i].ref, beginnings[i].within, requests[i].u, choices[i]);
+  for (size_t i = 0; i < requests.size(); ++i) finish(*requests[i].ref, requests[i].u, choices[i]);
 }
 
 float LightSampler::probability(const LightReference& ref, const Emitter& emitter, uint32_t part,

@@ -34,8 +34,12 @@ class LightSampler {
     const Emitter* emitter = nullptr;  // null if no light shines upon the reference
     uint32_t part = 0;
     float probability = 0;  // discrete; of a divided environment relative, see probability()
+    float within = 0;       // of it, the probability within the group; the rest is the group's own
     uint32_t group = 0;
     Vec2 u{0, 0};  // for sampling the part
+
+    // The probability of choosing a light of the group, as LightSampler::groupProbability() has it.
+    float groupProbability() const { return probability / within; }
   };
   // Chooses with uChoice in [0, 1). The point u of [0, 1)^2 comes back as it is, or moved into the region
   // of an environment that was chosen by what was learned.
@@ -80,7 +84,6 @@ class LightSampler {
   // What a choice needs to know until it is made.
   struct Beginning {
     float treeProbability;
-    float within = 0;  // the probability within the group, as withinGroup() has it
     LightTree::Descent descent;
   };
   // Make a choice without u, whose probability is the one without what was learned, and return false; or
@@ -88,9 +91,9 @@ class LightSampler {
   bool begin(const LightReference& ref, float uChoice, Beginning& beginning, Choice& choice) const;
   bool beginInGroup(const LightReference& ref, uint32_t group, float u, Beginning& beginning,
                     Choice& choice) const;
-  void arrive(Beginning& beginning, Choice& choice) const;
+  void arrive(const Beginning& beginning, Choice& choice) const;
   // Chooses a region of what is divided, and brings in what was learned.
-  void finish(const LightReference& ref, float within, const Vec2& u, Choice& choice) const;
+  void finish(const LightReference& ref, const Vec2& u, Choice& choice) const;
   // Draws a region of a divided environment, whose probability without what was learned is given, and
   // stretches u into it. Says which group that is.
   uint32_t drawRegion(const LightReference& ref, float probability, uint32_t emitter, Vec2& u) const;

@@ -10,13 +10,14 @@ namespace odis::render {
 
 // Next-event estimation at a vertex, before it is known whether something hides the light.
 struct LightEstimate {
-  Rgb radiance{0, 0, 0};  // outgoing, without MIS weight: f |cos| Le / pdf
-  Vec3 wi{0, 0, 1};       // world space
-  float distance = 0;     // to the light
-  float pdf = 0;          // with respect to solid angle; 0 where MIS does not apply
-  BsdfValue bsdf;         // in direction wi
-  uint32_t group = 0;     // group of lights that the light was drawn from
-  int32_t texel = 0;      // of the map there that wi falls into
+  Rgb radiance{0, 0, 0};       // outgoing, without MIS weight: f |cos| Le / pdf
+  Vec3 wi{0, 0, 1};            // world space
+  float distance = 0;          // to the light
+  float pdf = 0;               // with respect to solid angle; 0 where MIS does not apply
+  BsdfValue bsdf;              // in direction wi
+  uint32_t group = 0;          // group of lights that the light was drawn from
+  float groupProbability = 0;  // of that group
+  int32_t texel = 0;           // of the map there that wi falls into
 };
 
 // One path as it arrives at one vertex.
@@ -30,6 +31,14 @@ struct Arrival {
   bool scatters;         // whether the path goes on to be scattered here
 };
 
+// Where the next direction of a path whose vertex has a map comes from.
+struct DirectionDraw {
+  bool fromMap;      // or, if the BSDF draws a lobe that is not guided, from there
+  float u;           // the number that draws, besides VertexNumbers::direction.y
+  int32_t block;     // of the map, and
+  Vec2 withinBlock;  // the numbers that sample within it
+};
+
 // The same from its arrival to its departure. Steps fill it in one after another.
 struct Bounce : Arrival {
   VertexNumbers numbers;       // random ones, that what follows is decided by
@@ -38,7 +47,7 @@ struct Bounce : Arrival {
   LightEstimate light;         // next-event estimation
   Rgb direct;                  // its radiance with the MIS weight
   float shadowRayProbability;  // with which the shadow ray was traced; 0: it was not
-  GuidedBsdf::Draw draw;       // where the next direction comes from
+  DirectionDraw draw;          // where the next direction comes from, if there is a map
   BsdfSample next;             // the sampled direction
   Rgb weight;                  // of that direction, divided by `survival`; black if the path ends
   float survival;              // probability with which roulette by throughput lets the path go on
@@ -48,6 +57,7 @@ struct Bounce : Arrival {
 // Steps are taken by a few paths at a time: as many as the first-level cache holds, so that each finds what
 // the step before it left.
 inline constexpr size_t kBounceBlock = SamplerBlock::kSize;
+static_assert(kBounceBlock <= DirectionGuide::kVerticesAtOnce);
 
 // A shadow ray adds this radiance to its path if nothing is in the way.
 struct ShadowRay {
@@ -110,7 +120,7 @@ void playRouletteOnDeparture(const PathSettings& settings, Bounces bounces);
 // Asks for shadow rays, though not always where the light would add little to the pixel.
 void requestShadowRays(const PathSettings& settings, Batch& batch, Bounces bounces);
 // Tells the recorder what happened.
-void recordBounces(const PathSettings& settings, Batch& batch, Bounces bounces);
+void recordBounces(Batch& batch, Bounces bounces);
 // Gives each path that survives its next ray.
 void departRays(Bounces bounces);
 

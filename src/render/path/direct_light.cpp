@@ -20,10 +20,27 @@ void estimateLight(const Vertex& vertex, const EmitterSample& light, float proba
   result.pdf = light.delta ? 0 : light.pdf * probability;
 }
 
-// The weight of next-event estimation against the mixture that directions are sampled from.
-float misWeight(const LightEstimate& light, const GuidedBsdf& bsdf) {
+// The weight of next-event estimation against the mixture that directions are sampled from; `mapPdf` is what
+// the map that guides gives the light's direction, if one does.
+float misWeight(const LightEstimate& light, const GuidedBsdf& bsdf, float mapPdf) {
   if (!(light.pdf > 0)) return 1;
-  return powerHeuristic(light.pdf, bsdf.pdf(light.bsdf, light.wi, light.texel));
+  return powerHeuristic(light.pdf, bsdf.pdf(light.bsdf, light.wi, mapPdf));
+}
+
+// Whether the map that guides a vertex is asked for the density of its light's direction.
+bool hasMapPdf(const Bounce& bounce) {
+  return bounce.light.pdf > 0 && bounce.bsdf.map();
+}
+
+// Finds the texels of lights' directions, which are fetched while other steps are taken.
+void fetchTexels(Bounces bounces) {
+  MapLookUps lookUps;
+  for (const Bounce& bounce : bounces)
+    if (hasMapPdf(bounce)) lookUps.add(*bounce.bsdf.map(), bounce.light.wi);
+  findTexels(lookUps);
+  const int32_t* texel = lookUps.texels;
+  for (Bounce& bounce : bounces)
+    if (hasMapPdf(bounce)) bounce.light.texel = *texel++;
 }
 
 }  // namespace
@@ -58,6 +75,7 @@ void sampleLights(const PathSettings& settings, Bounces bounces) {
     LightSampler::Choice& choice = choices[i];
     if (!choice.emitter) continue;
     choosing[i]->light.group = choice.group;
+    choosing[i]->light.groupProbability = choice.groupProbability();
     const LightTriangle* triangle =
         choice.emitter->motion() ? nullptr : choice.emitter->drawTriangle(choice.part, choice.u);
     if (triangle) {
@@ -69,25 +87,27 @@ void sampleLights(const PathSettings& settings, Bounces bounces) {
     }
   }
   for (size_t k = 0; k < otherCount; ++k) {
-    const auto& [emitter, part, probability, group, u] = choices[others[k]];
+    const LightSampler::Choice& choice = choices[others[k]];
     const Vertex& vertex = *choosing[others[k]]->vertex;
-    estimateLight(vertex, sampleLightAt(vertex.at.time, *emitter, part, vertex.at.p, u), probability,
-                  choosing[others[k]]->light);
+    estimateLight(vertex, sampleLightAt(vertex.at.time, *choice.emitter, choice.part, vertex.at.p, choice.u),
+                  choice.probability, choosing[others[k]]->light);
   }
   if (triangles.size() > 0) triangles.find();
   for (size_t i = 0; i < triangles.size(); ++i)
     estimateLight(*choosing[byTriangles[i]]->vertex, triangles[i], choices[byTriangles[i]].probability,
                   choosing[byTriangles[i]]->light);
-  for (Bounce& bounce : bounces)
-    if (bounce.light.pdf > 0) bounce.light.texel = bounce.bsdf.fetchTexel(bounce.light.wi);
+  fetchTexels(bounces);
 }
 
 void weighLights(Bounces bounces) {
-  for (Bounce& bounce : bounces) {
-    bounce.direct = Rgb(0, 0, 0);
-    if (!isBlack(bounce.light.radiance))
-      bounce.direct = bounce.light.radiance * misWeight(bounce.light, bounce.bsdf);
-  }
+  MapLookUps lookUps;
+  for (const Bounce& bounce : bounces)
+    if (hasMapPdf(bounce)) lookUps.add(*bounce.bsdf.map(), bounce.light.texel);
+  findPdfs(lookUps);
+  const float* mapPdf = lookUps.pdf.of;
+  for (Bounce& bounce : bounces)
+    bounce.direct =
+        bounce.light.radiance * misWeight(bounce.light, bounce.bsdf, hasMapPdf(bounce) ? *mapPdf++ : 0);
 }
 
 void requestShadowRays(const PathSettings& settings, Batch& batch, Bounces bounces) {

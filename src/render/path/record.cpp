@@ -22,7 +22,7 @@ void describeFirstHits(const PathSettings& settings, Bounces bounces) {
   }
 }
 
-static LightEvent lightEventOf(const PathSettings& settings, const Bounce& bounce) {
+static LightEvent lightEventOf(const Bounce& bounce) {
   const LightEstimate& light = bounce.light;
   LightEvent event;
   event.unweighted = toOdis(light.radiance);
@@ -32,17 +32,16 @@ static LightEvent lightEventOf(const PathSettings& settings, const Bounce& bounc
   event.bsdfPdf = light.bsdf.pdf;
   event.guidablePdf = light.bsdf.guidablePdf;
   event.group = light.group;
-  event.groupProbability =
-      bounce.shadowRayProbability * settings.lights->groupProbability(bounce.reference, light.group);
+  event.groupProbability = bounce.shadowRayProbability * light.groupProbability;
   return event;
 }
 
-void recordBounces(const PathSettings& settings, Batch& batch, Bounces bounces) {
+void recordBounces(Batch& batch, Bounces bounces) {
   if (!batch.recording) return;
   for (const Bounce& bounce : bounces) {
     const uint32_t path = bounce.path->handle;
     const auto& [at, wo] = *bounce.vertex;
-    if (bounce.shadowRayProbability > 0) batch.recorder.light(path, lightEventOf(settings, bounce));
+    if (bounce.shadowRayProbability > 0) batch.recorder.light(path, lightEventOf(bounce));
     const Bsdf& bsdf = at.shape->bsdf();
     const BsdfSample& next = bounce.next;
     BounceEvent event;

@@ -44,26 +44,6 @@ void drawNumbers(const PathSettings& settings, Batch& batch, Bounces bounces) {
   if (settings.shadowRoulette) draw1D(kShadowRayNumber, &VertexNumbers::shadowRay);
 }
 
-void prepareDirections(const PathSettings& settings, Bounces bounces) {
-  for (Bounce& bounce : bounces)
-    bounce.bsdf.prepare(settings, *bounce.path, *bounce.vertex, bounce.cell, bounce.guidable);
-}
-
-void countGuidable(Bounces bounces) {
-  for (Bounce& bounce : bounces) bounce.path->guidable += bounce.guidable > 0;
-}
-
-void chooseBlocks(Bounces bounces) {
-  for (Bounce& bounce : bounces) bounce.draw = bounce.bsdf.draw(bounce.numbers);
-}
-
-void sampleDirections(Bounces bounces) {
-  for (Bounce& bounce : bounces) {
-    bounce.next = bounce.bsdf.sample(*bounce.vertex, bounce.numbers, bounce.draw);
-    if (!isFinite(bounce.next.weight)) bounce.next = {};
-  }
-}
-
 void playRouletteOnDeparture(const PathSettings& settings, Bounces bounces) {
   for (Bounce& bounce : bounces) {
     bounce.survives = false;

@@ -61,7 +61,7 @@ Bounces takeSteps(const PathSettings& settings, Batch& batch, Bounces bounces) {
   describeFirstHits(settings, bounces);
   playRouletteOnDeparture(settings, bounces);
   requestShadowRays(settings, batch, bounces);
-  recordBounces(settings, batch, bounces);
+  recordBounces(batch, bounces);
   departRays(bounces);
   return bounces;
 }
