@@ -38,32 +38,33 @@ def gray(file):
 
 
 class ConvertScene(unittest.TestCase):
-    def setUp(self):
+    @classmethod
+    def setUpClass(cls):
         scratch = tempfile.TemporaryDirectory()
-        self.addCleanup(scratch.cleanup)
-        self.folder = pathlib.Path(scratch.name)
+        cls.addClassCleanup(scratch.cleanup)
+        cls.folder = pathlib.Path(scratch.name)
         picture = np.repeat(STEPS[:, None, None], 3, axis=2)
-        mi.Bitmap(np.ascontiguousarray(picture)).write(str(self.folder / "steps.png"))
-        self.said = self.convert(SCENE)
-        self.text = (self.folder / "out/scene.xml").read_text()
+        mi.Bitmap(np.ascontiguousarray(picture)).write(str(cls.folder / "steps.png"))
+        cls.said, cls.text = cls.convert(SCENE, "out")
 
-    def convert(self, scene):
-        """Returns what is said on stderr."""
-        (self.folder / "scene.xml").write_text(scene)
-        command = [sys.executable, PROGRAM, self.folder / "scene.xml", self.folder / "out", "--pixels", "24"]
-        return subprocess.run(command, check=True, capture_output=True, text=True).stderr
+    @classmethod
+    def convert(cls, scene, out):
+        """Returns what is said on stderr, and the scene that was written to that folder."""
+        (cls.folder / "scene.xml").write_text(scene)
+        command = [sys.executable, PROGRAM, cls.folder / "scene.xml", cls.folder / out, "--pixels", "24"]
+        said = subprocess.run(command, check=True, capture_output=True, text=True).stderr
+        return said, (cls.folder / out / "scene.xml").read_text()
 
     def with_light(self, emitter):
         """What is said, and the mesh that shines: its positions, triangles and radiance."""
-        said = self.convert(SCENE.replace('<emitter type="constant"/>', emitter))
-        text = (self.folder / "out/scene.xml").read_text()
+        said, text = self.convert(SCENE.replace('<emitter type="constant"/>', emitter), "light")
         shader = re.search(r'<shader name="(\w+)">\n  <emission name="front" color="([^"]*)"', text)
         mesh = re.search(rf'<state shader="{shader[1]}"[^>]*>\n  <mesh P="([^"]*)"\n[^\n]*\n    verts="([^"]*)"', text)
         array = lambda numbers: np.array(numbers.split(), float).reshape(-1, 3)
         return said, array(mesh[1]), array(mesh[2]).astype(int), array(shader[2])[0]
 
     def test_without_light(self):
-        dark = self.convert(SCENE.replace('<emitter type="constant"/>', '<emitter type="directional"/>'))
+        dark, _ = self.convert(SCENE.replace('<emitter type="constant"/>', '<emitter type="directional"/>'), "dark")
         self.assertIn("DirectionalEmitter is left out", dark)
         self.assertIn("no light is left", dark)
         self.assertNotIn("no light is left", self.said)
@@ -90,9 +91,9 @@ class ConvertScene(unittest.TestCase):
         np.testing.assert_allclose(radiance * np.linalg.norm(area), 3, rtol=0.05)  # along its axis
 
     def test_cylinder(self):
-        self.convert(SCENE.replace('<emitter', '<shape type="cylinder"><point name="p0" x="5" y="0" z="0"/>'
-                                   '<point name="p1" x="5" y="4" z="0"/><float name="radius" value="0.5"/></shape><emitter'))
-        text = (self.folder / "out/scene.xml").read_text()
+        shape = ('<shape type="cylinder"><point name="p0" x="5" y="0" z="0"/>'
+                 '<point name="p1" x="5" y="4" z="0"/><float name="radius" value="0.5"/></shape>')
+        _, text = self.convert(SCENE.replace('<emitter', shape + '<emitter'), "cylinder")
         meshes = [np.array(p.split(), float).reshape(-1, 3) for p in re.findall(r'<mesh P="([^"]*)"', text)]
         tube = next(mesh for mesh in meshes if len(mesh) > 100)
         np.testing.assert_allclose(np.hypot(tube[:, 0] - 5, tube[:, 2]), 0.5, atol=1e-5)

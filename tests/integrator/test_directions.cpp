@@ -145,12 +145,12 @@ void expectDirectionsOfTheMixture(const std::string& bsdf, Random& random) {
 
 TEST(Directions, AreThoseOfTheMixture) {
   Random random(2);
-  for (const char* bsdf :
-       {"<bsdf type=\"diffuse\"/>", "<bsdf type=\"roughplastic\"><float name=\"alpha\" value=\"0.3\"/></bsdf>",
-        // Lobes that are too sharp to be guided, and delta lobes, beside one that may be.
-        "<bsdf type=\"roughplastic\"><float name=\"alpha\" value=\"0.01\"/></bsdf>",
-        "<bsdf type=\"plastic\"/>",
-        "<bsdf type=\"roughdielectric\"><float name=\"alpha\" value=\"0.4\"/></bsdf>"})
+  for (const char* bsdf : {"<bsdf type=\"diffuse\"/>",  //
+                           "<bsdf type=\"roughplastic\"><float name=\"alpha\" value=\"0.3\"/></bsdf>",
+                           // Lobes that are too sharp to be guided, and delta lobes, beside one that may be.
+                           "<bsdf type=\"roughplastic\"><float name=\"alpha\" value=\"0.01\"/></bsdf>",
+                           "<bsdf type=\"plastic\"/>",
+                           "<bsdf type=\"roughdielectric\"><float name=\"alpha\" value=\"0.4\"/></bsdf>"})
     expectDirectionsOfTheMixture(bsdf, random);
 }
 

@@ -45,12 +45,12 @@ class PixelTraining : public ::testing::Test {
     c.data = s_folder + "/data";
     c.width = 8;
     c.tile = 2;
-    c.steps = 24;
+    c.steps = 16;
     c.batch = 16;
     c.loss = Loss::l1;
     c.warmUpSteps = 2;
     c.roundSteps = 8;
-    c.validateSteps = 24;
+    c.validateSteps = 16;
     c.adversarialWeight = 0.05;
     c.adversarialStart = 6;
     c.adversarialFull = 12;
@@ -121,7 +121,7 @@ TEST_F(PixelTraining, EveryLossFalls) {
     learner->standardize(batch);
     const double before = learner->step(batch, 2e-3, 0).map;
     double after = before;
-    for (int step = 0; step < 30; ++step) after = learner->step(batch, 2e-3, 0).map;
+    for (int step = 0; step < 12; ++step) after = learner->step(batch, 2e-3, 0).map;
     EXPECT_LT(after, before) << int(loss);
   }
 }
