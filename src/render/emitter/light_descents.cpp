@@ -31,7 +31,7 @@ void LightDescents::gather(const std::array<const LightTree::Pair*, kLanes>& pai
 }
 
 ODIS_WIDE void LightDescents::findProbabilities(LightDescents& of) {
-  for (size_t i = 0; i < kLanes; ++i) {
+  for (size_t i = 0, end = endOfLanes(of.m_count); i < end; ++i) {
     const auto ofChild = [&](const Children& child) {
       const int32_t xy = child.axisXY[i], z = child.axisZ[i];
       const Vec3 axis(float(xy << 16 >> 16), float(xy >> 16), float(z << 16 >> 16));

@@ -8,7 +8,7 @@ namespace odis::render {
 
 ODIS_WIDE void LightTriangles::findPoints(LightTriangles& of) {
   const auto& [c0, c1, c2] = of.m_corners;
-  for (size_t i = 0; i < kLanes; ++i) {
+  for (size_t i = 0, end = endOfLanes(of.m_count); i < end; ++i) {
     const Vec2 b = squareToTriangle({of.m_u[i], of.m_v[i]});
     const Vec3 d = c0[i] * (1 - b.x - b.y) + c1[i] * b.x + c2[i] * b.y - of.m_ref[i];
     const float squared = lengthSquared(d), distance = std::sqrt(squared);

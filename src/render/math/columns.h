@@ -13,6 +13,11 @@ namespace odis::render {
 // How many paths lie side by side.
 inline constexpr size_t kLanes = 16;
 
+// The end of a loop over the first `count` lanes: the next multiple of eight, so that vectors are full.
+inline size_t endOfLanes(size_t count) {
+  return (count + 7) / 8 * 8;
+}
+
 // A number of each. Not a std::array, whose elements GCC 12 does not turn into vectors.
 struct alignas(64) Column {
   float of[kLanes];

@@ -22,9 +22,9 @@ struct Weights {
 
 // Which of four weights the number u of each lane falls into; u becomes its place within that weight, which
 // is noted (see VertexMap::pick()).
-ODIS_WIDE void pickLanes(const Weights& weights, Column& u, int32_t* picked, Column& weight) {
+ODIS_WIDE void pickLanes(size_t count, const Weights& weights, Column& u, int32_t* picked, Column& weight) {
   const auto& [w0, w1, w2, w3] = weights.of;
-  for (size_t i = 0; i < kLanes; ++i) {
+  for (size_t i = 0, end = endOfLanes(count); i < end; ++i) {
     const float begin1 = w0[i], begin2 = w0[i] + w1[i], begin3 = w0[i] + w1[i] + w2[i];
     const float target = u[i] * (begin3 + w3[i]);
     // Each piece that is reached replaces the one before.
@@ -47,7 +47,7 @@ ODIS_WIDE void pickLanes(const Weights& weights, Column& u, int32_t* picked, Col
 
 // The directions of the points u, v of texels, in [0, 1]^2 each.
 ODIS_WIDE void findDirections(MapSamples& samples, const int32_t* texels) {
-  for (size_t i = 0; i < kLanes; ++i) {
+  for (size_t i = 0, end = endOfLanes(samples.count); i < end; ++i) {
     const Float3 wi = squareToDirection(pointOfTexel<float>(texels[i], {samples.u[i], samples.v[i]}));
     samples.wi.x[i] = wi.x;
     samples.wi.y[i] = wi.y;
@@ -60,7 +60,7 @@ ODIS_WIDE void weighBlocks(const MapSamples& samples, VertexMap<float>::Block* w
 }
 
 ODIS_WIDE void findTexelsInLanes(MapLookUps& lookUps) {
-  for (size_t i = 0; i < kLanes; ++i)
+  for (size_t i = 0, end = endOfLanes(lookUps.count); i < end; ++i)
     lookUps.texels[i] = texelOf(Float3{lookUps.wi.x[i], lookUps.wi.y[i], lookUps.wi.z[i]});
 }
 
@@ -93,10 +93,10 @@ void chooseBlocks(MapSamples& samples) {
   Column ignored;
   int32_t columns[kLanes];
   weights.gather(samples.count, [&](size_t i) { return samples.maps[i]->rows(); });
-  pickLanes(weights, samples.v, samples.blocks, ignored);
+  pickLanes(samples.count, weights, samples.v, samples.blocks, ignored);
   weights.gather(samples.count,
                  [&](size_t i) { return samples.maps[i]->blocks() + kBlockSize * samples.blocks[i]; });
-  pickLanes(weights, samples.u, columns, ignored);
+  pickLanes(samples.count, weights, samples.u, columns, ignored);
   for (size_t i = 0; i < samples.count; ++i) samples.blocks[i] = samples.blocks[i] * kBlockSize + columns[i];
 }
 
@@ -108,9 +108,9 @@ void sampleWithinBlocks(MapSamples& samples) {
   Column picked;
   int32_t rows[kLanes], columns[kLanes], texels[kLanes];
   weights.gather(samples.count, [&](size_t i) { return blocks[i].rows; });
-  pickLanes(weights, samples.v, rows, picked);
+  pickLanes(samples.count, weights, samples.v, rows, picked);
   weights.gather(samples.count, [&](size_t i) { return blocks[i].texels + kBlockSize * rows[i]; });
-  pickLanes(weights, samples.u, columns, picked);
+  pickLanes(samples.count, weights, samples.u, columns, picked);
   for (size_t i = 0; i < samples.count; ++i) {
     texels[i] = samples.blocks[i] * kBlockTexels + rows[i] * kBlockSize + columns[i];
     samples.pdf[i] = picked[i] * blocks[i].toPdf;
