@@ -49,7 +49,10 @@ class ScalarParameter {
     m_mean = clamped(mean.x == mean.y && mean.y == mean.z ? mean.x : luminance(mean));
   }
 
-  float operator()(const SurfacePoint& at) const { return m_texture ? lookUp(at) : m_mean; }
+  // Always inline: a point of `principled` has ten of them.
+  [[gnu::always_inline]] float operator()(const SurfacePoint& at) const {
+    return m_texture ? lookUp(at) : m_mean;
+  }
   float mean() const { return m_mean; }
   bool isConstant() const { return !m_texture; }
   bool isZero() const { return !m_texture && m_mean == 0; }
