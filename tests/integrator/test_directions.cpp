@@ -1,4 +1,6 @@
 // Directions of several vertices side by side: drawn and weighed as each would be by itself.
+#include <gtest/gtest.h>
+
 #include "integrator/test_scenes.h"
 #include "odis/maps/pack.h"
 #include "render/path/bounce.h"
