@@ -97,7 +97,7 @@ TEST_F(PixelTraining, GoesOnAsIfNothingHadHappenedForBothPlayers) {
   if (!canTrain()) GTEST_SKIP() << "built without libtorch";
   TrainObserver patient;
   ASSERT_TRUE(train(config(), run("whole"), {}, patient));
-  StopsAfter impatient(2);
+  StopsAfter impatient(1);
   ASSERT_FALSE(train(config(), run("parts"), {}, impatient));
   ASSERT_TRUE(train(config(), run("parts"), {}, patient));
   EXPECT_EQ(bytesOf(run("parts") + "/odis.weights"), bytesOf(run("whole") + "/odis.weights"));
