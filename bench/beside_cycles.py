@@ -9,32 +9,24 @@ trace paths of at most 13 vertices, and take turns; time is that of the processe
 an image of 8 x 8 pixels takes (loading). Needs `pip install ".[mitsuba]"`.
 """
 import argparse
-import json
 import os
 import pathlib
-import re
 import subprocess
 import sys
 import tempfile
 
 import numpy as np
-from in_cycles import Program
+from beside_mitsuba import measure_odis
+from in_cycles import Program, size_of
 
 CONVERT = pathlib.Path(__file__).resolve().parent.parent / "integrations/openpgl/convert_scene.py"
 
 
 def cycles_rate(program, folder, spp, seed):
     """Samples a second of processor time."""
-    width, height = re.search(r'<camera width="(\d+)" height="(\d+)"', (folder / "scene.xml").read_text()).groups()
-    pixels = int(width) * int(height)
+    width, height = size_of((folder / "scene.xml").read_text())
     loading = program.render(folder, 1, seed, size=(8, 8))
-    return pixels * spp / (program.render(folder, spp, seed) - loading)
-
-
-def odis_rate(odis, scene, spp, pixels):
-    command = [odis, "bench", scene, "--json", "--quiet", "--rounds", "1", "--pixels", str(pixels), "--spp", str(spp)]
-    measured = json.loads(subprocess.run(command, capture_output=True, check=True).stdout)[0]
-    return measured["samplesPerCpuSecond"]
+    return int(width) * int(height) * spp / (program.render(folder, spp, seed) - loading)
 
 
 def main():
@@ -59,7 +51,7 @@ def main():
                 sys.exit(f"{scene}: {CONVERT.name} failed: {done.stderr[-500:]}")
             ours, theirs = [], []
             for seed in range(args.rounds):
-                ours.append(odis_rate(args.odis, scene, args.spp, args.pixels))
+                ours.append(measure_odis(args.odis, scene, args.pixels, args.spp)["samplesPerCpuSecond"])
                 theirs.append(cycles_rate(program, pathlib.Path(folder), args.spp, seed))
         ratios.append(np.median(ours) / np.median(theirs))
         name = os.path.basename(os.path.dirname(os.path.abspath(scene)))

@@ -28,6 +28,12 @@ def mitsuba_rate(scene, spp, seed):
     return image.shape[0] * image.shape[1] * spp / (sum(os.times()[:2]) - start)
 
 
+def measure_odis(odis, scene, pixels, spp):
+    """What `odis bench` measures of one scene in one round."""
+    command = [odis, "bench", scene, "--json", "--quiet", "--rounds", "1", "--pixels", str(pixels), "--spp", str(spp)]
+    return json.loads(subprocess.run(command, capture_output=True, check=True).stdout)[0]
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("odis")
@@ -44,8 +50,6 @@ def main():
     ratios = []
     for path in args.scenes:
         name = os.path.basename(os.path.dirname(os.path.abspath(path)))
-        command = [args.odis, "bench", path, "--json", "--quiet", "--rounds", "1", "--pixels", str(args.pixels),
-                   "--spp", str(args.spp)]
         ours, theirs, loaded, seconds = [], [], None, float("nan")
         try:
             start = time.time()
@@ -56,7 +60,7 @@ def main():
             print(f"{name}: {str(error).strip().splitlines()[-1]}", file=sys.stderr)
             loaded = None
         for seed in range(args.rounds):
-            measured = json.loads(subprocess.run(command, capture_output=True, check=True).stdout)[0]
+            measured = measure_odis(args.odis, path, args.pixels, args.spp)
             ours.append(measured["samplesPerCpuSecond"])
             if loaded is not None:
                 theirs.append(mitsuba_rate(loaded, args.spp, seed + 1))

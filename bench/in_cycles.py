@@ -36,6 +36,11 @@ def read(file):
     return np.array(colors.convert(mi.Bitmap.PixelFormat.RGB, mi.Struct.Type.Float32), np.float64)
 
 
+def size_of(text):
+    """Width and height, as text, of a scene that convert_scene.py wrote."""
+    return re.search(r'<camera width="(\d+)" height="(\d+)"', text).groups()
+
+
 class Program:
     def __init__(self, cycles, threads, any_library, mixture=False):
         """any_library: the folder of a libopenpgl, which the program does not start without."""
@@ -52,7 +57,7 @@ class Program:
         environment = {**os.environ, "LD_LIBRARY_PATH": str(library or self.any_library)}
         command = [self.cycles, "--background", "--quiet", "--samples", str(spp), "--threads", str(self.threads)]
         # The program has a size of its own unless it is told one.
-        width, height = size or re.search(r'<camera width="(\d+)" height="(\d+)"', text).groups()
+        width, height = size or size_of(text)
         command += ["--width", str(width), "--height", str(height)]
         with tempfile.TemporaryDirectory() as folder:
             target = output or pathlib.Path(folder) / "image.exr"

@@ -110,8 +110,8 @@ class VertexMap {
     return {squareToDirection(pointOfTexel<Real>(texel, {u, v})), element(texels, x) * weights.toPdf};
   }
 
-  // For hosts that take the second step for many vertices side by side: the texels of one block, what they
-  // weigh, and the sums of their rows; weight * toPdf is the density within a texel.
+  // For hosts that take the second step for many vertices side by side: the weights of a block's texels, row
+  // by row, and the sums of these rows. A texel's weight times toPdf is the density within it.
   struct Block {
     Real texels[kBlockTexels];
     Real rows[kBlockSize];
@@ -129,7 +129,8 @@ class VertexMap {
     const Real ofBlock = element(row(m_blocks, block >> 2), block & Int(3));
     weights.toPdf = m_toPdf * ofBlock / sumRows(weights.texels, weights.rows);
   }
-  // And for the first step: the weights of the blocks, row by row, and the sums of the rows.
+  // For hosts that take the first step so: chooseBlock() chooses by the weights of the blocks, which lie row
+  // by row, and by the sums of these rows.
   ODIS_HOST_DEVICE const Real (&blocks() const)[kMapBlocks] { return m_blocks; }
   ODIS_HOST_DEVICE const Real (&rows() const)[kBlockSize] { return m_rows; }
 

@@ -34,7 +34,7 @@ class LightSampler {
     const Emitter* emitter = nullptr;  // null if no light shines upon the reference
     uint32_t part = 0;
     float probability = 0;  // discrete; of a divided environment relative, see probability()
-    float within = 0;       // of it, the probability within the group; the rest is the group's own
+    float within = 0;       // the probability within the group, a factor of `probability`
     uint32_t group = 0;
     Vec2 u{0, 0};  // for sampling the part
 

@@ -31,11 +31,11 @@ struct Arrival {
   bool scatters;         // whether the path goes on to be scattered here
 };
 
-// Where the next direction of a path whose vertex has a map comes from.
+// How the next direction of a path is drawn where a map guides the vertex.
 struct DirectionDraw {
-  bool fromMap;      // or, if the BSDF draws a lobe that is not guided, from there
-  float u;           // the number that draws, besides VertexNumbers::direction.y
-  int32_t block;     // of the map, and
+  bool fromMap;      // from the map, unless the BSDF draws a lobe that is not guided; else from the BSDF
+  float u;           // draws the direction, together with VertexNumbers::direction.y
+  int32_t block;     // of the map: the one that was chosen
   Vec2 withinBlock;  // the numbers that sample within it
 };
 

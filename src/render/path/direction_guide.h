@@ -23,7 +23,7 @@ class DirectionSampler {
 
 class DirectionGuide {
  public:
-  // The path tracer takes the directions of so many vertices side by side.
+  // For how many vertices the path tracer asks before it samples a direction at the first of them.
   static constexpr size_t kVerticesAtOnce = kLanes;
 
   virtual ~DirectionGuide() = default;

@@ -20,8 +20,8 @@ struct Weights {
   }
 };
 
-// Which of four weights the number u of each lane falls into; u becomes its place within that weight, which
-// is noted (see VertexMap::pick()).
+// Does what VertexMap::pick() does in every lane: finds which of four weights the number u falls into.
+// `picked` is the index of that weight, `weight` the weight itself; u becomes its place within the weight.
 ODIS_WIDE void pickLanes(size_t count, const Weights& weights, Column& u, int32_t* picked, Column& weight) {
   const auto& [w0, w1, w2, w3] = weights.of;
   for (size_t i = 0, end = endOfLanes(count); i < end; ++i) {
