@@ -142,8 +142,8 @@ ODIS_API void odisDescribeVertices(OdisPathVertices* vertices, const OdisPathVer
 // ---- frame: an image from its first sample to its last ----
 
 ODIS_API void odisInitFrameOptions(OdisFrameOptions* options, size_t size);
-// 112 bytes a pixel for sums, 12 for decisions; 188 bytes a pilot vertex until the guide is built; the
-// guide's own.
+// 112 bytes a pixel for sums, 12 for decisions; 84 bytes a vertex that is learned from, until the guide is
+// built anew, and 112 more for some of the pilot's; the guide's own.
 ODIS_API OdisFrame odisNewFrame(OdisContext context, const OdisFrameOptions* options);
 ODIS_API void odisRetainFrame(OdisFrame frame);
 ODIS_API void odisReleaseFrame(OdisFrame frame);

@@ -4,10 +4,10 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "odis/cells/batches.h"
 #include "odis/image/guiding_gain.h"
 #include "odis/image/sample_counts.h"
 #include "odis/models/model.h"
+#include "odis/record/vertex_check.h"
 
 namespace odis::core {
 
@@ -27,7 +27,7 @@ constexpr size_t kFewPixels = 16384;
 constexpr uint64_t kGuideSeed = 0x9e3779b97f4a7c15ull;
 
 // How many cells there are does not depend on the number of pixels. Of a pass of more samples than these the
-// guide learns from some pixels only: more gains nothing and costs memory. Vertices of the pilot are larger.
+// guide learns from some pixels only: more gains nothing and costs memory. Of the pilot's more is kept.
 constexpr uint64_t kMostPilotSamples = 1200000, kMostGuidedSamples = 2400000;
 uint32_t pixelsPerLearnedIn(uint64_t samples, uint64_t most) {
   return uint32_t((samples + most - 1) / most);
@@ -51,6 +51,26 @@ std::vector<ArrayView<const PathVertex>> partsOf(const VertexTiles& tiles) {
 }
 
 }  // namespace
+
+VertexCounts countsOf(ArrayView<const VertexSamples> tiles) {
+  VertexCounts counts;
+  for (const VertexSamples& samples : tiles) addCounts(counts, samples.counts());
+  return counts;
+}
+uint64_t vertexCount(ArrayView<const VertexSamples> tiles) {
+  const VertexCounts counts = countsOf(tiles);
+  return counts.accepted + refusedVertices(counts);
+}
+uint64_t bytesOf(ArrayView<const VertexSamples> tiles) {
+  uint64_t bytes = 0;
+  for (const VertexSamples& samples : tiles) bytes += samples.bytes();
+  return bytes;
+}
+uint64_t bytesOf(const VertexTiles& tiles) {
+  uint64_t bytes = 0;
+  for (const std::vector<PathVertex>& tile : tiles) bytes += tile.size() * sizeof(PathVertex);
+  return bytes;
+}
 
 const FrameOptions& checkedOptions(const FrameOptions& o) {
   requireOption(o.width > 0 && o.height > 0, "width, height: expected at least one pixel");
@@ -98,6 +118,7 @@ SampleRange Frame::Data::samples(uint32_t pixel) const {
 void Frame::Data::describePass() {
   const size_t pixels = pilot.size();
   pass = {};
+  passVertexCount = 0;
   pass.kind = next;
   pass.seed = options.seed;
   view = guide.view();
@@ -107,20 +128,26 @@ void Frame::Data::describePass() {
     pass.stageSamples = pixels * schedule.mostRemaining();
     pass.wantsVertices = learns();
     if (pixels < kFewPixels) pass.seed ^= guidesBuilt * kGuideSeed;
-    cellSamples.clear();
-    if (learns()) cellSamples.resize(tiles.tileCount());
+    if (learns()) passSamples.resize(tiles.tileCount());
     pixelsPerLearned = pixelsPerLearnedIn(pixels * (end - done), kMostGuidedSamples);
     return;
   }
   pass.stageSamples = next == ODIS_PASS_PILOT ? schedule.pilotSamples() : pixels * options.oracleSamples;
   pass.wantsVertices = true;
   pass.partOfImage = next == ODIS_PASS_PILOT;
-  // Whoever asks for the pilot's vertices, and maps at pixels, want all of them.
-  const bool keepsAll =
-      !pass.partOfImage || options.keepPilotVertices || guideOptions.pixelMaps != ODIS_PIXEL_MAPS_NONE;
-  pixelsPerLearned = keepsAll ? 1 : pixelsPerLearnedIn(schedule.pilotSamples(), kMostPilotSamples);
+  pixelsPerLearned = keepsVertices() || !pass.partOfImage
+                         ? 1
+                         : pixelsPerLearnedIn(schedule.pilotSamples(), kMostPilotSamples);
   if (next == ODIS_PASS_ORACLE) pass.seed ^= kOracleSeed;
-  passVertices.assign(tiles.tileCount(), {});
+  const bool isLearnedFrom = next == ODIS_PASS_ORACLE || options.oracleSamples == 0;
+  if (isLearnedFrom) passSamples.resize(tiles.tileCount());
+  if (keepsVertices()) passVertices.assign(tiles.tileCount(), {});
+}
+
+// Whoever asks for the pilot's vertices, and maps at pixels, want all of them as they are.
+bool Frame::Data::keepsVertices() const {
+  return next != ODIS_PASS_GUIDED &&
+         (options.keepPilotVertices || guideOptions.pixelMaps != ODIS_PIXEL_MAPS_NONE);
 }
 
 // Takes a tile's samples and vertices.
@@ -134,13 +161,15 @@ void Frame::Data::take(uint32_t tile, ArrayView<const FrameSample> samples, Tile
     vertices.filter([this](const PathVertex& v) {
       return (v.pixel % options.width + 2 * (v.pixel / options.width)) % pixelsPerLearned == 0;
     });
-  if (next == ODIS_PASS_GUIDED) {
-    cellSamples[tile] = builder->take(vertices.view());
-    keptBytes += cellSamples[tile].bytes();
-  } else {
-    keptBytes += vertices.size() * sizeof(PathVertex);
-    passVertices[tile] = vertices.take();
+  const uint64_t seen = passVertexCount += vertices.size();
+  if (!passSamples.empty()) {
+    passSamples[tile] = next == ODIS_PASS_GUIDED ? builder->take(vertices.view())
+                                                 : builder->takeUnguided(vertices.view(), seen);
+    keptBytes += passSamples[tile].bytes();
   }
+  if (!keepsVertices()) return;
+  keptBytes += vertices.size() * sizeof(PathVertex);
+  passVertices[tile] = vertices.take();
 }
 
 // Makes the maps at pixels that come from the pilot, or gets ready for those of the oracle.
@@ -154,37 +183,40 @@ void Frame::Data::describePixels() {
   keptBytes += pixelMaps.bytes();
 }
 
-// Pixel values come from the pilot's image, and the guide from its vertices.
+// Pixel values come from the pilot's image.
 void Frame::Data::endPilot() {
   pixelValues = estimatePixelValues(pilot, options.width);
   describePixels();
   pilotVertices = std::move(passVertices);
-  pilotVertexCount = countVertices(partsOf(pilotVertices));
-  buildingBytes = pilotVertexCount * sizeof(PathVertex);
+  pilotVertexCount = passVertexCount;
+  buildingBytes = keptBytes;
   next = options.oracleSamples > 0 ? ODIS_PASS_ORACLE : ODIS_PASS_GUIDED;
 }
 
+// Adds what was taken from an unguided pass to the cells, and keeps what BSDF sampling fractions are chosen
+// by.
+void Frame::Data::learnUnguided(bool forFractions) {
+  builder->add(passSamples);
+  if (forFractions) std::move(passSamples.begin(), passSamples.end(), std::back_inserter(unguided));
+  passSamples.clear();
+  passVertices = {};
+  keptBytes = bytesOf(pilotVertices) + bytesOf(unguided) + pixelMaps.bytes();
+}
+
 void Frame::Data::endOraclePass() {
-  builder->add(partsOf(passVertices));
   if (pixelOracle) pixelOracle->add(partsOf(passVertices), *tasks);
-  if (oraclePasses < kOracleFractionPasses)
-    std::move(passVertices.begin(), passVertices.end(), std::back_inserter(oracleVertices));
+  learnUnguided(oraclePasses < kOracleFractionPasses);
   if (++oraclePasses == options.oracleSamples) next = ODIS_PASS_GUIDED;
 }
 
-// Builds the first guide from all that the builder was taught, with BSDF sampling fractions from the
-// vertices `judged`.
-void Frame::Data::buildGuide(const VertexTiles& taught, const VertexTiles& judged) {
-  builder->add(partsOf(taught));
-  cells = builder->build(partsOf(judged), pixelValues);
+// Builds the first guide from all that the builder was taught.
+void Frame::Data::buildGuide() {
+  cells = builder->build(unguided, vertexCount(unguided), pixelValues);
   if (pixelOracle) pixelMaps = pixelOracle->maps(*tasks);
   pixelOracle.reset();
-  keptBytes = pixelMaps.bytes();
-  useCells();
-  takeStock(pilotVertexCount * sizeof(PathVertex));
-  oracleVertices = {};
-  if (options.keepPilotVertices) keptBytes += pilotVertexCount * sizeof(PathVertex);
   if (!options.keepPilotVertices) pilotVertices = {};
+  useCells();
+  takeStock();
 }
 
 // Makes the guide of what the cells know, and of the maps at pixels.
@@ -193,16 +225,19 @@ void Frame::Data::useCells() {
   ++guidesBuilt;
 }
 
-// Notes what building needed, beside vertices of this many bytes, and lets go of the builder when the guide
-// won't learn any more.
-void Frame::Data::takeStock(uint64_t vertices) {
-  buildingBytes = std::max(buildingBytes, builder->bytes() + vertices);
+// Notes what building needed, lets go of what was taken from vertices and, when the guide won't learn any
+// more, of the builder.
+void Frame::Data::takeStock() {
+  buildingBytes = std::max<uint64_t>(buildingBytes, builder->bytes() + keptBytes);
   vertexCounts = builder->vertexCounts();
-  if (learns()) return;
-  builder.reset();
-  cells = {};
-  keptBytes -= pixelMaps.bytes();
-  pixelMaps = {};
+  passSamples.clear();
+  unguided.clear();
+  if (!learns()) {
+    builder.reset();
+    cells = {};
+    pixelMaps = {};
+  }
+  keptBytes = bytesOf(pilotVertices) + pixelMaps.bytes();
 }
 
 // Settles how many samples each pixel has.
@@ -220,27 +255,26 @@ void Frame::Data::spreadSamples() {
 
 // Learns from the vertices of a guided pass, and rebuilds the guide where it is time.
 void Frame::Data::refineGuide() {
-  builder->add(cellSamples);
-  for (const CellSamples& samples : cellSamples) keptBytes -= samples.bytes();
-  cellSamples.clear();
+  builder->add(passSamples);
+  keptBytes = bytesOf(pilotVertices) + pixelMaps.bytes();
   if (std::has_single_bit(end + 1)) {
     cells = builder->rebuild(cells);
     useCells();
   }
   done = end;
-  takeStock(0);
+  takeStock();
 }
 
 void Frame::Data::resume() {
   tiles.skip(resumed->tilesDone);
   if (!pass.wantsVertices) return resumed.reset();
-  if (next == ODIS_PASS_GUIDED) {
-    cellSamples = std::move(resumed->cellSamples);
-    for (const CellSamples& samples : cellSamples) keptBytes += samples.bytes();
-  } else {
-    passVertices = std::move(resumed->vertices);
-    keptBytes += countVertices(partsOf(passVertices)) * sizeof(PathVertex);
-  }
+  const size_t taken = passSamples.size(), kept = passVertices.size();
+  passSamples = std::move(resumed->samples);
+  passVertices = std::move(resumed->vertices);
+  passSamples.resize(taken);
+  passVertices.resize(kept);
+  passVertexCount = vertexCount(passSamples);
+  keptBytes += bytesOf(passSamples) + bytesOf(passVertices);
   resumed.reset();
 }
 
@@ -254,13 +288,11 @@ bool Frame::Data::guidingDoesNotPay() const {
 // Goes on without a guide. No sample's weight changes, nor how many there are: only samples that are still to
 // be drawn know of it, and their mean is the same in any case.
 void Frame::Data::giveUpGuiding() {
-  for (const CellSamples& samples : cellSamples) keptBytes -= samples.bytes();
-  cellSamples.clear();
   guide = cells = Guide();
   ++guidesBuilt;
   schedule.endRefinement();
   done = end;
-  takeStock(0);
+  takeStock();
 }
 
 void Frame::Data::endGuidedPass() {
@@ -325,12 +357,12 @@ void Frame::endPass(bool interrupted) {
   const OdisPassKind kind = d.next;
   if (kind == ODIS_PASS_PILOT) d.endPilot();
   if (interrupted) return;
+  if (kind == ODIS_PASS_PILOT && d.next == ODIS_PASS_GUIDED) d.learnUnguided(true);
   if (kind == ODIS_PASS_ORACLE) d.endOraclePass();
   if (kind == ODIS_PASS_GUIDED)
     d.endGuidedPass();
   else if (d.next == ODIS_PASS_GUIDED)
-    kind == ODIS_PASS_PILOT ? d.buildGuide(d.pilotVertices, d.pilotVertices)
-                            : d.buildGuide({}, d.oracleVertices);
+    d.buildGuide();
   d.finished = false;
 }
 
@@ -347,7 +379,7 @@ void Frame::setProgress(OdisProgressFunction function, void* user) {
 }
 
 void Frame::limitBytes(uint64_t most) {
-  if (m_data->builder) m_data->builder->limitBytes(most, countVertices(partsOf(m_data->passVertices)));
+  if (m_data->builder) m_data->builder->limitBytes(most, m_data->passVertexCount);
 }
 int Frame::coarsening() const {
   return m_data->builder ? m_data->builder->coarsening() : 1;
@@ -426,7 +458,9 @@ ArrayView<const PixelSums> Frame::pilotImage() const {
 }
 
 size_t Frame::pilotVertexCount() const {
-  return countVertices(partsOf(m_data->pilotVertices));
+  size_t count = 0;
+  for (const std::vector<PathVertex>& tile : m_data->pilotVertices) count += tile.size();
+  return count;
 }
 
 std::vector<PathVertex> Frame::pilotVertices() const {

@@ -40,9 +40,9 @@ using SampleRange = OdisSampleRange;
 using FrameSample = OdisFrameSample;
 using FrameStatistics = OdisFrameStatistics;
 
-// Pixels are counted row by row. Memory: 112 bytes a pixel for sums, 12 for decisions; 188 bytes a pilot
-// vertex until the guide is built; the guide's own. All functions throw std::logic_error when they are
-// called out of order.
+// Pixels are counted row by row. Memory: 112 bytes a pixel for sums, 12 for decisions; 84 bytes a vertex
+// that is learned from, until the guide is built anew, 112 more for some of the pilot's, 188 more where
+// vertices are kept; the guide's own. All functions throw std::logic_error when they are called out of order.
 class Frame {
  public:
   // Throws std::invalid_argument where an option is out of its range. `builder` is the one to learn into,

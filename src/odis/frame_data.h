@@ -15,8 +15,8 @@ using VertexTiles = std::vector<std::vector<PathVertex>>;
 // What a saved frame has of a pass: all of the tiles whose samples were in.
 struct ResumedPass {
   std::vector<uint8_t> tilesDone;
-  VertexTiles vertices;
-  std::vector<CellSamples> cellSamples;
+  VertexTiles vertices;  // where they are kept
+  std::vector<VertexSamples> samples;
 };
 
 struct FramePosition;
@@ -27,6 +27,12 @@ float pilotWeight(const FrameOptions& options, const Schedule& schedule, uint32_
 // Throws std::invalid_argument where an option is out of its range.
 const FrameOptions& checkedOptions(const FrameOptions& options);
 
+// Sums over tiles: vertices by what can be learned from them, all vertices, memory.
+VertexCounts countsOf(ArrayView<const VertexSamples> tiles);
+uint64_t vertexCount(ArrayView<const VertexSamples> tiles);
+uint64_t bytesOf(ArrayView<const VertexSamples> tiles);
+uint64_t bytesOf(const VertexTiles& tiles);
+
 struct Frame::Data {
   Data(const FrameOptions& o, std::shared_ptr<const Tasks> tasks, std::shared_ptr<GuideBuilder> given);
 
@@ -35,15 +41,17 @@ struct Frame::Data {
   void take(uint32_t tile, ArrayView<const FrameSample> samples, TileVertices& vertices);
   void endPilot();
   void endOraclePass();
+  bool keepsVertices() const;
   void describePixels();
+  void learnUnguided(bool forFractions);
   void useCells();
-  void buildGuide(const VertexTiles& taught, const VertexTiles& judged);
+  void buildGuide();
   void endGuidedPass();
   void spreadSamples();
   bool guidingDoesNotPay() const;
   void giveUpGuiding();
   void refineGuide();
-  void takeStock(uint64_t vertices);
+  void takeStock();
 
   bool learns() const { return done < schedule.lastRefinement(); }
   SampleRange samples(uint32_t pixel) const;
@@ -76,11 +84,12 @@ struct Frame::Data {
   uint32_t oraclePasses = 0;                // passes of the oracle that are done
   uint32_t done = 0, end = 0;               // samples after the pilot: done before the pass, and by its end
   uint32_t pixelsPerLearned = 1;            // of the pass: the guide learns from one pixel in so many
-  VertexTiles pilotVertices, passVertices;  // [tile]
-  VertexTiles oracleVertices;               // those that the oracle's BSDF sampling fractions are made from
-  std::vector<CellSamples> cellSamples;     // [tile]
+  VertexTiles pilotVertices, passVertices;  // [tile], where they are kept
+  std::vector<VertexSamples> passSamples;   // [tile], of a pass that is learned from
+  std::vector<VertexSamples> unguided;      // what BSDF sampling fractions are chosen by
   std::atomic<uint64_t> notFinite{0};
-  std::atomic<uint64_t> keptBytes{0};  // of vertices, or of what was taken from them
+  std::atomic<uint64_t> passVertexCount{0};  // vertices of the pass that are learned from, so far
+  std::atomic<uint64_t> keptBytes{0};  // of vertices, of what was taken from them, and of maps at pixels
   uint64_t outsideFrame = 0, buildingBytes = 0, pilotVertexCount = 0;
   VertexCounts vertexCounts;
   std::unique_ptr<ResumedPass> resumed;

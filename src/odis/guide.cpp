@@ -82,13 +82,16 @@ float Guide::predictedVarianceRatio() const {
   return m_data ? m_data->prediction.varianceRatio : 1;
 }
 
-CellSamples::CellSamples() = default;
-CellSamples::~CellSamples() = default;
-CellSamples::CellSamples(CellSamples&&) noexcept = default;
-CellSamples& CellSamples::operator=(CellSamples&&) noexcept = default;
+VertexSamples::VertexSamples() = default;
+VertexSamples::~VertexSamples() = default;
+VertexSamples::VertexSamples(VertexSamples&&) noexcept = default;
+VertexSamples& VertexSamples::operator=(VertexSamples&&) noexcept = default;
 
-uint64_t CellSamples::bytes() const {
-  return m_data ? m_data->samples.bytes() : 0;
+VertexCounts VertexSamples::counts() const {
+  return m_data ? m_data->cells.counts : VertexCounts();
+}
+uint64_t VertexSamples::bytes() const {
+  return m_data ? m_data->cells.bytes() + m_data->fractions.capacity() * sizeof(FractionSample) : 0;
 }
 
 GuideBuilder::GuideBuilder(const GuideOptions& options, std::shared_ptr<const Tasks> tasks) {
@@ -103,18 +106,27 @@ void GuideBuilder::add(VertexParts parts) {
   if (m_data->options.cellsPerDiagonal == 0) return;
   m_data->store.add(parts, m_data->options.cellsPerDiagonal);
 }
-CellSamples GuideBuilder::take(ArrayView<const PathVertex> vertices) const {
+VertexSamples GuideBuilder::take(ArrayView<const PathVertex> vertices) const {
   if (m_data->options.cellsPerDiagonal == 0) return {};
-  CellSamples result;
-  result.m_data = std::make_unique<CellSamples::Data>(CellSamples::Data{m_data->store.take({vertices})});
+  VertexSamples result;
+  result.m_data =
+      std::make_unique<VertexSamples::Data>(VertexSamples::Data{m_data->store.take({vertices}), {}});
   return result;
 }
-void GuideBuilder::add(ArrayView<const CellSamples> samples) {
+VertexSamples GuideBuilder::takeUnguided(ArrayView<const PathVertex> vertices, uint64_t seen) const {
+  if (m_data->options.cellsPerDiagonal == 0) return {};
+  VertexSamples result;
+  result.m_data = std::make_unique<VertexSamples::Data>(
+      VertexSamples::Data{takeSamples({vertices}), takeFractionSamples(vertices, fractionStride(seen))});
+  return result;
+}
+void GuideBuilder::add(ArrayView<VertexSamples> samples) {
   if (m_data->options.cellsPerDiagonal == 0) return;
-  std::vector<const BatchSamples*> batches;
-  for (const CellSamples& batch : samples)
-    if (batch.m_data) batches.push_back(&batch.m_data->samples);
-  m_data->store.add(batches);
+  std::vector<BatchSamples*> batches;
+  for (VertexSamples& batch : samples)
+    if (batch.m_data) batches.push_back(&batch.m_data->cells);
+  m_data->store.add(batches, m_data->options.cellsPerDiagonal);
+  for (BatchSamples* batch : batches) batch->release();
 }
 
 void GuideBuilder::fade(float weight) {
@@ -205,22 +217,44 @@ void GuideBuilder::Data::addRouletteAndLights(Guide::Data& guide,
 }
 
 Guide GuideBuilder::build(VertexParts parts, ArrayView<const float> pixelValues) const {
-  if (m_data->options.cellsPerDiagonal == 0) return Guide();
-  const Progress& progress = m_data->progress;
+  const uint64_t seen = countItems(parts);
+  const std::vector<VertexBatch> batches = makeBatches(parts);
+  std::vector<std::vector<FractionSample>> samples(batches.size());
+  m_data->store.tasks().forEach(batches.size(), [&](size_t b) {
+    for (const ArrayView<const PathVertex>& piece : batches[b]) {
+      const std::vector<FractionSample> taken = takeFractionSamples(piece, fractionStride(seen));
+      samples[b].insert(samples[b].end(), taken.begin(), taken.end());
+    }
+  });
+  const std::vector<ArrayView<const FractionSample>> unguided(samples.begin(), samples.end());
+  return m_data->build(unguided, seen, pixelValues);
+}
+
+Guide GuideBuilder::build(ArrayView<const VertexSamples> unguided, uint64_t seen,
+                          ArrayView<const float> pixelValues) const {
+  std::vector<ArrayView<const FractionSample>> parts;
+  for (const VertexSamples& samples : unguided)
+    if (samples.m_data) parts.emplace_back(samples.m_data->fractions);
+  return m_data->build(parts, seen, pixelValues);
+}
+
+Guide GuideBuilder::Data::build(FractionParts unguided, uint64_t seen, ArrayView<const float> pixelValues) {
+  if (options.cellsPerDiagonal == 0) return Guide();
   progress.report(0);
-  const std::vector<CellStatistics>& cells = m_data->store.rollUp();
+  const std::vector<CellStatistics>& cells = store.rollUp();
   progress.report(0.3);
   std::vector<DirectionDistribution> distributions;
-  Guide guide = m_data->buildMaps(cells, distributions);
+  Guide guide = buildMaps(cells, distributions);
   progress.report(0.7);
   Guide::Data& result = *guide.m_data;
-  result.prediction = chooseFractions(result.decisions, {m_data->store, cells, distributions, result.maps(),
-                                                         guide.view().rules, parts, pixelValues});
-  if (const float fixed = m_data->options.fixedBsdfFraction; fixed > 0) {
+  result.prediction =
+      chooseFractions(result.decisions, {store, cells, distributions, result.maps(), guide.view().rules,
+                                         unguided, fractionStride(seen), pixelValues});
+  if (const float fixed = options.fixedBsdfFraction; fixed > 0) {
     for (CellDecisions& cell : result.decisions) std::fill_n(cell.bsdfFraction, kRoughnessClasses, fixed);
     result.prediction.varianceRatio = 1;
   }
-  m_data->addRouletteAndLights(result, cells);
+  addRouletteAndLights(result, cells);
   progress.report(1);
   return guide;
 }

@@ -28,19 +28,22 @@ inline IncidentRadiance radianceOf(const GuideOptions& options) {
 class Archive;
 class ArchiveWriter;
 
-// What a builder takes of some vertices, so that those need not be kept: about 70 bytes a vertex.
-class CellSamples {
+// What a builder takes of some vertices, so that those need not be kept: 72 bytes a vertex, and 112 for each
+// that the BSDF sampling fractions are chosen by (a quarter at most, of many vertices).
+class VertexSamples {
  public:
-  CellSamples();
-  ~CellSamples();
-  CellSamples(CellSamples&&) noexcept;
-  CellSamples& operator=(CellSamples&&) noexcept;
+  VertexSamples();
+  ~VertexSamples();
+  VertexSamples(VertexSamples&&) noexcept;
+  VertexSamples& operator=(VertexSamples&&) noexcept;
 
+  // How many vertices they were taken of, and how many of those can't be used.
+  VertexCounts counts() const;
   uint64_t bytes() const;
 
  private:
   friend class GuideBuilder;
-  friend struct SavedCellSamples;
+  friend struct SavedVertexSamples;
   struct Data;
   std::unique_ptr<Data> m_data;
 };
@@ -93,10 +96,13 @@ class GuideBuilder {
   // mixture's. Vertices that can't be used are left out and counted.
   void add(VertexParts parts);
   void add(ArrayView<const PathVertex> vertices) { add(VertexParts(&vertices, 1)); }
-  // The same in two steps, after a first call of add() above: take() may be called by many threads at once,
-  // for a part of the image each. Empty samples are fine.
-  CellSamples take(ArrayView<const PathVertex> vertices) const;
-  void add(ArrayView<const CellSamples> samples);
+  // The same in two steps: take() may be called by many threads at once, for a part of the image each; add()
+  // uses the samples up, but for what build() needs. Empty samples are fine.
+  VertexSamples take(ArrayView<const PathVertex> vertices) const;
+  void add(ArrayView<VertexSamples> samples);
+  // The same of vertices of unguided paths, for build() as well. `seen` vertices have been taken by now,
+  // these included: the more there are, the fewer of them does build() need.
+  VertexSamples takeUnguided(ArrayView<const PathVertex> vertices, uint64_t seen) const;
   // From frame to frame (odis/odis.h). fade() throws std::invalid_argument unless 0 <= weight <= 1,
   // setBounds() unless all is finite and lower <= upper. Guides of before are not of this builder any more.
   void fade(float weight);
@@ -104,12 +110,15 @@ class GuideBuilder {
   void setBounds(const Float3& lower, const Float3& upper);
   // Builds maps from all that was added, and BSDF sampling fractions from vertices that should be (a part
   // of) the same, without those of guided paths. `pixelValues`, indexed by PathVertex::pixel, are what the
-  // vertices' contributions are divided by; without any, by the mean of all paths. Throws std::out_of_range
+  // vertices' contributions are divided by; without any, by the mean of paths. Throws std::out_of_range
   // where a vertex has a pixel beyond them.
   Guide build(VertexParts parts, ArrayView<const float> pixelValues = {}) const;
   Guide build(ArrayView<const PathVertex> vertices, ArrayView<const float> pixelValues = {}) const {
     return build(VertexParts(&vertices, 1), pixelValues);
   }
+  // The same from what was taken of unguided paths, `seen` vertices in all.
+  Guide build(ArrayView<const VertexSamples> unguided, uint64_t seen,
+              ArrayView<const float> pixelValues = {}) const;
   // Builds all but BSDF sampling fractions and the prediction anew, from all that was added by now. Those are
   // taken from `previous`, which must come from this builder (else std::invalid_argument is thrown); cells
   // that are new have their parents' fractions.
@@ -139,7 +148,7 @@ class GuideBuilder {
   uint64_t modelId() const;
   // How many of the vertices added were taken, and how many refused, by reason.
   VertexCounts vertexCounts() const;
-  // Held at most, and held now, the vertices themselves not included.
+  // Held at most, samples included while they are added, and held now.
   uint64_t bytes() const;
   uint64_t heldBytes() const;
 

@@ -58,8 +58,9 @@ struct Guide::Data {
   GuidingPrediction prediction;
 };
 
-struct CellSamples::Data {
-  BatchSamples samples;
+struct VertexSamples::Data {
+  BatchSamples cells;
+  std::vector<FractionSample> fractions;  // of unguided vertices
 };
 
 struct GuideBuilder::Data {
@@ -81,6 +82,7 @@ struct GuideBuilder::Data {
     options.lightParts = lightParts.data();
   }
 
+  Guide build(FractionParts unguided, uint64_t seen, ArrayView<const float> pixelValues);
   Guide buildMaps(const std::vector<CellStatistics>& cells,
                   std::vector<DirectionDistribution>& distributions) const;
   void addRouletteAndLights(Guide::Data& guide, const std::vector<CellStatistics>& cells) const;

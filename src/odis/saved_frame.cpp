@@ -1,8 +1,10 @@
 // Frames written to a file and read again.
 #include "odis/saved_frame.h"
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
+#include <iterator>
 #include <stdexcept>
 
 #include "odis/guide_data.h"
@@ -56,60 +58,94 @@ VertexTiles loadTiles(const Archive& file, const std::string& name, size_t pixel
 
 }  // namespace
 
-// What was taken from the vertices of a guided pass, tile by tile.
-struct SavedCellSamples {
-  static void save(ArchiveWriter& file, const std::vector<CellSamples>& tiles) {
-    std::vector<uint64_t> sizes, cellSizes;
+// What was taken from vertices, tile by tile. What BSDF sampling fractions are chosen by is saved as far as
+// the number of vertices asks for it, which doesn't depend on the order in which tiles came.
+struct SavedVertexSamples {
+  static void save(ArchiveWriter& file, const std::string& name, const std::vector<VertexSamples>& tiles) {
+    std::vector<uint64_t> sizes, cellSizes, fractionSizes;
     std::vector<CellSample> samples;
     std::vector<uint32_t> cellOf;
     std::vector<BatchSamples::Cell> cells;
+    std::vector<FractionSample> fractions;
     std::vector<VertexCounts> counts;
-    for (const CellSamples& tile : tiles) {
-      const BatchSamples none;
-      const BatchSamples& batch = tile.m_data ? tile.m_data->samples : none;
+    const uint32_t stride = fractionStride(vertexCount(tiles));
+    const VertexSamples::Data none;
+    for (const VertexSamples& tile : tiles) {
+      const VertexSamples::Data& data = tile.m_data ? *tile.m_data : none;
+      const BatchSamples& batch = data.cells;
       sizes.push_back(batch.samples.size());
       cellSizes.push_back(batch.cells.size());
       samples.insert(samples.end(), batch.samples.begin(), batch.samples.end());
       cellOf.insert(cellOf.end(), batch.cellOf.begin(), batch.cellOf.end());
       cells.insert(cells.end(), batch.cells.begin(), batch.cells.end());
       counts.push_back(batch.counts);
+      const size_t before = fractions.size();
+      std::copy_if(data.fractions.begin(), data.fractions.end(), std::back_inserter(fractions),
+                   [stride](const FractionSample& v) { return isForFractions(v.pixel, stride); });
+      fractionSizes.push_back(fractions.size() - before);
     }
-    file.add("pass.samples.sizes", sizes);
-    file.add("pass.samples", samples);
-    file.add("pass.samples.cellOf", cellOf);
-    file.add("pass.cells.sizes", cellSizes);
-    file.add("pass.cells", cells);
-    file.add("pass.counts", counts);
+    file.add(name + ".samples.sizes", sizes);
+    file.add(name + ".samples", samples);
+    file.add(name + ".samples.cellOf", cellOf);
+    file.add(name + ".cells.sizes", cellSizes);
+    file.add(name + ".cells", cells);
+    file.add(name + ".fractions.sizes", fractionSizes);
+    file.add(name + ".fractions", fractions);
+    file.add(name + ".counts", counts);
   }
 
-  static std::vector<CellSamples> load(const Archive& file) {
-    const std::vector<uint64_t> sizes = file.get<uint64_t>("pass.samples.sizes");
-    std::vector<BatchSamples> batches(sizes.size());
+  // Reads an array of all tiles that was saved with its sizes; `arrayOf(t)` is where that of tile t goes.
+  template <class T, class ArrayOf>
+  static void read(const Archive& file, const std::string& name, const std::vector<uint64_t>& sizes,
+                   const ArrayOf& arrayOf) {
     size_t next = 0;
-    forEachPart(file, "pass.samples", file.get<CellSample>("pass.samples"), sizes,
-                [&](auto begin, auto end) { batches[next++].samples.assign(begin, end); });
-    next = 0;
-    forEachPart(file, "pass.samples.cellOf", file.get<uint32_t>("pass.samples.cellOf"), sizes,
-                [&](auto begin, auto end) { batches[next++].cellOf.assign(begin, end); });
-    next = 0;
-    forEachPart(file, "pass.cells", file.get<BatchSamples::Cell>("pass.cells"),
-                file.get<uint64_t>("pass.cells.sizes", sizes.size()),
-                [&](auto begin, auto end) { batches[next++].cells.assign(begin, end); });
-    const std::vector<VertexCounts> counts = file.get<VertexCounts>("pass.counts", sizes.size());
-    std::vector<CellSamples> tiles(sizes.size());
+    forEachPart(file, name, file.get<T>(name), sizes,
+                [&](auto begin, auto end) { arrayOf(next++).assign(begin, end); });
+  }
+
+  static std::vector<VertexSamples> load(const Archive& file, const std::string& name, size_t pixels) {
+    const std::vector<uint64_t> sizes = file.get<uint64_t>(name + ".samples.sizes");
+    const auto sizesOf = [&](const std::string& array) {
+      return file.get<uint64_t>(name + array + ".sizes", sizes.size());
+    };
+    std::vector<VertexSamples::Data> tiles(sizes.size());
+    read<CellSample>(
+        file, name + ".samples", sizes, [&](size_t t) -> auto& { return tiles[t].cells.samples; });
+    // Those that were taken before there was a grid have no cells yet.
+    if (!file.get<uint32_t>(name + ".samples.cellOf").empty())
+      read<uint32_t>(
+          file, name + ".samples.cellOf", sizes, [&](size_t t) -> auto& { return tiles[t].cells.cellOf; });
+    read<BatchSamples::Cell>(
+        file, name + ".cells", sizesOf(".cells"), [&](size_t t) -> auto& { return tiles[t].cells.cells; });
+    for (const auto& bytes : file.get<std::array<unsigned char, sizeof(FractionSample)>>(name + ".fractions"))
+      for (const size_t offset :
+           {offsetof(FractionSample, isFirst), offsetof(FractionSample, isUsable),
+            offsetof(FractionSample, discrete), offsetof(FractionSample, scattersBothSides)})
+        file.require(bytes[offset] <= 1, name + ".fractions: are damaged");
+    read<FractionSample>(
+        file, name + ".fractions",
+        sizesOf(".fractions"), [&](size_t t) -> auto& { return tiles[t].fractions; });
+    const std::vector<VertexCounts> counts = file.get<VertexCounts>(name + ".counts", sizes.size());
+    std::vector<VertexSamples> result(sizes.size());
     for (size_t t = 0; t < tiles.size(); ++t) {
-      BatchSamples& batch = batches[t];
-      batch.counts = counts[t];
-      for (const uint32_t cell : batch.cellOf)
-        file.require(cell < batch.cells.size(), "pass.samples.cellOf: is damaged");
-      for (const CellSample& sample : batch.samples)
-        file.require(!(sample.lightSquare > 0) || sample.lightGroup < kMaxLightGroups,
-                     "pass.samples: are damaged");
-      for (const BatchSamples::Cell& cell : batch.cells)
-        file.require(CellGrid::levelOf(cell.key) == 0, "pass.cells: are damaged");
-      tiles[t].m_data = std::make_unique<CellSamples::Data>(CellSamples::Data{std::move(batch)});
+      tiles[t].cells.counts = counts[t];
+      requireSound(file, name, tiles[t], pixels);
+      result[t].m_data = std::make_unique<VertexSamples::Data>(std::move(tiles[t]));
     }
-    return tiles;
+    return result;
+  }
+
+  static void requireSound(const Archive& file, const std::string& name, const VertexSamples::Data& tile,
+                           size_t pixels) {
+    for (const uint32_t cell : tile.cells.cellOf)
+      file.require(cell < tile.cells.cells.size(), name + ".samples.cellOf: is damaged");
+    for (const CellSample& sample : tile.cells.samples)
+      file.require(!(sample.lightSquare > 0) || sample.lightGroup < kMaxLightGroups,
+                   name + ".samples: are damaged");
+    for (const BatchSamples::Cell& cell : tile.cells.cells)
+      file.require(CellGrid::levelOf(cell.key) == 0, name + ".cells: are damaged");
+    for (const FractionSample& sample : tile.fractions)
+      file.require(sample.pixel < pixels, name + ".fractions: are damaged");
   }
 };
 
@@ -138,12 +174,12 @@ void Frame::save(ArchiveWriter& file) const {
   file.add("frame.later", d.later);
   file.add("frame.pixelValues", d.pixelValues);
   saveTiles(file, "frame.pilotVertices", d.pilotVertices);
-  saveTiles(file, "frame.oracleVertices", d.oracleVertices);
+  SavedVertexSamples::save(file, "frame.unguided", d.unguided);
   // A pass that was loaded and has not begun again is what it was.
   if (d.inPass || d.resumed) {
     file.add("pass.tilesDone", d.resumed ? d.resumed->tilesDone : d.tiles.done());
     saveTiles(file, "pass.vertices", d.resumed ? d.resumed->vertices : d.passVertices);
-    SavedCellSamples::save(file, d.resumed ? d.resumed->cellSamples : d.cellSamples);
+    SavedVertexSamples::save(file, "pass", d.resumed ? d.resumed->samples : d.passSamples);
   }
   if (d.builder) d.builder->save(file);
   d.guide.save(file);
@@ -210,7 +246,7 @@ SavedFrame::SavedFrame(const Archive& file)
       schedule(options.frame),
       vertexCounts(file.value<VertexCounts>("frame.vertexCounts")),
       pilotVertices(loadTiles(file, "frame.pilotVertices", pilot.size())),
-      oracleVertices(loadTiles(file, "frame.oracleVertices", pilot.size())),
+      unguided(SavedVertexSamples::load(file, "frame.unguided", pilot.size())),
       guide(Guide::load(file)),
       pixelMaps(readPixelMaps(file, pilot.size())),
       oraclePixels(file.get<PixelOracle::Pixel>("pixels.oracle")) {
@@ -247,11 +283,9 @@ void SavedFrame::readPass(const Archive& file) {
   pass = std::make_unique<ResumedPass>();
   pass->tilesDone = file.get<uint8_t>("pass.tilesDone", tiles);
   pass->vertices = loadTiles(file, "pass.vertices", pilot.size());
-  pass->cellSamples = SavedCellSamples::load(file);
+  pass->samples = SavedVertexSamples::load(file, "pass", pilot.size());
   const auto fits = [tiles](size_t size) { return size == 0 || size == tiles; };
-  file.require(fits(pass->vertices.size()) && fits(pass->cellSamples.size()), "pass.vertices: are damaged");
-  pass->vertices.resize(tiles);
-  pass->cellSamples.resize(tiles);
+  file.require(fits(pass->vertices.size()) && fits(pass->samples.size()), "pass.vertices: are damaged");
 }
 
 // Goes to the place between the first sample and the last where the frame was.
@@ -286,11 +320,11 @@ Frame Frame::load(const Archive& file, OdisModel model, std::shared_ptr<const Ta
   d.schedule = std::move(saved.schedule);
   d.vertexCounts = saved.vertexCounts;
   d.pilotVertices = std::move(saved.pilotVertices);
-  d.oracleVertices = std::move(saved.oracleVertices);
+  d.unguided = std::move(saved.unguided);
   d.guide = std::move(saved.guide);
   d.cells = d.guide.ofCellsAlone();
   d.pixelMaps = std::move(saved.pixelMaps);
-  d.keptBytes += d.pixelMaps.bytes();
+  d.keptBytes = bytesOf(d.pilotVertices) + bytesOf(d.unguided) + d.pixelMaps.bytes();
   if (!saved.oraclePixels.empty()) {
     d.pixelOracle = std::make_unique<PixelOracle>(int(d.options.width), int(d.options.height),
                                                   radianceOf(d.guideOptions));

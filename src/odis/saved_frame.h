@@ -38,7 +38,8 @@ struct SavedFrame {
   Schedule schedule;
   FramePosition position;
   VertexCounts vertexCounts;
-  VertexTiles pilotVertices, oracleVertices;
+  VertexTiles pilotVertices;
+  std::vector<VertexSamples> unguided;
   Guide guide;
   PixelMaps pixelMaps;
   std::vector<PixelOracle::Pixel> oraclePixels;

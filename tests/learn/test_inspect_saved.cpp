@@ -236,7 +236,7 @@ TEST(InspectSaved, AFrameWithinAPassHasItsWholeTiles) {
   EXPECT_EQ(pilot.frame->tilesDone, 2u);
   EXPECT_EQ(pilot.frame->tiles, 4u);
   ASSERT_TRUE(pilot.frame->passVertices);
-  EXPECT_EQ(pilot.frame->passVertices->counts.accepted, 32u * 16);
+  EXPECT_EQ(pilot.frame->passVertices->accepted, 32u * 16);
   EXPECT_EQ(pilot.frame->image[0].x, 1);
   EXPECT_EQ(pilot.frame->image[32 * 16].x, 0);
 

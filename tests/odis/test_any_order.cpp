@@ -226,7 +226,7 @@ TEST(GuideBuilder, PartsOfOneOrderGiveOneGuide) {
     for (GuideBuilder* builder : {&whole, &parts, &taken}) builder->add(first);
     whole.add(later);
     std::vector<ArrayView<const PathVertex>> pieces;
-    std::vector<CellSamples> samples;
+    std::vector<VertexSamples> samples;
     std::mt19937 engine(8);
     for (size_t begin = 0; begin < all.size();) {
       const size_t size = std::min<size_t>(engine() % 3000, all.size() - begin);

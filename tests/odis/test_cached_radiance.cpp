@@ -88,7 +88,7 @@ TEST(CachedRadiance, HoldsWhatCoatsMirror) {
   vertices[1].radiance = {7, 7, 7};
   vertices[2].discrete = true;
   vertices[2].guidableProbability = 0;
-  const BatchSamples taken = takeSamples({vertices}, CellGrid({0, 0, 0}, 1));
+  const BatchSamples taken = takeSamples({vertices});
   ASSERT_EQ(taken.samples.size(), 2u);
   EXPECT_EQ(taken.samples[0].outgoing.x, 2);
   EXPECT_EQ(taken.samples[1].outgoing.x, 8);

@@ -7,6 +7,7 @@
 #include "odis/cells/cell_index.h"
 #include "odis/cells/statistics.h"
 #include "odis/floor_under_patch.h"
+#include "odis/models/fraction_samples.h"
 #include "odis/same_guide.h"
 #include "support/models.h"
 
@@ -210,13 +211,57 @@ TEST(Guide, IsTheSameFromSamplesTakenByParts) {
   vertices.add(first);
   samples.add(first);
   vertices.add(later);
-  std::vector<CellSamples> parts(4);  // the last one remains empty
+  std::vector<VertexSamples> parts(4);  // the last one remains empty
   parts[0] = samples.take(all.subview(0, 1));
   parts[1] = samples.take({});
   parts[2] = samples.take(all.subview(1, all.size() - 1));
   samples.add(parts);
   EXPECT_EQ(samples.vertexCounts().accepted, first.size() + later.size());
   EXPECT_TRUE(sameGuide(vertices.build(first), samples.build(first)));
+}
+
+// Vertices need not be kept: what was taken of them, by parts of any size, makes the same guide.
+TEST(Guide, IsTheSameFromWhatWasTakenOfUnguidedVertices) {
+  std::vector<PathVertex> vertices = floorUnderPatch(kBright, 260000, 6);
+  for (size_t i = 0; i < vertices.size(); ++i) vertices[i].pixel = uint32_t(i);
+  const ArrayView<const PathVertex> all(vertices);
+  GuideBuilder whole(byFormula()), parts(byFormula());
+  whole.add(vertices);
+  std::vector<VertexSamples> taken;
+  uint64_t bytes = 0;
+  for (size_t begin = 0; begin < all.size(); begin += 20000) {
+    taken.push_back(parts.takeUnguided(all.subview(begin, 20000), begin + 20000));
+    bytes += taken.back().bytes();
+  }
+  EXPECT_LT(bytes, 188 * vertices.size() * 3 / 4);
+  parts.add(taken);
+  uint64_t left = 0;
+  for (const VertexSamples& samples : taken) left += samples.bytes();
+  EXPECT_LT(left, bytes / 2) << "what was added is kept";
+  EXPECT_TRUE(sameGuide(whole.build(vertices), parts.build(taken, vertices.size())));
+}
+
+TEST(FractionSamples, AreAQuarterOfTheVerticesWithinBounds) {
+  for (const auto& [vertices, expected] : {std::pair<uint64_t, double>{20000, 20000},
+                                           {99999, 99999},
+                                           {200000, 50000},
+                                           {800000, 200000},
+                                           {4000000, 200000}}) {
+    const uint32_t stride = fractionStride(vertices);
+    uint64_t chosen = 0;
+    for (uint32_t pixel = 0; pixel < vertices; ++pixel) chosen += isForFractions(pixel, stride);
+    EXPECT_NEAR(double(chosen), expected, 0.01 * expected) << vertices;
+  }
+}
+
+// What is taken before all vertices are known holds what is chosen in the end.
+TEST(FractionSamples, OfMoreVerticesAreThoseOfFewer) {
+  for (uint64_t vertices = 1000; vertices < 10000000; vertices *= 2) {
+    const uint32_t fewer = fractionStride(vertices), more = fractionStride(2 * vertices);
+    EXPECT_LE(fewer, more);
+    for (uint32_t pixel = 0; pixel < 100000; ++pixel)
+      EXPECT_LE(isForFractions(pixel, more), isForFractions(pixel, fewer));
+  }
 }
 
 TEST(Guide, DividesByPixelValues) {

@@ -109,7 +109,7 @@ TEST(VertexCounts, EachReasonIsCountedByBuilders) {
     EXPECT_EQ(refusedVertices(counts), 3u) << "defect " << i;
     EXPECT_EQ(counts.*defect.counted, 3u) << "defect " << i;
     // By both ways of adding.
-    std::vector<CellSamples> samples(2);
+    std::vector<VertexSamples> samples(2);
     samples[0] = builder.take(ArrayView<const PathVertex>(vertices).subview(0, 3));
     samples[1] = builder.take(ArrayView<const PathVertex>(vertices).subview(3, 7));
     builder.add(samples);

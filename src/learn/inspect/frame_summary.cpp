@@ -83,6 +83,11 @@ std::optional<VertexSummary> keptVertices(const core::VertexTiles& tiles) {
   return summary;
 }
 
+std::optional<VertexCounts> countsTaken(const std::vector<core::VertexSamples>& tiles) {
+  if (core::vertexCount(tiles) == 0) return std::nullopt;
+  return core::countsOf(tiles);
+}
+
 BuilderSummary summarizeBuilder(const core::Archive& file) {
   BuilderSummary result;
   for (const uint64_t key : file.get<uint64_t>("cells.keys")) {
@@ -125,7 +130,7 @@ FrameSummary summarizeFrame(const core::SavedFrame& saved, const core::Archive& 
   if (saved.pass) {
     result.tiles = saved.pass->tilesDone.size();
     for (const uint8_t done : saved.pass->tilesDone) result.tilesDone += done != 0;
-    result.passVertices = keptVertices(saved.pass->vertices);
+    result.passVertices = countsTaken(saved.pass->samples);
   }
   addImage(result, saved);
   result.notFinite = saved.position.notFinite;
@@ -133,7 +138,7 @@ FrameSummary summarizeFrame(const core::SavedFrame& saved, const core::Archive& 
   result.vertexCounts = saved.vertexCounts;
   result.vertexCounts.outsideFrame += saved.position.outsideFrame;
   result.pilotVertices = keptVertices(saved.pilotVertices);
-  result.oracleVertices = keptVertices(saved.oracleVertices);
+  result.unguidedVertices = countsTaken(saved.unguided);
   if (saved.position.builder) result.builder = summarizeBuilder(file);
   result.hostBytes = saved.hostData.size();
   return result;

@@ -80,7 +80,9 @@ struct FrameSummary {
   double luminance = 0;                // mean of the image
   uint64_t notFinite = 0, guides = 0;  // samples that counted as black; how often a guide was built
   VertexCounts vertexCounts;           // taken and refused by the builder, when the guide was built last
-  std::optional<VertexSummary> pilotVertices, oracleVertices, passVertices;  // those that are kept
+  std::optional<VertexSummary> pilotVertices;  // if they are kept
+  // Of the pass under way, and those that the oracle's BSDF sampling fractions will be chosen by.
+  std::optional<VertexCounts> passVertices, unguidedVertices;
   std::optional<BuilderSummary> builder;
   uint64_t hostBytes = 0;          // data that the host added
   std::vector<render::Rgb> image;  // so far, the pilot weighed as the frame does

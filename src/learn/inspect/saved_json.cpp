@@ -67,10 +67,6 @@ Json jsonVertices(const VertexSummary& v) {
             {"radiance", jsonQuantiles(v.radiance)},
             {"pdf", jsonQuantiles(v.pdf)}}}};
 }
-Json jsonKept(const std::optional<VertexSummary>& vertices) {
-  return vertices ? jsonVertices(*vertices) : Json();
-}
-
 Json jsonFrame(const FrameSummary& f) {
   Json options = Json::object();
   for (const ChosenOption& option : f.options) options[option.name] = option.value;
@@ -94,9 +90,9 @@ Json jsonFrame(const FrameSummary& f) {
           {"notFinite", f.notFinite},
           {"guidesBuilt", f.guides},
           {"vertexCounts", jsonCounts(f.vertexCounts)},
-          {"pilotVertices", jsonKept(f.pilotVertices)},
-          {"oracleVertices", jsonKept(f.oracleVertices)},
-          {"passVertices", jsonKept(f.passVertices)},
+          {"pilotVertices", f.pilotVertices ? jsonVertices(*f.pilotVertices) : Json()},
+          {"unguidedVertices", f.unguidedVertices ? jsonCounts(*f.unguidedVertices) : Json()},
+          {"passVertices", f.passVertices ? jsonCounts(*f.passVertices) : Json()},
           {"builder", builder},
           {"hostBytes", f.hostBytes}};
 }

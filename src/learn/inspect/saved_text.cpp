@@ -93,12 +93,6 @@ std::string verticesText(const VertexSummary& v) {
   return out + quantileRow("density", v.pdf);
 }
 
-std::string keptText(const std::string& name, const std::optional<VertexSummary>& vertices) {
-  if (!vertices) return "";
-  return fact(name, fmt::format("{}: {}; {}", vertices->count, countsText(vertices->counts),
-                                boundsWords(vertices->bounds)));
-}
-
 std::string frameText(const FrameSummary& f) {
   std::string out = fact("size", fmt::format("{} x {} pixels", f.width, f.height));
   out += fact("state", f.state);
@@ -112,9 +106,12 @@ std::string frameText(const FrameSummary& f) {
       fact("rays of a sample", fmt::format("{:.3g}", f.samples > 0 ? double(f.rays) / double(f.samples) : 0));
   out += fact("mean luminance", fmt::format("{:.6g}", f.luminance));
   out += fact("samples not finite", std::to_string(f.notFinite));
-  out += keptText("pilot's vertices", f.pilotVertices);
-  out += keptText("oracle's vertices", f.oracleVertices);
-  out += keptText("vertices of the pass", f.passVertices);
+  if (f.pilotVertices)
+    out += fact("pilot's vertices",
+                fmt::format("{}: {}; {}", f.pilotVertices->count, countsText(f.pilotVertices->counts),
+                            boundsWords(f.pilotVertices->bounds)));
+  if (f.unguidedVertices) out += fact("oracle's vertices", countsText(*f.unguidedVertices));
+  if (f.passVertices) out += fact("vertices of the pass", countsText(*f.passVertices));
   out += fact("guides built", std::to_string(f.guides));
   if (f.builder) {
     out += fact("cells of the builder", levelsText(f.builder->cells));

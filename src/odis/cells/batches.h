@@ -1,7 +1,8 @@
-// Path vertices split into tasks for any number of threads, and items of such tasks sorted by cell. How a
+// Vertices split into tasks for any number of threads, and items of such tasks sorted by cell. How a
 // list is split does not depend on the number of threads, so sums made batch by batch don't either.
 #pragma once
 
+#include <algorithm>
 #include <numeric>
 #include <span>
 #include <utility>
@@ -12,11 +13,39 @@
 
 namespace odis::core {
 
-// A run of vertices, in pieces as they lie in memory.
-using VertexBatch = std::vector<ArrayView<const PathVertex>>;
-std::vector<VertexBatch> makeBatches(VertexParts parts);
+// A run of items, in pieces as they lie in memory.
+template <class Item>
+using Batch = std::vector<ArrayView<const Item>>;
+using VertexBatch = Batch<PathVertex>;
 
-size_t countVertices(VertexParts parts);
+template <class Item>
+size_t countItems(ArrayView<const ArrayView<const Item>> parts) {
+  size_t count = 0;
+  for (const ArrayView<const Item>& part : parts) count += part.size();
+  return count;
+}
+
+// At most 256 batches of at least `smallest` items each: enough for many threads, and large enough that most
+// of a batch's items share their cells.
+template <class Item>
+std::vector<Batch<Item>> makeBatches(ArrayView<const ArrayView<const Item>> parts, size_t smallest = 16384) {
+  constexpr size_t kMostBatches = 256;
+  const size_t size = std::max(smallest, countItems(parts) / kMostBatches);
+  std::vector<Batch<Item>> batches;
+  size_t room = 0;  // in the last batch
+  for (ArrayView<const Item> part : parts)
+    while (!part.empty()) {
+      if (room == 0) {
+        batches.emplace_back();
+        room = size;
+      }
+      const size_t taken = std::min(room, part.size());
+      batches.back().push_back(part.subview(0, taken));
+      part = part.subview(taken, part.size() - taken);
+      room -= taken;
+    }
+  return batches;
+}
 
 // The items of each cell, in the order of batches and of items within them.
 template <class Item>

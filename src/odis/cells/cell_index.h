@@ -33,7 +33,7 @@ class CellIndex {
  private:
   void grow() {
     std::vector<CellSlot> old = std::move(m_slots);
-    m_slots.assign(old.empty() ? 1024 : old.size() * 2, {});
+    m_slots.assign(old.empty() ? 128 : old.size() * 2, {});
     for (const CellSlot& slot : old) {
       if (slot.cell == kNoCell) continue;
       uint64_t place = cellHash(slot.key) & mask();

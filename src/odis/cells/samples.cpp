@@ -37,30 +37,39 @@ Float3 returnedRadiance(const PathVertex& v) {
           usable(v.direct.z + v.weight.z * v.radiance.z)};
 }
 
-BatchSamples takeSamples(const VertexBatch& batch, const CellGrid& grid) {
+BatchSamples takeSamples(const VertexBatch& batch) {
   BatchSamples result;
   size_t count = 0;
   for (const ArrayView<const PathVertex>& piece : batch) count += piece.size();
   result.samples.reserve(count);
-  result.cellOf.reserve(count);
-  CellIndex index;
   for (const ArrayView<const PathVertex>& piece : batch)
     for (const PathVertex& v : piece) {
       const VertexState state = checkVertex(v);
       countVertex(result.counts, state);
       if (state != VertexState::usable && !tellsWhatReturns(v)) continue;
-      const uint64_t key = grid.key(v.position, v.normal, 0);
-      const uint32_t cell = index.insert(key);
-      if (cell == result.cells.size()) result.cells.push_back({key});
       const float value = v.discrete ? 0 : sampleValue(v);
-      ++result.cells[cell].count;
-      result.cells[cell].value += value;
-      result.cellOf.push_back(cell);
       const float rays = 1 + (std::isnan(v.raysAfter) ? 0 : v.raysAfter);
+      const float square = lightSquare(v);
       result.samples.push_back({v.position, v.normal, v.wi, v.distance, value, returnedRadiance(v), rays,
-                                lightSquare(v), v.lightGroup, pathHalf(v.pixel, v.sample)});
+                                square, uint16_t(square > 0 ? v.lightGroup : 0),
+                                uint16_t(pathHalf(v.pixel, v.sample))});
     }
   return result;
+}
+
+void assignCells(BatchSamples& batch, const CellGrid& grid) {
+  batch.cells.clear();
+  batch.cellOf.clear();
+  batch.cellOf.reserve(batch.samples.size());
+  CellIndex index;
+  for (const CellSample& s : batch.samples) {
+    const uint64_t key = grid.key(s.position, s.normal, 0);
+    const uint32_t cell = index.insert(key);
+    if (cell == batch.cells.size()) batch.cells.push_back({key});
+    ++batch.cells[cell].count;
+    batch.cells[cell].value += s.value;
+    batch.cellOf.push_back(cell);
+  }
 }
 
 }  // namespace odis::core

@@ -1,6 +1,7 @@
 // What the cells take from path vertices.
 #pragma once
 
+#include <utility>
 #include <vector>
 
 #include "odis/cell_grid.h"
@@ -16,7 +17,7 @@ float sampleValue(const PathVertex& vertex);
 // What the vertex scatters back along the path, next-event estimation included: not negative, finite.
 Float3 returnedRadiance(const PathVertex& vertex);
 
-// A usable vertex or, with the value 0, one whose path took a delta lobe of a surface that has others. 72
+// A usable vertex or, with the value 0, one whose path took a delta lobe of a surface that has others. 68
 // bytes.
 struct CellSample {
   Float3 position, normal, wi;
@@ -26,13 +27,13 @@ struct CellSample {
   float rays;       // traced at the vertex and beyond
   // Estimate of the squared next-event estimate from one group of lights; kNoLights: not to be counted.
   float lightSquare;
-  uint32_t lightGroup;
-  uint32_t half;  // of the paths (pathHalf) that it belongs to
+  uint16_t lightGroup;
+  uint16_t half;  // of the paths (pathHalf) that it belongs to
 };
 inline constexpr float kNoLights = -1;
 
-// The usable vertices of a batch, and the cells of the finest level that they fall into, numbered as they are
-// met. 76 bytes a sample and 24 a cell.
+// The usable vertices of a batch and, once there is a grid, the cells of the finest level that they fall
+// into, numbered as they are met. 72 bytes a sample and 24 a cell.
 struct BatchSamples {
   struct Cell {
     uint64_t key = 0;
@@ -44,11 +45,21 @@ struct BatchSamples {
   std::vector<Cell> cells;
   VertexCounts counts;
 
+  bool haveCells() const { return cellOf.size() == samples.size(); }
+  // Lets go of all but the counts.
+  void release() {
+    BatchSamples all;
+    all.counts = counts;
+    *this = std::move(all);
+  }
   uint64_t bytes() const {
     return samples.capacity() * sizeof(CellSample) + cellOf.capacity() * sizeof(uint32_t) +
            cells.capacity() * sizeof(Cell);
   }
 };
-BatchSamples takeSamples(const VertexBatch& batch, const CellGrid& grid);
+// Takes the samples alone.
+BatchSamples takeSamples(const VertexBatch& batch);
+// Finds their cells.
+void assignCells(BatchSamples& batch, const CellGrid& grid);
 
 }  // namespace odis::core

@@ -42,19 +42,20 @@ CellGrid gridAround(const Float3& low, const Float3& extent, int cellsPerDiagona
 
 // The grid spans what the pilot saw, not what the scene holds: a huge ground plane must not make the cells
 // huge. A few vertices far out (0.5 % at either end of each axis) don't count.
-void CellStore::place(VertexParts parts, int cellsPerDiagonal) {
+void CellStore::place(std::span<BatchSamples* const> batches, int cellsPerDiagonal) {
+  size_t count = 0;
+  for (const BatchSamples* batch : batches) count += batch->samples.size();
   std::vector<float> axis[3];
-  const size_t step = std::max<size_t>(1, countVertices(parts) / 20000);
-  size_t next = 0;  // within the part
-  for (const ArrayView<const PathVertex>& part : parts) {
-    for (; next < part.size(); next += step) {
-      const Float3& p = part[next].position;
-      if (!std::isfinite(p.x) || !std::isfinite(p.y) || !std::isfinite(p.z)) continue;
+  const size_t step = std::max<size_t>(1, count / 20000);
+  size_t next = 0;  // within the batch
+  for (const BatchSamples* batch : batches) {
+    for (; next < batch->samples.size(); next += step) {
+      const Float3& p = batch->samples[next].position;
       axis[0].push_back(p.x);
       axis[1].push_back(p.y);
       axis[2].push_back(p.z);
     }
-    next -= part.size();
+    next -= batch->samples.size();
   }
   float low[3] = {}, extent[3] = {};
   for (int a = 0; a < 3 && !axis[a].empty(); ++a) {
@@ -69,17 +70,19 @@ void CellStore::place(VertexParts parts, int cellsPerDiagonal) {
 }
 
 // Doubles the edges of the cells until there are few enough. Coarser levels add less than half as many.
-void CellStore::coarsen(VertexParts parts) {
+// Returns whether the grid is another one.
+bool CellStore::coarsen(std::span<BatchSamples* const> batches) {
   constexpr int kMostCoarsening = 1 << 18;
+  const int before = m_coarsening;
   while (m_coarsening < kMostCoarsening) {
     CellIndex finest;
-    for (const ArrayView<const PathVertex>& part : parts)
-      for (const PathVertex& v : part)
-        if (isUsable(v)) finest.insert(m_grid.key(v.position, v.normal, 0));
-    if (finest.size() + finest.size() / 2 <= m_mostCells) return;
+    for (const BatchSamples* batch : batches)
+      for (const CellSample& s : batch->samples) finest.insert(m_grid.key(s.position, s.normal, 0));
+    if (finest.size() + finest.size() / 2 <= m_mostCells) break;
     m_coarsening *= 2;
     place(CellGrid(m_grid.origin(), 2 * m_grid.finestEdge()));
   }
+  return m_coarsening > before;
 }
 
 void CellStore::place(const CellGrid& grid) {
@@ -141,14 +144,18 @@ void accumulate(CellStatistics& cell, LightField* field, const Float3& middle, f
 }  // namespace
 
 void CellStore::add(VertexParts parts, int cellsPerDiagonal) {
-  if (!m_placed) place(parts, cellsPerDiagonal);
-  if (m_cells.empty() && m_mostCells < SIZE_MAX) coarsen(parts);
-  const std::vector<VertexBatch> pilot = makeBatches(parts);
-  std::vector<BatchSamples> samples(pilot.size());
-  m_tasks->forEach(pilot.size(), [&](size_t b) { samples[b] = take(pilot[b]); });
-  std::vector<const BatchSamples*> batches;
-  for (const BatchSamples& batch : samples) batches.push_back(&batch);
-  add(batches);
+  const std::vector<VertexBatch> vertices = makeBatches(parts);
+  std::vector<BatchSamples> samples(vertices.size());
+  m_tasks->forEach(vertices.size(), [&](size_t b) { samples[b] = take(vertices[b]); });
+  std::vector<BatchSamples*> batches;
+  for (BatchSamples& batch : samples) batches.push_back(&batch);
+  add(batches, cellsPerDiagonal);
+}
+
+BatchSamples CellStore::take(const VertexBatch& batch) const {
+  BatchSamples result = takeSamples(batch);
+  if (m_placed) assignCells(result, m_grid);
+  return result;
 }
 
 // Makes room for the cells that got numbers.
@@ -174,15 +181,17 @@ void CellStore::addNewCells() {
   m_fields.resize(fields);
 }
 
-void CellStore::add(std::span<const BatchSamples* const> batches) {
+void CellStore::add(std::span<BatchSamples* const> batches, int cellsPerDiagonal) {
+  if (!m_placed) place(batches, cellsPerDiagonal);
+  const bool isCoarser = m_cells.empty() && m_mostCells < SIZE_MAX && coarsen(batches);
   // Cells that are known are found by many threads; new ones get their numbers in the order of the vertices.
   std::vector<BatchCells> cells(batches.size());
   m_tasks->forEach(batches.size(), [&](size_t b) {
+    if (isCoarser || !batches[b]->haveCells()) assignCells(*batches[b], m_grid);
     cells[b].cellOf = batches[b]->cellOf;
     cells[b].cells.reserve(batches[b]->cells.size());
     for (const BatchSamples::Cell& cell : batches[b]->cells) cells[b].cells.push_back(m_index.find(cell.key));
   });
-  m_transientBytes = 0;
   for (size_t b = 0; b < batches.size(); ++b) {
     for (size_t i = 0; i < cells[b].cells.size(); ++i) {
       if (cells[b].cells[i] != kNoCell) continue;
@@ -190,7 +199,6 @@ void CellStore::add(std::span<const BatchSamples* const> batches) {
       cells[b].cells[i] = insert(cell.key);
       if (cells[b].cells[i] == kNoCell) m_samplesLeftOut += cell.count;
     }
-    m_transientBytes += batches[b]->bytes();
     addCounts(m_vertexCounts, batches[b]->counts);
   }
   addNewCells();
@@ -213,7 +221,8 @@ void CellStore::add(std::span<const BatchSamples* const> batches) {
   const CellOrder<CellSample> order =
       sortByCell<CellSample>(*m_tasks, cells, uint32_t(m_cells.size()) + 1,
                              [&](size_t b, size_t i) -> const CellSample& { return batches[b]->samples[i]; });
-  m_transientBytes += order.bytes();
+  m_transientBytes = order.bytes();
+  for (const BatchSamples* batch : batches) m_transientBytes += batch->bytes();
   forEachCell(*m_tasks, m_cells.size(), [&](size_t parent) {
     if (m_links[parent].level != 1) return;
     LightField* field = m_looksAround ? &m_fields[m_fieldOf[parent]] : nullptr;

@@ -123,9 +123,10 @@ class CellStore {
   uint64_t numbering() const { return m_numbering; }
   // Sorts the vertices into cells and adds them up.
   void add(VertexParts parts, int cellsPerDiagonal);
-  // The same in two steps, once there is a grid: many threads take samples, one call adds them up.
-  BatchSamples take(const VertexBatch& batch) const { return takeSamples(batch, m_grid); }
-  void add(std::span<const BatchSamples* const> batches);
+  // The same in two steps: many threads take samples, with their cells if there is a grid by then; one call
+  // adds them up and finds the cells of those that have none.
+  BatchSamples take(const VertexBatch& batch) const;
+  void add(std::span<BatchSamples* const> batches, int cellsPerDiagonal);
   // The cells, with the coarser levels and what lies around filled in. They stay as they are until more is
   // added.
   const std::vector<CellStatistics>& rollUp();
@@ -141,14 +142,14 @@ class CellStore {
   // The key of each cell.
   std::vector<uint64_t> keys() const;
   uint64_t bytes() const;
-  // What the last `add` needed on top of the cells.
+  // What the last `add` needed on top of the cells, the samples that it was given included.
   uint64_t transientBytes() const { return m_transientBytes; }
   float clamp() const { return m_clamp; }
   const Tasks& tasks() const { return *m_tasks; }
 
  private:
-  void place(VertexParts parts, int cellsPerDiagonal);
-  void coarsen(VertexParts parts);
+  void place(std::span<BatchSamples* const> batches, int cellsPerDiagonal);
+  bool coarsen(std::span<BatchSamples* const> batches);
   void carryOver(const CellGrid& grid, double weight);
   void carryFields(CellStore& carried, std::span<const uint32_t> newCell, double weight) const;
   uint32_t insert(uint64_t key);

@@ -5,37 +5,30 @@
 #include <stdexcept>
 #include <string>
 
+#include "odis/cells/batches.h"
 #include "odis/mixture.h"
-#include "odis/record/vertex_check.h"
 
 namespace odis::core {
 
 namespace {
 
-// BSDF sampling fractions are made from a quarter of the vertices, within these bounds: from one pixel of
-// `stride`, all of its path. A pilot that is a small part of the image is worth as little time.
-constexpr size_t kShare = 4, kFewestVertices = 50000, kMostVertices = 200000;
-bool isChosen(const PathVertex& vertex, uint32_t stride) {
-  return ((vertex.pixel * 0x9e3779b9u) >> 8) % stride == 0;
-}
-
 // What a path's first vertex adds to its pixel.
-float contributionOf(const PathVertex& v) {
+float contributionOf(const FractionSample& v) {
   const float emission = v.emission * (v.discrete ? 1.0f : powerHeuristic(v.pdf, v.emissionLightPdf));
   const float light = v.lightPdf > 0 ? v.light * powerHeuristic(v.lightPdf, v.lightBsdfPdf) : v.light;
   return v.indirect + emission + light;
 }
 
 // What vertices' contributions are multiplied by: one over their pixel's value or, where pixels have none,
-// over the mean of all paths.
+// over the mean of all chosen paths.
 class PixelScale {
  public:
   explicit PixelScale(const FractionInputs& inputs) : m_values(inputs.pixelValues) {
     if (!m_values.empty()) return;
     double sum = 0, count = 0;
-    for (const ArrayView<const PathVertex>& part : inputs.parts)
-      for (const PathVertex& v : part) {
-        if (v.depth != 1 || !knowsContributions(v)) continue;
+    for (const ArrayView<const FractionSample>& part : inputs.parts)
+      for (const FractionSample& v : part) {
+        if (!v.isFirst || !isForFractions(v.pixel, inputs.stride)) continue;
         const float contribution = contributionOf(v);
         if (!std::isfinite(contribution)) continue;
         sum += contribution;
@@ -43,9 +36,11 @@ class PixelScale {
       }
     if (sum > 0) m_perMean = float(count / sum);
   }
-  float operator()(const PathVertex& v) const { return m_values.empty() ? m_perMean : 1 / m_values[v.pixel]; }
+  float operator()(const FractionSample& v) const {
+    return m_values.empty() ? m_perMean : 1 / m_values[v.pixel];
+  }
   // Throws where a vertex has no pixel value.
-  void check(const PathVertex& v) const {
+  void check(const FractionSample& v) const {
     if (!m_values.empty() && v.pixel >= m_values.size())
       throw std::out_of_range("odisBuildGuide: a vertex has pixel " + std::to_string(v.pixel) +
                               ", expected less than the number of pixel values, " +
@@ -59,13 +54,13 @@ class PixelScale {
 
 // The chosen vertices of a batch, their cells, and their part in what the whole image varies by.
 struct ChosenVertices {
-  std::vector<const PathVertex*> vertices;
+  std::vector<const FractionSample*> vertices;
   std::vector<uint32_t> cellOf, cells;  // as in BatchCells
   ImageMoments image;
 };
 
 // The image's variance and rays are those of the first vertices.
-void addToImage(ImageMoments& image, const PathVertex& v, float scale) {
+void addToImage(ImageMoments& image, const FractionSample& v, float scale) {
   const double value = contributionOf(v) * scale;
   const double variance = std::isfinite(value) ? std::min((value - 1) * (value - 1), 2500.0) : 0;
   ++image.count;
@@ -73,16 +68,16 @@ void addToImage(ImageMoments& image, const PathVertex& v, float scale) {
   image.rays += v.raysAfter;
 }
 
-ChosenVertices choose(const VertexBatch& batch, uint32_t stride, const PixelScale& scale,
+ChosenVertices choose(const Batch<FractionSample>& batch, uint32_t stride, const PixelScale& scale,
                       const CellStore& store) {
   ChosenVertices result;
   CellIndex index;
-  for (const ArrayView<const PathVertex>& piece : batch)
-    for (const PathVertex& v : piece) {
-      if (!isChosen(v, stride) || !knowsContributions(v)) continue;
+  for (const ArrayView<const FractionSample>& piece : batch)
+    for (const FractionSample& v : piece) {
+      if (!isForFractions(v.pixel, stride)) continue;
       scale.check(v);
-      if (v.depth == 1) addToImage(result.image, v, scale(v));
-      if (!v.discrete && !isUsable(v)) continue;
+      if (v.isFirst) addToImage(result.image, v, scale(v));
+      if (!v.isUsable) continue;
       const uint64_t key = store.grid().key(v.position, v.normal, 0);
       const uint32_t cell = index.insert(key);
       if (cell == result.cells.size()) result.cells.push_back(store.index().find(key));
@@ -94,9 +89,9 @@ ChosenVertices choose(const VertexBatch& batch, uint32_t stride, const PixelScal
 }
 
 // The share of its texel's density that a vertex's own sample did not make.
-float shareOfOthers(const PathVertex& v, int texel, const CellStatistics& cell,
+float shareOfOthers(const FractionSample& v, int texel, const CellStatistics& cell,
                     const DirectionDistribution& distribution, float limit) {
-  const float value = std::min(sampleValue(v), limit);
+  const float value = std::min(v.value, limit);
   const Splat place = splat(reaim(v.position, v.wi, v.distance, cell.centroid));
   float own = 0;
   for (int k = 0; k < 4; ++k)
@@ -105,10 +100,10 @@ float shareOfOthers(const PathVertex& v, int texel, const CellStatistics& cell,
 }
 
 // Adds a vertex, judged by its cell's map without its own sample.
-SecondMoments addJudged(CellMoments& sums, const PathVertex& v, float scale, uint32_t cell, float limit,
+SecondMoments addJudged(CellMoments& sums, const FractionSample& v, float scale, uint32_t cell, float limit,
                         const FractionInputs& inputs) {
   float mapPdf = 0, lightMapPdf = 0;
-  if (guidablePartOf(v).probability > 0) {
+  if (v.guidableProbability > 0) {
     VertexMap<float> map;
     map.prepare(inputs.maps, int32_t(cell), v.normal, v.scattersBothSides ? -1.0f : 0.0f);
     if (!v.discrete) {
@@ -121,22 +116,21 @@ SecondMoments addJudged(CellMoments& sums, const PathVertex& v, float scale, uin
   return addVertex(sums[size_t(roughnessClass(inputs.rules, v.roughness))], v, mapPdf, lightMapPdf, scale);
 }
 
+constexpr size_t kSmallestBatch = 4096;
+
 // All chosen vertices in the order of their cells.
 struct SortedVertices {
   explicit SortedVertices(const FractionInputs& inputs, const PixelScale& scale) {
-    const size_t count = countVertices(inputs.parts);
-    const uint32_t stride =
-        uint32_t(std::max<size_t>(1, count / std::clamp(count / kShare, kFewestVertices, kMostVertices)));
-    const std::vector<VertexBatch> all = makeBatches(inputs.parts);
+    const std::vector<Batch<FractionSample>> all = makeBatches(inputs.parts, kSmallestBatch);
     batches.resize(all.size());
     std::vector<BatchCells> batchCells(all.size());
     inputs.store.tasks().forEach(all.size(), [&](size_t b) {
-      batches[b] = choose(all[b], stride, scale, inputs.store);
+      batches[b] = choose(all[b], inputs.stride, scale, inputs.store);
       batchCells[b] = {batches[b].cellOf, batches[b].cells};
     });
-    order = sortByCell<PathVertex>(
+    order = sortByCell<FractionSample>(
         inputs.store.tasks(), batchCells, uint32_t(inputs.cells.size()),
-        [&](size_t batch, size_t i) -> const PathVertex& { return *batches[batch].vertices[i]; });
+        [&](size_t batch, size_t i) -> const FractionSample& { return *batches[batch].vertices[i]; });
     for (const ChosenVertices& batch : batches) {
       image.count += batch.image.count;
       image.variance += batch.image.variance;
@@ -145,7 +139,7 @@ struct SortedVertices {
   }
 
   std::vector<ChosenVertices> batches;
-  CellOrder<PathVertex> order;
+  CellOrder<FractionSample> order;
   ImageMoments image;
 };
 
@@ -166,7 +160,7 @@ AllMoments predictMoments(const SortedVertices& sorted, const FractionInputs& in
     const CellStatistics& parent = cells[cells[c].parent];
     const float limit = parent.count > 0 ? inputs.store.clamp() * float(parent.sum / parent.count) : 0;
     SecondMoments* next = &moments.vertices[sorted.order.begin[c]];
-    forEachItem(sorted.order.of(c), [&](const PathVertex& v) {
+    forEachItem(sorted.order.of(c), [&](const FractionSample& v) {
       *next++ = addJudged(moments.cells[c], v, scale(v), uint32_t(c), limit, inputs);
     });
   });
@@ -195,7 +189,7 @@ std::vector<float> chooseByMoments(std::vector<CellDecisions>& result, const Sor
       result[c].bsdfFraction[m] = kBsdfFractions[choices[m]];
     }
     for (uint32_t i = sorted.order.begin[c]; i < sorted.order.begin[c + 1]; ++i) {
-      const PathVertex& v = *sorted.order.items[i];
+      const FractionSample& v = *sorted.order.items[i];
       const size_t choice = choices[roughnessClass(inputs.rules, v.roughness)];
       savings[i] = moments.vertices[i][0] - moments.vertices[i][choice];
     }

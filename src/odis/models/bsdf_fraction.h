@@ -16,15 +16,17 @@ struct GuidingPrediction {
   float varianceRatio = 1;  // of a guided sample to an unguided one, over the whole image
 };
 
-// What the choice is made from. `parts` are (a part of) the vertices that the maps were made from; their
-// contributions are divided by `pixelValues`; without any, by the mean of all paths.
+// What the choice is made from: of the samples in `parts`, which are (some) of the vertices that the maps
+// were made from, those that `stride` leaves (fractionStride). Their contributions are divided by
+// `pixelValues`; without any, by their mean.
 struct FractionInputs {
   const CellStore& store;
   std::span<const CellStatistics> cells;
   std::span<const DirectionDistribution> distributions;
   MapArrays maps;
   GuideRules rules;
-  VertexParts parts;
+  FractionParts parts;
+  uint32_t stride;
   ArrayView<const float> pixelValues;
 };
 

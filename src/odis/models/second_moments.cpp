@@ -4,7 +4,6 @@
 #include <cmath>
 
 #include "odis/mixture.h"
-#include "odis/record/vertex_check.h"
 
 namespace odis::core {
 
@@ -43,15 +42,15 @@ void MomentSums::add(const MomentSums& other, double scale) {
 // With D the direction's contribution at the pilot's density b and q the mixture's density, the second moment
 // of the contribution under q is E_b[D^2 b / q]; next-event estimate N and direction are independent given
 // the vertex, so their cross term is E[N] E[D] whatever q is. MIS weights depend on q and are made anew.
-SecondMoments addVertex(MomentSums& sums, const PathVertex& v, float mapPdf, float lightMapPdf, float scale) {
+SecondMoments addVertex(MomentSums& sums, const FractionSample& v, float mapPdf, float lightMapPdf,
+                        float scale) {
   SecondMoments moments;
   sums.count += 1;
   // A discrete lobe is as likely under every candidate. Anything over infinity is nothing: no weight is lost
   // where MIS does not apply.
-  const GuidablePart guidable = guidablePartOf(v);
   const float own = v.discrete ? 1 : v.pdf;
-  const float guidablePdf = v.discrete ? 0 : guidable.pdf;
-  const float guidableProbability = v.discrete ? 0 : guidable.probability;
+  const float guidablePdf = v.discrete ? 0 : v.guidablePdf;
+  const float guidableProbability = v.discrete ? 0 : v.guidableProbability;
   const float emissionPdf = v.discrete ? 0 : v.emissionLightPdf;
   const float lightPdf = v.lightPdf > 0 ? v.lightPdf : INFINITY;
   const float indirect = v.indirect * scale, emission = v.emission * scale, light = v.light * scale;
@@ -63,7 +62,7 @@ SecondMoments addVertex(MomentSums& sums, const PathVertex& v, float mapPdf, flo
     const float direction =
         limited(indirect + emission / (1 + emissionRatio * emissionRatio), kContributionLimit);
     const float lightRatio =
-        mixturePdf(v.lightBsdfPdf, v.lightGuidablePdf, guidable.probability, fraction, lightMapPdf) /
+        mixturePdf(v.lightBsdfPdf, v.lightGuidablePdf, v.guidableProbability, fraction, lightMapPdf) /
         lightPdf;
     const float direct = limited(light / (1 + lightRatio * lightRatio), kContributionLimit);
     moments[a] = direct * direct + 2 * direct * direction + direction * direction * ratio;

@@ -5,7 +5,7 @@
 #include <array>
 
 #include "odis/guide_view.h"
-#include "odis/path_vertex.h"
+#include "odis/models/fraction_samples.h"
 
 namespace odis::core {
 
@@ -32,7 +32,7 @@ using SecondMoments = std::array<float, kBsdfFractions.size()>;
 // Adds one vertex, whose density under its cell's map (with the vertex's own sample taken out) is `mapPdf`
 // for its direction and `lightMapPdf` for the direction of its next-event estimate. What it adds to its pixel
 // is multiplied by `scale`. Returns what it added to the second moments.
-SecondMoments addVertex(MomentSums& sums, const PathVertex& vertex, float mapPdf, float lightMapPdf,
+SecondMoments addVertex(MomentSums& sums, const FractionSample& vertex, float mapPdf, float lightMapPdf,
                         float scale = 1);
 
 // What the sums are weighed against: sums over the first vertices of the whole image.

@@ -1,0 +1,58 @@
+#include "odis/models/fraction_samples.h"
+
+#include <algorithm>
+
+#include "odis/cells/samples.h"
+#include "odis/record/vertex_check.h"
+
+namespace odis::core {
+
+FractionSample fractionSampleOf(const PathVertex& v) {
+  const GuidablePart guidable = guidablePartOf(v);
+  return {.position = v.position,
+          .normal = v.normal,
+          .wi = v.wi,
+          .lightDirection = v.lightDirection,
+          .distance = v.distance,
+          .value = sampleValue(v),
+          .pdf = v.pdf,
+          .guidablePdf = guidable.pdf,
+          .guidableProbability = guidable.probability,
+          .indirect = v.indirect,
+          .emission = v.emission,
+          .emissionLightPdf = v.emissionLightPdf,
+          .light = v.light,
+          .lightPdf = v.lightPdf,
+          .lightBsdfPdf = v.lightBsdfPdf,
+          .lightGuidablePdf = v.lightGuidablePdf,
+          .roughness = v.roughness,
+          .raysAfter = v.raysAfter,
+          .pixel = v.pixel,
+          .isFirst = v.depth == 1,
+          .isUsable = v.discrete || isUsable(v),
+          .discrete = v.discrete,
+          .scattersBothSides = v.scattersBothSides};
+}
+
+uint32_t fractionStride(uint64_t vertices) {
+  constexpr uint64_t kShare = 4, kFewest = 50000, kMost = 200000;
+  return uint32_t(std::max<uint64_t>(1, vertices / std::clamp(vertices / kShare, kFewest, kMost)));
+}
+
+bool isForFractions(uint32_t pixel, uint32_t stride) {
+  constexpr uint32_t kGolden = 0x9e3779b9u;  // 2^32 over the golden ratio spreads pixels evenly
+  return uint64_t(pixel * kGolden) * stride < (uint64_t(1) << 32);
+}
+
+std::vector<FractionSample> takeFractionSamples(ArrayView<const PathVertex> vertices, uint32_t stride) {
+  const auto isTaken = [stride](const PathVertex& v) {
+    return isForFractions(v.pixel, stride) && knowsContributions(v);
+  };
+  std::vector<FractionSample> samples;
+  samples.reserve(size_t(std::count_if(vertices.begin(), vertices.end(), isTaken)));
+  for (const PathVertex& v : vertices)
+    if (isTaken(v)) samples.push_back(fractionSampleOf(v));
+  return samples;
+}
+
+}  // namespace odis::core
