@@ -196,6 +196,7 @@ void Frame::Data::endPilot() {
 // Adds what was taken from an unguided pass to the cells, and keeps what BSDF sampling fractions are chosen
 // by.
 void Frame::Data::learnUnguided(bool forFractions) {
+  tasks->forEach(passSamples.size(), [&](size_t tile) { passSamples[tile].narrow(passVertexCount); });
   builder->add(passSamples);
   if (forFractions) std::move(passSamples.begin(), passSamples.end(), std::back_inserter(unguided));
   passSamples.clear();
@@ -379,7 +380,9 @@ void Frame::setProgress(OdisProgressFunction function, void* user) {
 }
 
 void Frame::limitBytes(uint64_t most) {
-  if (m_data->builder) m_data->builder->limitBytes(most, m_data->passVertexCount);
+  const Data& d = *m_data;
+  // What is taken from vertices already is a part of what building needs.
+  if (d.builder) d.builder->limitBytes(most + bytesOf(d.passSamples), d.passVertexCount);
 }
 int Frame::coarsening() const {
   return m_data->builder ? m_data->builder->coarsening() : 1;

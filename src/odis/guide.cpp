@@ -90,6 +90,12 @@ VertexSamples& VertexSamples::operator=(VertexSamples&&) noexcept = default;
 VertexCounts VertexSamples::counts() const {
   return m_data ? m_data->cells.counts : VertexCounts();
 }
+void VertexSamples::narrow(uint64_t seen) {
+  if (!m_data) return;
+  const uint32_t stride = fractionStride(seen);
+  std::erase_if(m_data->fractions, [&](const FractionSample& v) { return !isForFractions(v.pixel, stride); });
+  m_data->fractions.shrink_to_fit();
+}
 uint64_t VertexSamples::bytes() const {
   return m_data ? m_data->cells.bytes() + m_data->fractions.capacity() * sizeof(FractionSample) : 0;
 }

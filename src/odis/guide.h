@@ -40,6 +40,8 @@ class VertexSamples {
   // How many vertices they were taken of, and how many of those can't be used.
   VertexCounts counts() const;
   uint64_t bytes() const;
+  // Lets go of what build() does not need once `seen` vertices have been taken in all.
+  void narrow(uint64_t seen);
 
  private:
   friend class GuideBuilder;
