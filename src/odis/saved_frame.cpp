@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstddef>
 #include <iterator>
 #include <stdexcept>
@@ -139,8 +140,10 @@ struct SavedVertexSamples {
                            size_t pixels) {
     for (const uint32_t cell : tile.cells.cellOf)
       file.require(cell < tile.cells.cells.size(), name + ".samples.cellOf: is damaged");
+    const auto isFinite = [](const Float3& v) { return std::isfinite(dot(v, v)); };
     for (const CellSample& sample : tile.cells.samples)
-      file.require(!(sample.lightSquare > 0) || sample.lightGroup < kMaxLightGroups,
+      file.require(isFinite(sample.position) && isFinite(sample.normal) &&
+                       (!(sample.lightSquare > 0) || sample.lightGroup < kMaxLightGroups),
                    name + ".samples: are damaged");
     for (const BatchSamples::Cell& cell : tile.cells.cells)
       file.require(CellGrid::levelOf(cell.key) == 0, name + ".cells: are damaged");
