@@ -140,7 +140,9 @@ struct SavedVertexSamples {
                            size_t pixels) {
     for (const uint32_t cell : tile.cells.cellOf)
       file.require(cell < tile.cells.cells.size(), name + ".samples.cellOf: is damaged");
-    const auto isFinite = [](const Float3& v) { return std::isfinite(dot(v, v)); };
+    const auto isFinite = [](const Float3& v) {
+      return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
+    };
     for (const CellSample& sample : tile.cells.samples)
       file.require(isFinite(sample.position) && isFinite(sample.normal) &&
                        (!(sample.lightSquare > 0) || sample.lightGroup < kMaxLightGroups),
