@@ -201,7 +201,7 @@ void Frame::Data::learnUnguided(bool forFractions) {
   if (forFractions) std::move(passSamples.begin(), passSamples.end(), std::back_inserter(unguided));
   passSamples.clear();
   passVertices = {};
-  keptBytes = bytesOf(pilotVertices) + bytesOf(unguided) + pixelMaps.bytes();
+  countKept();
 }
 
 void Frame::Data::endOraclePass() {
@@ -226,6 +226,11 @@ void Frame::Data::useCells() {
   ++guidesBuilt;
 }
 
+// Counts what is kept between passes.
+void Frame::Data::countKept() {
+  keptBytes = bytesOf(pilotVertices) + bytesOf(unguided) + pixelMaps.bytes();
+}
+
 // Notes what building needed, lets go of what was taken from vertices and, when the guide won't learn any
 // more, of the builder.
 void Frame::Data::takeStock() {
@@ -238,7 +243,7 @@ void Frame::Data::takeStock() {
     cells = {};
     pixelMaps = {};
   }
-  keptBytes = bytesOf(pilotVertices) + pixelMaps.bytes();
+  countKept();
 }
 
 // Settles how many samples each pixel has.
@@ -257,7 +262,7 @@ void Frame::Data::spreadSamples() {
 // Learns from the vertices of a guided pass, and rebuilds the guide where it is time.
 void Frame::Data::refineGuide() {
   builder->add(passSamples);
-  keptBytes = bytesOf(pilotVertices) + pixelMaps.bytes();
+  countKept();
   if (std::has_single_bit(end + 1)) {
     cells = builder->rebuild(cells);
     useCells();

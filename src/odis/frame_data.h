@@ -51,6 +51,7 @@ struct Frame::Data {
   bool guidingDoesNotPay() const;
   void giveUpGuiding();
   void refineGuide();
+  void countKept();
   void takeStock();
 
   bool learns() const { return done < schedule.lastRefinement(); }

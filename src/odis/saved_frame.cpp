@@ -329,7 +329,7 @@ Frame Frame::load(const Archive& file, OdisModel model, std::shared_ptr<const Ta
   d.guide = std::move(saved.guide);
   d.cells = d.guide.ofCellsAlone();
   d.pixelMaps = std::move(saved.pixelMaps);
-  d.keptBytes = bytesOf(d.pilotVertices) + bytesOf(d.unguided) + d.pixelMaps.bytes();
+  d.countKept();
   if (!saved.oraclePixels.empty()) {
     d.pixelOracle = std::make_unique<PixelOracle>(int(d.options.width), int(d.options.height),
                                                   radianceOf(d.guideOptions));

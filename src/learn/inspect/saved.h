@@ -81,7 +81,8 @@ struct FrameSummary {
   uint64_t notFinite = 0, guides = 0;  // samples that counted as black; how often a guide was built
   VertexCounts vertexCounts;           // taken and refused by the builder, when the guide was built last
   std::optional<VertexSummary> pilotVertices;  // if they are kept
-  // Of the pass under way, and those that the oracle's BSDF sampling fractions will be chosen by.
+  // How many vertices came in the pass under way, and in the oracle's passes that BSDF sampling fractions
+  // will be chosen from; how many of them can't be used.
   std::optional<VertexCounts> passVertices, unguidedVertices;
   std::optional<BuilderSummary> builder;
   uint64_t hostBytes = 0;          // data that the host added
