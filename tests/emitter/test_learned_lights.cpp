@@ -134,12 +134,12 @@ TEST_F(LearnedLightsTest, AreDrawnAsStated) {
         const LightSampler::Choice choice = m_sampler.sample(ref, m_random(), kMiddle);
         ++counts[choice.emitter ? choice.emitter->index() : m_emitters.size()];
         if (choice.emitter)
-          ASSERT_NEAR(choice.probability, m_sampler.probability(ref, *choice.emitter, 0, kUp),
+          ASSERT_NEAR(choice.probability, m_sampler.probability(ref, *choice.emitter, 0, {0.5f, 0.5f}),
                       1e-5f * choice.probability);
       }
       expected.back() = kDraws;
       for (const Emitter* emitter : m_emitters) {
-        expected[emitter->index()] = kDraws * double(m_sampler.probability(ref, *emitter, 0, kUp));
+        expected[emitter->index()] = kDraws * double(m_sampler.probability(ref, *emitter, 0, {0.5f, 0.5f}));
         expected.back() -= expected[emitter->index()];
       }
       if (expected.back() < 1) expected.back() = 0;
@@ -166,7 +166,8 @@ TEST_F(LearnedLightsTest, GroupsAddUpToTheirLights) {
       const LightSampler::Choice choice = m_sampler.sample(ref, m_random(), kMiddle);
       if (choice.emitter) groupOf[choice.emitter] = choice.group;
     }
-    for (const auto& [emitter, group] : groupOf) sums[group] += m_sampler.probability(ref, *emitter, 0, kUp);
+    for (const auto& [emitter, group] : groupOf)
+      sums[group] += m_sampler.probability(ref, *emitter, 0, {0.5f, 0.5f});
     for (const auto& [group, probability] : stated) EXPECT_NEAR(sums[group], probability, 0.002) << group;
   }
 }

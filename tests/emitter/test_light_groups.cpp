@@ -35,7 +35,8 @@ TEST(SampleGroup, StatesTheShareOfAllChoicesThatItIs) {
       ASSERT_TRUE(choice.emitter);
       EXPECT_EQ(choice.group, group);
       const Vec3 wi = choice.emitter->sample(choice.part, kReference.p, choice.u).wi;
-      const float all = sampler.probability(kReference, *choice.emitter, choice.part, wi);
+      const float all =
+          sampler.probability(kReference, *choice.emitter, choice.part, choice.emitter->invert(wi));
       EXPECT_NEAR(sampler.groupProbability(kReference, group) * choice.probability, all, 1e-5f * all);
     }
 }
@@ -54,7 +55,7 @@ TEST(SampleGroup, RegionsAreDrawnWithTheirDensity) {
           const LightSampler::Choice choice = sampler.sampleGroup(kReference, group, uChoice, {u, v});
           return sky.sample(0, kReference.p, choice.u).wi;
         },
-        [&](const Vec3& w) { return inside(w) ? 16 * sky.pdf(kReference.p, w) : 0.0f; }))
+        [&](const Vec3& w) { return inside(w) ? 16 * sky.pdf(w) : 0.0f; }))
         << group;
   }
 }

@@ -46,7 +46,7 @@ double totalProbability(const LightSampler& sampler, const std::vector<const Emi
   double sum = 0;
   for (const Emitter* emitter : emitters)
     for (uint32_t part = 0; part < std::max(emitter->partCount(), 1u); ++part)
-      sum += sampler.probability(ref, *emitter, part, kUp);
+      sum += sampler.probability(ref, *emitter, part, kMiddle);
   return sum;
 }
 
@@ -127,7 +127,7 @@ TEST(LightTree, EveryLightThatShinesCanBeDrawn) {
     EXPECT_LT(totalProbability(sampler, emitters, ref), 1 + 1e-5);
     for (const Emitter* emitter : emitters)
       for (uint32_t part = 0; part < std::max(emitter->partCount(), 1u); ++part) {
-        const float probability = sampler.probability(ref, *emitter, part, kUp);
+        const float probability = sampler.probability(ref, *emitter, part, kMiddle);
         excluded += probability == 0;
         for (int k = 0; k < 20; ++k) {
           const EmitterSample s = emitter->sample(part, ref.p, {random(), random()});
@@ -195,7 +195,7 @@ TEST(LightTree, HoldsHundredsOfThousandsOfTriangles) {
         ++away;
         continue;
       }
-      EXPECT_FLOAT_EQ(choice.probability, sampler.probability(ref, light, choice.part, kUp));
+      EXPECT_FLOAT_EQ(choice.probability, sampler.probability(ref, light, choice.part, kMiddle));
     }
     EXPECT_LT(away, 130);
   }
@@ -232,7 +232,7 @@ TEST(LightSampler, OneLightIsAlwaysChosen) {
     const LightReference ref{{0, 0, 0}, {0, 0, 1}, false};
     EXPECT_EQ(sampler.sample(ref, 0.999f, kMiddle).emitter, emitter);
     EXPECT_EQ(sampler.sample(ref, 0.999f, kMiddle).probability, 1);
-    EXPECT_EQ(sampler.probability(ref, *emitter, 0, kUp), 1);
+    EXPECT_EQ(sampler.probability(ref, *emitter, 0, kMiddle), 1);
   }
 }
 
@@ -250,27 +250,27 @@ TEST(LightSampler, DistantLightsAreChosenByIrradiance) {
       endless({0, 0, -1}, Rgb(kInfinity, 1, 1));
   const LightReference ref{{0, 0, 0}, {0, 0, 1}, false};
   const LightSampler two(indexed({&weak, &strong}));
-  EXPECT_NEAR(two.probability(ref, weak, 0, kUp), 0.05 + 0.9 * 0.25, 1e-6);
-  EXPECT_NEAR(two.probability(ref, strong, 0, kUp), 0.05 + 0.9 * 0.75, 1e-6);
+  EXPECT_NEAR(two.probability(ref, weak, 0, kMiddle), 0.05 + 0.9 * 0.25, 1e-6);
+  EXPECT_NEAR(two.probability(ref, strong, 0, kMiddle), 0.05 + 0.9 * 0.75, 1e-6);
   const LightSampler absurd(indexed({&strong, &endless}));
-  EXPECT_NEAR(absurd.probability(ref, strong, 0, kUp), 0.05, 1e-6);
+  EXPECT_NEAR(absurd.probability(ref, strong, 0, kMiddle), 0.05, 1e-6);
 
   // Near a lamp the lamp is chosen, far away the sky, and one of them always.
   PointLight a({1, 0, 1}, Rgb(1, 1, 1)), b({-1, 0, 1}, Rgb(1, 1, 1));
   const auto emitters = indexed({&weak, &a, &b});
   const LightSampler mixed(emitters);
   const LightReference near{{1, 0, 0.99f}, {0, 0, 1}, false}, far{{0, 0, -100}, {0, 0, 1}, false};
-  EXPECT_GT(mixed.probability(near, a, 0, kUp), 0.8f);
-  EXPECT_GT(mixed.probability(far, weak, 0, kUp), 0.9f);
-  EXPECT_EQ(mixed.probability({{0, 0, 5}, {0, 0, 1}, false}, weak, 0, kUp), 1);
+  EXPECT_GT(mixed.probability(near, a, 0, kMiddle), 0.8f);
+  EXPECT_GT(mixed.probability(far, weak, 0, kMiddle), 0.9f);
+  EXPECT_EQ(mixed.probability({{0, 0, 5}, {0, 0, 1}, false}, weak, 0, kMiddle), 1);
   EXPECT_NEAR(totalProbability(mixed, emitters, ref), 1, 1e-6);
-  EXPECT_NEAR(mixed.probability(ref, a, 0, kUp), mixed.probability(ref, b, 0, kUp), 1e-6);
+  EXPECT_NEAR(mixed.probability(ref, a, 0, kMiddle), mixed.probability(ref, b, 0, kMiddle), 1e-6);
   double counts[3] = {};
   Random random(4);
   for (int i = 0; i < 30000; ++i) ++counts[mixed.sample(ref, random(), kMiddle).emitter->index()];
   double statistic = 0;
   for (const Emitter* emitter : emitters) {
-    const double e = 30000 * mixed.probability(ref, *emitter, 0, kUp);
+    const double e = 30000 * mixed.probability(ref, *emitter, 0, kMiddle);
     statistic += (counts[emitter->index()] - e) * (counts[emitter->index()] - e) / e;
   }
   EXPECT_GT(odis::test::chi2PValue(statistic, 2), 0.01);

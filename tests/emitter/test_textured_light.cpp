@@ -38,7 +38,7 @@ struct Lamp {
     return choice.emitter ? choice.emitter->sample(choice.part, ref.p, choice.u) : EmitterSample{};
   }
   float pdf(const LightReference& ref, const SurfacePoint& at) const {
-    return sampler.probability(ref, *light, light->part(at), normalize(at.p - ref.p)) * light->pdf(ref.p, at);
+    return sampler.probability(ref, *light, light->part(at), {}) * light->pdf(ref.p, at);
   }
   // Over all points that lie in the direction, which may hide each other.
   float directionPdf(const LightReference& ref, const Vec3& w) const {

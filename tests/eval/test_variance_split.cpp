@@ -74,7 +74,7 @@ TEST(VarianceSplit, TwoPointLightsAreAChoice) {
   const Rgb intensity[2] = {Rgb(9, 1, 1), Rgb(1, 1, 20)};
   Rgbd mean(0, 0, 0), square(0, 0, 0);
   for (int i = 0; i < 2; ++i) {
-    const double p = double(lights.probability(reference, *scene->emitters()[size_t(i)], 0, Vec3(0, 1, 0)));
+    const double p = double(lights.probability(reference, *scene->emitters()[size_t(i)], 0, {0.5f, 0.5f}));
     ASSERT_GT(p, 0.1);
     const Rgbd c = Rgbd(intensity[i].x, intensity[i].y, intensity[i].z) * share[i];
     mean += c;

@@ -26,7 +26,7 @@ Vec2 ConstantEnvironment::invert(const Vec3& wi) const {
   return sphereToSquare(wi);
 }
 
-float ConstantEnvironment::pdf(const Vec3&, const Vec3&) const {
+float ConstantEnvironment::pdf(const Vec3&) const {
   return 1 / kSphereSolidAngle;
 }
 

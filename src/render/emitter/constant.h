@@ -14,7 +14,7 @@ class ConstantEnvironment final : public EnvironmentEmitter {
   Rgb radiance(const Vec3&) const override { return m_radiance; }
   bool invertible() const override { return true; }
   Vec2 invert(const Vec3& wi) const override;
-  float pdf(const Vec3& ref, const Vec3& wi) const override;
+  float pdf(const Vec3& wi) const override;
 
  private:
   Rgb m_radiance;

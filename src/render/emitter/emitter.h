@@ -3,8 +3,10 @@
 #pragma once
 
 #include <memory>
+#include <span>
 
 #include "render/emitter/light_bounds.h"
+#include "render/math/columns.h"
 #include "render/math/motion.h"
 #include "render/math/surface_point.h"
 
@@ -17,6 +19,13 @@ struct EmitterSample {
                           // gives a surface facing it (W/m^2)
   float pdf = 0;          // solid angle; 1 for delta lights; 0 if nothing could be sampled
   bool delta = false;     // point, spot, directional: cannot be hit, so the MIS weight is one
+};
+
+// What a sample of a light is drawn with.
+struct LightDraw {
+  uint32_t part;
+  Vec3 ref;  // the lit point
+  Vec2 u;    // uniform in [0, 1)^2
 };
 
 struct LightTriangle;  // see light_triangles.h
@@ -35,8 +44,10 @@ class Emitter {
   // The triangle that sample() draws from a part and, in `u`, the numbers that draw a point of it. Null for
   // emitters that are not flat triangles that shine evenly.
   virtual const LightTriangle* drawTriangle(uint32_t /*part*/, Vec2& /*u*/) const { return nullptr; }
-  // Fetches from memory what sample() will read for u.
-  virtual void prefetch(const Vec2& /*u*/) const {}
+  // sample() for each of up to kLanes draws, for those that read much from memory.
+  virtual void sampleEach(std::span<const LightDraw> draws, std::span<EmitterSample> samples) const {
+    for (size_t i = 0; i < draws.size(); ++i) samples[i] = sample(draws[i].part, draws[i].ref, draws[i].u);
+  }
   // What an emitter infinitely far away gives a surface, on average over all ways to face (W/m^2, average
   // over channels), for choosing among lights. Approximate is fine.
   virtual float meanIrradiance() const { return 0; }
@@ -70,20 +81,30 @@ class SurfaceEmitter : public Emitter {
   virtual float pdf(const Vec3& ref, const SurfacePoint& at) const = 0;
 };
 
+// What an environment shows in a direction.
+struct EnvironmentView {
+  Vec3 wi;
+  bool asksPdf = false;      // whether pdf is asked for
+  bool asksNumbers = false;  // and, of those that are invertible, u
+  Rgb radiance{0, 0, 0};
+  float pdf = 0;  // EnvironmentEmitter::pdf()
+  Vec2 u{0, 0};   // Emitter::invert()
+};
+
 // Light from infinitely far away: environment maps, constant, sky, sun disc.
 class EnvironmentEmitter : public Emitter {
  public:
   // Radiance arriving from direction `wi`.
   virtual Rgb radiance(const Vec3& wi) const = 0;
-  // Solid-angle density with which sample(0, ref) gives wi.
-  virtual float pdf(const Vec3& ref, const Vec3& wi) const = 0;
-  // Both, for those that find them together in less time.
-  struct RadianceAndPdf {
-    Rgb radiance;
-    float pdf;
-  };
-  virtual RadianceAndPdf radianceAndPdf(const Vec3& ref, const Vec3& wi) const {
-    return {radiance(wi), pdf(ref, wi)};
+  // Solid-angle density with which sample() gives wi, wherever the lit point is.
+  virtual float pdf(const Vec3& wi) const = 0;
+  // What is asked for of each of up to kLanes directions.
+  virtual void view(std::span<EnvironmentView> views) const {
+    for (EnvironmentView& view : views) {
+      view.radiance = radiance(view.wi);
+      if (view.asksPdf) view.pdf = pdf(view.wi);
+      if (view.asksNumbers) view.u = invert(view.wi);
+    }
   }
 };
 

@@ -19,6 +19,7 @@
 // 0.98 in teapot-full (docs/lights.md).
 #include "render/emitter/environment_map.h"
 
+#include <array>
 #include <numeric>
 
 #include "render/emitter/factories.h"
@@ -113,14 +114,25 @@ EnvironmentMap::Place EnvironmentMap::placeOf(const Vec3& wi) const {
   return {{u, std::atan2(sinTheta, d.y) * kInvPi}, sinTheta, stretch};
 }
 
-Rgb EnvironmentMap::lookUp(const Vec2& uv) const {
-  if (uv.y > m_horizon) return {0, 0, 0};
+EnvironmentMap::Patch EnvironmentMap::patchAt(const Vec2& uv) const {
   const float s = uv.x * float(m_width) - 0.5f, t = uv.y * float(m_height - 1);
   const int column = int(std::floor(s));
-  const int x0 = column < 0 ? m_width - 1 : std::min(column, m_width - 1), x1 = x0 + 1 < m_width ? x0 + 1 : 0;
-  const int y0 = std::clamp(int(t), 0, m_height - 2);
-  const float fx = s - float(column), fy = t - float(y0);
-  return lerp(fy, lerp(fx, pixel(x0, y0), pixel(x1, y0)), lerp(fx, pixel(x0, y0 + 1), pixel(x1, y0 + 1)));
+  const int left = column < 0 ? m_width - 1 : std::min(column, m_width - 1);
+  const int top = std::clamp(int(t), 0, m_height - 2);
+  return {left, left + 1 < m_width ? left + 1 : 0, top, {s - float(column), t - float(top)}};
+}
+
+void EnvironmentMap::prefetchPixels(const Vec2& uv) const {
+  const Patch patch = patchAt(uv);
+  __builtin_prefetch(&pixel(patch.left, patch.top));
+  __builtin_prefetch(&pixel(patch.left, patch.top + 1));
+}
+
+Rgb EnvironmentMap::lookUp(const Vec2& uv) const {
+  if (uv.y > m_horizon) return {0, 0, 0};
+  const auto [left, right, top, within] = patchAt(uv);
+  return lerp(within.y, lerp(within.x, pixel(left, top), pixel(right, top)),
+              lerp(within.x, pixel(left, top + 1), pixel(right, top + 1)));
 }
 
 Rgb EnvironmentMap::radiance(const Vec3& wi) const {
@@ -151,10 +163,15 @@ EmitterSample EnvironmentMap::sample(uint32_t, const Vec3&, const Vec2& u) const
   return result;
 }
 
-void EnvironmentMap::prefetch(const Vec2& u) const {
-  const auto [x, y] = m_table.prefetch(u);
-  __builtin_prefetch(&pixel(int(x), int(y)));
-  __builtin_prefetch(&pixel(int(x), int(y) + 1));
+void EnvironmentMap::sampleEach(std::span<const LightDraw> draws, std::span<EmitterSample> samples) const {
+  std::array<Vec2, kLanes> uv;
+  for (const LightDraw& draw : draws) prefetchTable(draw.u);
+  for (size_t i = 0; i < draws.size(); ++i) {
+    samples[i] = sampleDirection(draws[i].u, uv[i]);
+    prefetchPixels(uv[i]);
+  }
+  for (size_t i = 0; i < draws.size(); ++i)
+    if (samples[i].pdf > 0) samples[i].radiance = lookUp(uv[i]);
 }
 
 Vec2 EnvironmentMap::inTable(const Vec2& uv) const {
@@ -173,13 +190,22 @@ float EnvironmentMap::pdfAt(const Place& place) const {
          (place.stretch * place.stretch * place.stretch * m_determinant);
 }
 
-float EnvironmentMap::pdf(const Vec3&, const Vec3& wi) const {
+float EnvironmentMap::pdf(const Vec3& wi) const {
   return pdfAt(placeOf(wi));
 }
 
-EnvironmentEmitter::RadianceAndPdf EnvironmentMap::radianceAndPdf(const Vec3&, const Vec3& wi) const {
-  const Place place = placeOf(wi);
-  return {lookUp(place.uv), pdfAt(place)};
+void EnvironmentMap::view(std::span<EnvironmentView> views) const {
+  std::array<Place, kLanes> places;
+  for (size_t i = 0; i < views.size(); ++i) {
+    places[i] = placeOf(views[i].wi);
+    prefetchPixels(places[i].uv);
+    if (views[i].asksPdf) m_table.prefetchPdf(inTable(places[i].uv));
+  }
+  for (size_t i = 0; i < views.size(); ++i) {
+    views[i].radiance = lookUp(places[i].uv);
+    if (views[i].asksPdf) views[i].pdf = pdfAt(places[i]);
+    if (views[i].asksNumbers) views[i].u = m_table.invert(inTable(places[i].uv));
+  }
 }
 
 std::vector<EmitterPtr> makeEnvironmentMap(const Properties& node, Builder& builder) {

@@ -15,16 +15,18 @@ class EnvironmentMap final : public EnvironmentEmitter {
   EnvironmentMap(std::vector<Rgb> pixels, int width, int height, const Matrix4& toWorld, float horizon = 1);
 
   EmitterSample sample(uint32_t part, const Vec3& ref, const Vec2& u) const override;
-  void prefetch(const Vec2& u) const override;
+  void sampleEach(std::span<const LightDraw> draws, std::span<EmitterSample> samples) const override;
   // A surface faces each direction with a mean cosine of 1/4, that of those behind it taken as zero.
   float meanIrradiance() const override { return average(m_integral) / 4; }
   Rgb radiance(const Vec3& wi) const override;
-  float pdf(const Vec3& ref, const Vec3& wi) const override;
-  RadianceAndPdf radianceAndPdf(const Vec3& ref, const Vec3& wi) const override;
+  float pdf(const Vec3& wi) const override;
+  void view(std::span<EnvironmentView> views) const override;
   bool invertible() const override { return true; }
   Vec2 invert(const Vec3& wi) const override;
   // A sample without its radiance, and where the image has that.
   EmitterSample sampleDirection(const Vec2& u, Vec2& uv) const;
+  // Fetches what sampleDirection() reads from memory.
+  void prefetchTable(const Vec2& u) const { m_table.prefetch(u); }
   uint64_t bytes() const { return m_pixels.size() * sizeof(Rgb) + m_table.bytes(); }
 
  private:
@@ -38,6 +40,13 @@ class EnvironmentMap final : public EnvironmentEmitter {
   Place placeOf(const Vec3& wi) const;
   // Where the table has a place of the image.
   Vec2 inTable(const Vec2& uv) const;
+  // The pixels around a place of the image: the two columns and the upper of the two rows.
+  struct Patch {
+    int left, right, top;
+    Vec2 within;  // of the way from the first pixel to the last
+  };
+  Patch patchAt(const Vec2& uv) const;
+  void prefetchPixels(const Vec2& uv) const;
   Rgb lookUp(const Vec2& uv) const;
   float pdfAt(const Place& place) const;
   std::vector<float> patchWeights();

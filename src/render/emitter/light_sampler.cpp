@@ -259,13 +259,13 @@ void LightSampler::sample(std::span<const Request> requests, std::span<Choice> c
 }
 
 float LightSampler::probability(const LightReference& ref, const Emitter& emitter, uint32_t part,
-                                const Vec3& wi) const {
+                                const Vec2& u) const {
   const uint32_t index = emitter.index();
   const bool infinite = m_probability[index] > 0;
   if (!(ref.learned.fraction > 0))
     return infinite ? (1 - treeProbability(ref)) * m_probability[index]
                     : treeProbability(ref) * m_tree.probability(ref, m_firstLight[index] + part);
-  const uint32_t group = isDivided(index) ? regionAt(index, emitter.invert(wi)) : groupOf(emitter, part);
+  const uint32_t group = isDivided(index) ? regionAt(index, u) : groupOf(emitter, part);
   const float within = withinGroup(ref, emitter, part);
   const float probability =
       infinite ? (1 - treeProbability(ref)) * m_probability[index]

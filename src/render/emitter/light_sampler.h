@@ -52,10 +52,10 @@ class LightSampler {
   };
   void sample(std::span<const Request> requests, std::span<Choice> choices) const;
   // The probability with which sample() chooses the part of the emitter. It is zero only for parts that give
-  // the reference nothing. Of a divided environment it is that of its region around `wi`, over what the
-  // region has of the environment's own density: always what the density of a direction is to be multiplied
-  // with.
-  float probability(const LightReference& ref, const Emitter& emitter, uint32_t part, const Vec3& wi) const;
+  // the reference nothing. Of a divided environment, where something was learned, it is that of the region
+  // that its numbers `u` (Emitter::invert()) lie in, over what the region has of the environment's own
+  // density: always what the density of a direction is to be multiplied with.
+  float probability(const LightReference& ref, const Emitter& emitter, uint32_t part, const Vec2& u) const;
   // At most kMaxLightGroups.
   uint32_t groupCount() const { return m_infiniteGroups + m_tree.groupCount(); }
   // Which groups are regions of a divided environment.

@@ -77,14 +77,12 @@ float pdfOfMoving(const SurfaceEmitter& emitter, const Vec3& ref, const SurfaceP
   return emitter.pdf(ownRef, own) / solidAngleRatio(placement.toWorld, stretch);
 }
 
-Rgb radianceOfMoving(float time, const EnvironmentEmitter& emitter, const Vec3& wi) {
-  return emitter.radiance(unitDirection(emitter.motion()->placementAt(time).toInstance, wi));
-}
-
-float pdfOfMoving(float time, const EnvironmentEmitter& emitter, const Vec3& ref, const Vec3& wi) {
+void viewMoving(float time, const EnvironmentEmitter& emitter, EnvironmentView& view) {
   // Environments turn and do no more.
-  const Placement placement = emitter.motion()->placementAt(time);
-  return emitter.pdf(transformPoint(placement.toInstance, ref), unitDirection(placement.toInstance, wi));
+  const Vec3 wi = view.wi;
+  view.wi = unitDirection(emitter.motion()->placementAt(time).toInstance, wi);
+  emitter.view({&view, 1});
+  view.wi = wi;
 }
 
 LightBounds boundsWhileOpen(const Emitter& emitter, uint32_t part) {

@@ -7,8 +7,8 @@ namespace odis::render {
 
 EmitterSample sampleMoving(float time, const Emitter& emitter, uint32_t part, const Vec3& ref, const Vec2& u);
 float pdfOfMoving(const SurfaceEmitter& emitter, const Vec3& ref, const SurfacePoint& at);
-Rgb radianceOfMoving(float time, const EnvironmentEmitter& emitter, const Vec3& wi);
-float pdfOfMoving(float time, const EnvironmentEmitter& emitter, const Vec3& ref, const Vec3& wi);
+// EnvironmentEmitter::view() at a time, of one direction.
+void viewMoving(float time, const EnvironmentEmitter& emitter, EnvironmentView& view);
 
 // Emitter::sample() at a time, as a fraction of the time that the shutter is open.
 inline EmitterSample sampleLightAt(float time, const Emitter& emitter, uint32_t part, const Vec3& ref,
@@ -18,15 +18,6 @@ inline EmitterSample sampleLightAt(float time, const Emitter& emitter, uint32_t 
 // SurfaceEmitter::pdf() at the time of the point.
 inline float pdfAt(const SurfaceEmitter& emitter, const Vec3& ref, const SurfacePoint& at) {
   return emitter.motion() ? pdfOfMoving(emitter, ref, at) : emitter.pdf(ref, at);
-}
-// EnvironmentEmitter::radiance() and radianceAndPdf() at a time.
-inline Rgb radianceAt(float time, const EnvironmentEmitter& emitter, const Vec3& wi) {
-  return emitter.motion() ? radianceOfMoving(time, emitter, wi) : emitter.radiance(wi);
-}
-inline EnvironmentEmitter::RadianceAndPdf radianceAndPdfAt(float time, const EnvironmentEmitter& emitter,
-                                                           const Vec3& ref, const Vec3& wi) {
-  if (!emitter.motion()) return emitter.radianceAndPdf(ref, wi);
-  return {radianceOfMoving(time, emitter, wi), pdfOfMoving(time, emitter, ref, wi)};
 }
 
 // Bounds of a part of an emitter at all times that the shutter is open.

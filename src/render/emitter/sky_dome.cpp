@@ -57,4 +57,9 @@ EmitterSample SkyDome::sample(uint32_t, const Vec3&, const Vec2& u) const {
   return result;
 }
 
+void SkyDome::sampleEach(std::span<const LightDraw> draws, std::span<EmitterSample> samples) const {
+  for (const LightDraw& draw : draws) m_table.prefetchTable(draw.u);
+  EnvironmentEmitter::sampleEach(draws, samples);
+}
+
 }  // namespace odis::render

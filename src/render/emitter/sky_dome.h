@@ -17,9 +17,10 @@ class SkyDome final : public EnvironmentEmitter {
 
   // By the table, see EnvironmentMap.
   EmitterSample sample(uint32_t part, const Vec3& ref, const Vec2& u) const override;
+  void sampleEach(std::span<const LightDraw> draws, std::span<EmitterSample> samples) const override;
   float meanIrradiance() const override { return m_table.meanIrradiance(); }
   Rgb radiance(const Vec3& wi) const override;
-  float pdf(const Vec3& ref, const Vec3& wi) const override { return m_table.pdf(ref, wi); }
+  float pdf(const Vec3& wi) const override { return m_table.pdf(wi); }
   bool invertible() const override { return true; }
   Vec2 invert(const Vec3& wi) const override { return m_table.invert(wi); }
 

@@ -15,7 +15,7 @@ class SunDisc final : public EnvironmentEmitter {
   EmitterSample sample(uint32_t part, const Vec3& ref, const Vec2& u) const override;
   float meanIrradiance() const override { return solidAngle() * average(m_radiance) / 4; }
   Rgb radiance(const Vec3& wi) const override { return covers(wi) ? m_radiance : Rgb(0, 0, 0); }
-  float pdf(const Vec3&, const Vec3& wi) const override { return covers(wi) ? 1 / solidAngle() : 0.0f; }
+  float pdf(const Vec3& wi) const override { return covers(wi) ? 1 / solidAngle() : 0.0f; }
 
  private:
   // A cap of the unit sphere has the area of a flat disk whose radius is the cap's chord, from its centre to

@@ -145,6 +145,10 @@ class PiecewiseConstant2D {
     __builtin_prefetch(&row(y)[x]);
     return {x, y};
   }
+  // Fetches what pdf() and invert() read from memory.
+  void prefetchPdf(const Vec2& x) const {
+    __builtin_prefetch(&row(cellAt(x.y, m_marginal.size()))[cellAt(x.x, m_width)]);
+  }
   float pdf(const Vec2& x) const {
     if (!(x.x >= 0 && x.x < 1 && x.y >= 0 && x.y < 1)) return 0;
     const std::span<const float> cdf = row(cellAt(x.y, m_marginal.size()));

@@ -27,6 +27,29 @@ float misWeight(const LightEstimate& light, const GuidedBsdf& bsdf, float mapPdf
   return powerHeuristic(light.pdf, bsdf.pdf(light.bsdf, light.wi, mapPdf));
 }
 
+using Choices = std::array<LightSampler::Choice, kBounceBlock>;
+
+EmitterSample sampleChosen(const Bounce& bounce, const LightSampler::Choice& choice) {
+  const SurfacePoint& at = bounce.vertex->at;
+  return sampleLightAt(at.time, *choice.emitter, choice.part, at.p, choice.u);
+}
+
+// Samples one of the environments for those of the bounces that chose it.
+void sampleEnvironment(const Emitter& environment, std::span<const size_t> which,
+                       const std::array<Bounce*, kBounceBlock>& choosing, const Choices& choices) {
+  std::array<LightDraw, kBounceBlock> draws;
+  std::array<EmitterSample, kBounceBlock> samples;
+  for (size_t k = 0; k < which.size(); ++k) {
+    draws[k] = {0, choosing[which[k]]->vertex->at.p, choices[which[k]].u};
+    if (environment.motion()) samples[k] = sampleChosen(*choosing[which[k]], choices[which[k]]);
+  }
+  if (!environment.motion()) environment.sampleEach(std::span(draws.data(), which.size()), samples);
+  for (size_t k = 0; k < which.size(); ++k) {
+    Bounce& bounce = *choosing[which[k]];
+    estimateLight(*bounce.vertex, samples[k], choices[which[k]].probability, bounce.light);
+  }
+}
+
 // Whether the map that guides a vertex is asked for the density of its light's direction.
 bool hasMapPdf(const Bounce& bounce) {
   return bounce.light.pdf > 0 && bounce.bsdf.map();
@@ -53,7 +76,7 @@ void sampleLights(const PathSettings& settings, Bounces bounces) {
   // The bounces that choose a light, and what they choose.
   std::array<Bounce*, kBounceBlock> choosing;
   std::array<LightSampler::Request, kBounceBlock> requests;
-  std::array<LightSampler::Choice, kBounceBlock> choices;
+  Choices choices;
   size_t count = 0;
   for (Bounce& bounce : bounces) {
     const Vertex& vertex = *bounce.vertex;
@@ -68,9 +91,9 @@ void sampleLights(const PathSettings& settings, Bounces bounces) {
   settings.lights->sample({requests.data(), count}, choices);
 
   LightTriangles triangles;
-  // For each of the triangles, and for each of the other lights, the index of the choice that drew it.
-  std::array<size_t, kBounceBlock> byTriangles, others;
-  size_t otherCount = 0;
+  // For each of the triangles, and for each sample of an environment, the index of the choice that drew it.
+  std::array<size_t, kBounceBlock> byTriangles, byEnvironments;
+  size_t environmentCount = 0;
   for (size_t i = 0; i < count; ++i) {
     LightSampler::Choice& choice = choices[i];
     if (!choice.emitter) continue;
@@ -81,16 +104,19 @@ void sampleLights(const PathSettings& settings, Bounces bounces) {
     if (triangle) {
       byTriangles[triangles.size()] = i;
       triangles.add(*triangle, choice.u, choosing[i]->vertex->at.p);
+    } else if (choice.emitter->partCount() == 0) {
+      byEnvironments[environmentCount++] = i;
     } else {
-      choice.emitter->prefetch(choice.u);
-      others[otherCount++] = i;
+      estimateLight(*choosing[i]->vertex, sampleChosen(*choosing[i], choice), choice.probability,
+                    choosing[i]->light);
     }
   }
-  for (size_t k = 0; k < otherCount; ++k) {
-    const LightSampler::Choice& choice = choices[others[k]];
-    const Vertex& vertex = *choosing[others[k]]->vertex;
-    estimateLight(vertex, sampleLightAt(vertex.at.time, *choice.emitter, choice.part, vertex.at.p, choice.u),
-                  choice.probability, choosing[others[k]]->light);
+  for (std::span<size_t> rest(byEnvironments.data(), environmentCount); !rest.empty();) {
+    const Emitter* environment = choices[rest.front()].emitter;
+    const auto others =
+        std::partition(rest.begin(), rest.end(), [&](size_t i) { return choices[i].emitter == environment; });
+    sampleEnvironment(*environment, {rest.begin(), others}, choosing, choices);
+    rest = {others, rest.end()};
   }
   if (triangles.size() > 0) triangles.find();
   for (size_t i = 0; i < triangles.size(); ++i)

@@ -11,7 +11,7 @@ void addEmission(const PathSettings& settings, Batch& batch, const Bounce& bounc
   Path& path = *bounce.path;
   path.visible |= !settings.scene->integrator().hideEmitters;
   if (isBlack(met.radiance)) return;
-  const float pdf = path.bySampling ? lightPdf(*settings.lights, path.previous, path.ray.direction, met) : 0;
+  const float pdf = path.bySampling ? lightPdf(*settings.lights, path.previous, met) : 0;
   const float weight = path.bySampling ? powerHeuristic(path.directionPdf, pdf) : 1;
   path.radiance += path.throughput * met.radiance * weight;
   if (bounce.depth == 1) {
@@ -42,28 +42,38 @@ void arriveAt(Batch& batch, const Bounce& bounce) {
   batch.recorder.surface(path.handle, event);
 }
 
+// Where the path's ray started, if next-event estimation competes with its direction.
+const LightReference* competitor(const Path& path) {
+  return path.bySampling ? &path.previous : nullptr;
+}
+
 }  // namespace
 
 void meetEmission(const PathSettings& settings, Batch& batch, Bounces bounces) {
+  std::array<Escape, kBounceBlock> escapes;
+  std::array<const Bounce*, kBounceBlock> escaping;
+  size_t count = 0;
   for (Bounce& bounce : bounces) {
-    ++bounce.path->counts.rays;
-    const Path& path = *bounce.path;
-    const bool hit = bounce.vertex->at.shape;
-    if (hit)
-      arriveAt(batch, bounce);
-    else if (batch.recording)
-      batch.recorder.escape(path.handle);
-    if (!hit && path.hidesEnvironment) {
-      bounce.scatters = false;
+    Path& path = *bounce.path;
+    ++path.counts.rays;
+    bounce.scatters = false;
+    if (!bounce.vertex->at.shape) {
+      if (batch.recording) batch.recorder.escape(path.handle);
+      if (path.hidesEnvironment) continue;
+      escaping[count] = &bounce;
+      escapes[count++] = {&path.ray, competitor(path)};
       continue;
     }
-    forEachEmission(*settings.scene, path.ray, hit ? &bounce.vertex->at : nullptr,
-                    path.bySampling ? &path.previous : nullptr,
-                    [&](const Emission& met) { addEmission(settings, batch, bounce, met); });
-    bounce.scatters = hit && (settings.maxDepth < 0 || bounce.depth < settings.maxDepth);
+    arriveAt(batch, bounce);
+    ifShining(path.ray, bounce.vertex->at, competitor(path),
+              [&](const Emission& met) { addEmission(settings, batch, bounce, met); });
+    bounce.scatters = settings.maxDepth < 0 || bounce.depth < settings.maxDepth;
     // Where depth ends a path nobody draws a lobe, and the surface counts as one that hides what is behind.
-    if (hit && !bounce.scatters) bounce.path->visible = true;
+    if (!bounce.scatters) path.visible = true;
   }
+  if (count == 0) return;
+  forEachEnvironment(*settings.scene, {escapes.data(), count},
+                     [&](size_t i, const Emission& met) { addEmission(settings, batch, *escaping[i], met); });
 }
 
 namespace {

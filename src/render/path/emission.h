@@ -2,6 +2,7 @@
 #pragma once
 
 #include "render/emitter/moving_light.h"
+#include "render/math/columns.h"
 #include "render/path/path.h"
 
 namespace odis::render {
@@ -11,31 +12,44 @@ struct Emission {
   const Emitter& emitter;
   uint32_t part;
   float emitterPdf;  // solid-angle density with which the emitter would have been sampled, once it is chosen
+  Vec2 u;            // of environments: the numbers that it would have been sampled with
 };
 
-// Calls use(emission) for each emitter that a ray met: that of the surface at `at`, or the environments where
-// the ray left the scene (null). `from` is where the ray started if next-event estimation competes with its
-// direction, else null: the densities are then 0.
+// A ray that left the scene. `from` is where it started if next-event estimation competes with its direction,
+// else null: densities are then 0.
+struct Escape {
+  const Ray* ray;
+  const LightReference* from;
+};
+
+// Calls use(i, emission) for each environment that one of up to kLanes rays meets.
 template <class Use>
-void forEachEmission(const Scene& scene, const Ray& ray, const SurfacePoint* at, const LightReference* from,
-                     const Use& use) {
-  if (!at) {
-    for (const EnvironmentEmitter* e : scene.environments()) {
-      const auto [radiance, pdf] =
-          from ? radianceAndPdfAt(ray.time, *e, from->p, ray.direction)
-               : EnvironmentEmitter::RadianceAndPdf{radianceAt(ray.time, *e, ray.direction), 0};
-      use(Emission{radiance, *e, 0, pdf});
+void forEachEnvironment(const Scene& scene, std::span<const Escape> escapes, const Use& use) {
+  std::array<EnvironmentView, kLanes> views;
+  for (const EnvironmentEmitter* e : scene.environments()) {
+    for (size_t i = 0; i < escapes.size(); ++i) {
+      const auto& [ray, from] = escapes[i];
+      views[i] = {.wi = ray->direction,
+                  .asksPdf = from != nullptr,
+                  .asksNumbers = from && from->learned.fraction > 0};
+      if (e->motion()) viewMoving(ray->time, *e, views[i]);
     }
-  } else if (const SurfaceEmitter* e = at->shape->emitter()) {
-    use(Emission{e->radiance(*at, -ray.direction), *e, e->part(*at), from ? pdfAt(*e, from->p, *at) : 0});
+    if (!e->motion()) e->view({views.data(), escapes.size()});
+    for (size_t i = 0; i < escapes.size(); ++i)
+      use(i, Emission{views[i].radiance, *e, 0, views[i].pdf, views[i].u});
   }
 }
 
-// The density with which next-event estimation at `from` gives a direction towards the emission; 0 if it
-// can't.
-inline float lightPdf(const LightSampler& lights, const LightReference& from, const Vec3& wi,
-                      const Emission& met) {
-  return met.emitterPdf > 0 ? met.emitterPdf * lights.probability(from, met.emitter, met.part, wi) : 0;
+// Calls use(emission) if the surface that a ray met shines. `from` as in an Escape.
+template <class Use>
+void ifShining(const Ray& ray, const SurfacePoint& at, const LightReference* from, const Use& use) {
+  if (const SurfaceEmitter* e = at.shape->emitter())
+    use(Emission{e->radiance(at, -ray.direction), *e, e->part(at), from ? pdfAt(*e, from->p, at) : 0, {}});
+}
+
+// The density with which next-event estimation at `from` gives the direction of the emission; 0 if it can't.
+inline float lightPdf(const LightSampler& lights, const LightReference& from, const Emission& met) {
+  return met.emitterPdf > 0 ? met.emitterPdf * lights.probability(from, met.emitter, met.part, met.u) : 0;
 }
 
 }  // namespace odis::render

@@ -72,15 +72,17 @@ Rgb emissionMet(const PathSettings& settings, const DirectionOrigin& origin, con
                 const SurfacePoint* at) {
   Rgb sum(0, 0, 0);
   if (!at && origin.hidesEnvironment) return sum;
-  forEachEmission(
-      *settings.scene, ray, at, origin.bySampling ? &origin.from : nullptr, [&](const Emission& met) {
-        if (isBlack(met.radiance)) return;
-        const float weight =
-            origin.bySampling
-                ? powerHeuristic(origin.pdf, lightPdf(*settings.lights, origin.from, ray.direction, met))
-                : 1;
-        sum += met.radiance * weight;
-      });
+  const LightReference* from = origin.bySampling ? &origin.from : nullptr;
+  const auto add = [&](const Emission& met) {
+    if (isBlack(met.radiance)) return;
+    sum += met.radiance * (from ? powerHeuristic(origin.pdf, lightPdf(*settings.lights, *from, met)) : 1.0f);
+  };
+  if (at) {
+    ifShining(ray, *at, from, add);
+  } else {
+    const Escape escape{&ray, from};
+    forEachEnvironment(*settings.scene, {&escape, 1}, [&](size_t, const Emission& met) { add(met); });
+  }
   return sum;
 }
 
