@@ -9,36 +9,48 @@ namespace {
 
 class TwoSided final : public Bsdf {
  public:
-  TwoSided(BsdfPtr front, BsdfPtr back) : m_front(std::move(front)), m_back(std::move(back)) {
-    m_traits = m_front->traits() | m_back->traits();
+  TwoSided(BsdfPtr front, BsdfPtr back) : m_sides{std::move(front), std::move(back)} {
+    m_traits = m_sides[0]->traits() | m_sides[1]->traits();
   }
 
   BsdfSample sample(const SurfacePoint& at, const Vec3& wo, float uLobe, const Vec2& u) const override {
-    if (wo.z >= 0) return m_front->sample(at, wo, uLobe, u);
-    BsdfSample result = m_back->sample(at, flipped(wo), uLobe, u);
-    result.wi = flipped(result.wi);
+    const Side side(wo);
+    BsdfSample result = of(side).sample(at, side.flip(wo), uLobe, u);
+    result.wi = side.flip(result.wi);
     return result;
   }
 
   BsdfValue evaluate(const SurfacePoint& at, const Vec3& wo, const Vec3& wi) const override {
-    return wo.z >= 0 ? m_front->evaluate(at, wo, wi) : m_back->evaluate(at, flipped(wo), flipped(wi));
+    const Side side(wo);
+    return of(side).evaluate(at, side.flip(wo), side.flip(wi));
   }
 
   float guidableProbability(const SurfacePoint& at, const Vec3& wo) const override {
-    return wo.z >= 0 ? m_front->guidableProbability(at, wo) : m_back->guidableProbability(at, flipped(wo));
+    const Side side(wo);
+    return of(side).guidableProbability(at, side.flip(wo));
   }
 
   BsdfFeatures features(const SurfacePoint& at, const Vec3& wo) const override {
-    return wo.z >= 0 ? m_front->features(at, wo) : m_back->features(at, flipped(wo));
+    const Side side(wo);
+    return of(side).features(at, side.flip(wo));
   }
   float roughness(const SurfacePoint& at, const Vec3& wo) const override {
-    return wo.z >= 0 ? m_front->roughness(at, wo) : m_back->roughness(at, flipped(wo));
+    const Side side(wo);
+    return of(side).roughness(at, side.flip(wo));
   }
 
  private:
-  static Vec3 flipped(const Vec3& w) { return {w.x, w.y, -w.z}; }
+  // The side that a direction is on, on which directions are seen from the front.
+  struct Side {
+    explicit Side(const Vec3& wo) : back(!(wo.z >= 0)), sign(signOfSide(back)) {}
+    Vec3 flip(const Vec3& w) const { return {w.x, w.y, sign * w.z}; }
 
-  BsdfPtr m_front, m_back;
+    bool back;
+    float sign;
+  };
+  const Bsdf& of(const Side& side) const { return *m_sides[side.back]; }
+
+  BsdfPtr m_sides[2];  // front and back
 };
 
 }  // namespace

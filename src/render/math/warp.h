@@ -2,22 +2,33 @@
 // named.
 #pragma once
 
+#include <bit>
+
 #include "render/math/vec.h"
 
 namespace odis::render {
+
+// Without a branch, which random numbers would have mispredicted half of the time.
+inline void swapIf(bool condition, float& a, float& b) {
+  const uint32_t difference =
+      (std::bit_cast<uint32_t>(a) ^ std::bit_cast<uint32_t>(b)) & (0u - uint32_t(condition));
+  a = std::bit_cast<float>(std::bit_cast<uint32_t>(a) ^ difference);
+  b = std::bit_cast<float>(std::bit_cast<uint32_t>(b) ^ difference);
+}
 
 // Uniform on the unit disk, concentric (Shirley and Chiu 1997); area density 1/pi.
 inline Vec2 squareToDisk(const Vec2& u) {
   const float x = 2.0f * u.x - 1.0f, y = 2.0f * u.y - 1.0f;
   // The angle to the nearer axis is at most a quarter of pi, where short series are exact to a rounding.
   const bool nearX = std::abs(x) > std::abs(y);
-  const float r = nearX ? x : y, other = nearX ? y : x;
+  float r = y, other = x;
+  swapIf(nearX, r, other);
   if (r == 0.0f) return {0.0f, 0.0f};
   const float t = (kPi / 4) * (other / r), t2 = t * t;
-  const float along =
-      r * (1 + t2 * (-1.0f / 2 + t2 * (1.0f / 24 + t2 * (-1.0f / 720 + t2 * (1.0f / 40320)))));
-  const float across = r * t * (1 + t2 * (-1.0f / 6 + t2 * (1.0f / 120 + t2 * (-1.0f / 5040))));
-  return nearX ? Vec2(along, across) : Vec2(across, along);
+  float along = r * (1 + t2 * (-1.0f / 2 + t2 * (1.0f / 24 + t2 * (-1.0f / 720 + t2 * (1.0f / 40320)))));
+  float across = r * t * (1 + t2 * (-1.0f / 6 + t2 * (1.0f / 120 + t2 * (-1.0f / 5040))));
+  swapIf(nearX, across, along);
+  return {across, along};
 }
 
 // Cosine-weighted on the hemisphere z > 0; solid-angle density cos(theta)/pi.

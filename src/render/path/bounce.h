@@ -44,8 +44,8 @@ struct Bounce : Arrival {
   VertexNumbers numbers;       // random ones, that what follows is decided by
   GuidedBsdf bsdf;             // that directions are sampled from
   LightReference reference;    // that the choice of lights depends on
-  LightEstimate light;         // next-event estimation
-  Rgb direct;                  // its radiance with the MIS weight
+  LightEstimate light;         // next-event estimation, of LitBounces
+  Rgb direct;                  // its radiance with the MIS weight, likewise
   float shadowRayProbability;  // with which the shadow ray was traced; 0: it was not
   DirectionDraw draw;          // where the next direction comes from, if there is a map
   BsdfSample next;             // the sampled direction
@@ -87,6 +87,20 @@ struct Batch {
 
 using Bounces = std::span<Bounce>;
 
+// The bounces that light reaches if nothing hides it.
+struct LitBounces {
+  std::array<Bounce*, kBounceBlock> list;
+  size_t count = 0;
+
+  // Without a branch, which would often be mispredicted.
+  void addIf(bool lit, Bounce& bounce) {
+    list[count] = &bounce;
+    count += lit;
+  }
+  Bounce* const* begin() const { return list.data(); }
+  Bounce* const* end() const { return list.data() + count; }
+};
+
 // Adds the emission that rays met, weighted against next-event estimation where that could have found it
 // too. Paths go on where they met a surface and are not too deep.
 void meetEmission(const PathSettings& settings, Batch& batch, Bounces bounces);
@@ -106,19 +120,19 @@ void drawNumbers(const PathSettings& settings, Batch& batch, Bounces bounces);
 void prepareDirections(const PathSettings& settings, Bounces bounces);
 // Counts the vertices of each path that may be guided, this one included.
 void countGuidable(Bounces bounces);
-// Chooses a light and a point on it.
-void sampleLights(const PathSettings& settings, Bounces bounces);
+// Chooses lights and points on them; returns those that they may reach.
+LitBounces sampleLights(const PathSettings& settings, Bounces bounces);
 // Chooses between BSDF and map, and a block of the map.
 void chooseBlocks(Bounces bounces);
 // Weighs what lights give against sampling directions.
-void weighLights(Bounces bounces);
+void weighLights(const LitBounces& lit);
 void sampleDirections(Bounces bounces);
 // Notes features of the first vertex whose direction is not discrete.
 void describeFirstHits(const PathSettings& settings, Bounces bounces);
 // Ends paths by their throughput where nothing was learned, as Mitsuba does.
 void playRouletteOnDeparture(const PathSettings& settings, Bounces bounces);
 // Asks for shadow rays, though not always where the light would add little to the pixel.
-void requestShadowRays(const PathSettings& settings, Batch& batch, Bounces bounces);
+void requestShadowRays(const PathSettings& settings, Batch& batch, const LitBounces& lit);
 // Tells the recorder what happened.
 void recordBounces(Batch& batch, Bounces bounces);
 // Gives each path that survives its next ray.

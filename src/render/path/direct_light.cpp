@@ -7,17 +7,17 @@ namespace odis::render {
 
 namespace {
 
-// Fills in what a sample of a light, chosen with a probability, brings to a vertex; nothing if that is black.
-void estimateLight(const Vertex& vertex, const EmitterSample& light, float probability,
-                   LightEstimate& result) {
+// Fills in what a sample of a light, chosen with a probability, brings to a vertex, unless that is black.
+void estimateLight(Bounce& bounce, const EmitterSample& light, float probability, LitBounces& lit) {
   if (!(light.pdf > 0) || isBlack(light.radiance)) return;
-  const SurfacePoint& at = vertex.at;
+  const auto& [at, wo] = *bounce.vertex;
+  LightEstimate& result = bounce.light;
   result.wi = light.wi;
   result.distance = light.distance;
-  result.bsdf = at.shape->bsdf().evaluate(at, vertex.wo, at.shading.toLocal(light.wi));
-  if (isBlack(result.bsdf.value)) return;
+  result.bsdf = at.shape->bsdf().evaluate(at, wo, at.shading.toLocal(light.wi));
   result.radiance = result.bsdf.value * light.radiance / (light.pdf * probability);
   result.pdf = light.delta ? 0 : light.pdf * probability;
+  lit.addIf(!isBlack(result.bsdf.value), bounce);
 }
 
 // The weight of next-event estimation against the mixture that directions are sampled from; `mapPdf` is what
@@ -36,7 +36,8 @@ EmitterSample sampleChosen(const Bounce& bounce, const LightSampler::Choice& cho
 
 // Samples one of the environments for those of the bounces that chose it.
 void sampleEnvironment(const Emitter& environment, std::span<const size_t> which,
-                       const std::array<Bounce*, kBounceBlock>& choosing, const Choices& choices) {
+                       const std::array<Bounce*, kBounceBlock>& choosing, const Choices& choices,
+                       LitBounces& lit) {
   std::array<LightDraw, kBounceBlock> draws;
   std::array<EmitterSample, kBounceBlock> samples;
   for (size_t k = 0; k < which.size(); ++k) {
@@ -44,10 +45,8 @@ void sampleEnvironment(const Emitter& environment, std::span<const size_t> which
     if (environment.motion()) samples[k] = sampleChosen(*choosing[which[k]], choices[which[k]]);
   }
   if (!environment.motion()) environment.sampleEach(std::span(draws.data(), which.size()), samples);
-  for (size_t k = 0; k < which.size(); ++k) {
-    Bounce& bounce = *choosing[which[k]];
-    estimateLight(*bounce.vertex, samples[k], choices[which[k]].probability, bounce.light);
-  }
+  for (size_t k = 0; k < which.size(); ++k)
+    estimateLight(*choosing[which[k]], samples[k], choices[which[k]].probability, lit);
 }
 
 // Whether the map that guides a vertex is asked for the density of its light's direction.
@@ -56,14 +55,14 @@ bool hasMapPdf(const Bounce& bounce) {
 }
 
 // Finds the texels of lights' directions, which are fetched while other steps are taken.
-void fetchTexels(Bounces bounces) {
+void fetchTexels(const LitBounces& lit) {
   MapLookUps lookUps;
-  for (const Bounce& bounce : bounces)
-    if (hasMapPdf(bounce)) lookUps.add(*bounce.bsdf.map(), bounce.light.wi);
+  for (const Bounce* bounce : lit)
+    if (hasMapPdf(*bounce)) lookUps.add(*bounce->bsdf.map(), bounce->light.wi);
   findTexels(lookUps);
   const int32_t* texel = lookUps.texels;
-  for (Bounce& bounce : bounces)
-    if (hasMapPdf(bounce)) bounce.light.texel = *texel++;
+  for (Bounce* bounce : lit)
+    if (hasMapPdf(*bounce)) bounce->light.texel = *texel++;
 }
 
 }  // namespace
@@ -72,7 +71,7 @@ LightReference lightReference(const SurfacePoint& at, const Vec3& wo) {
   return {at.p, facingNormal(at, wo), at.shape->bsdf().traits().transmissive};
 }
 
-void sampleLights(const PathSettings& settings, Bounces bounces) {
+LitBounces sampleLights(const PathSettings& settings, Bounces bounces) {
   // The bounces that choose a light, and what they choose.
   std::array<Bounce*, kBounceBlock> choosing;
   std::array<LightSampler::Request, kBounceBlock> requests;
@@ -80,7 +79,7 @@ void sampleLights(const PathSettings& settings, Bounces bounces) {
   size_t count = 0;
   for (Bounce& bounce : bounces) {
     const Vertex& vertex = *bounce.vertex;
-    bounce.light = {};
+    bounce.shadowRayProbability = 0;
     bounce.reference = lightReference(vertex.at, vertex.wo);
     if (settings.learnedLights && bounce.cell != kNoCell)
       bounce.reference.learned = learnedLights(*settings.guide, bounce.cell);
@@ -90,6 +89,7 @@ void sampleLights(const PathSettings& settings, Bounces bounces) {
   }
   settings.lights->sample({requests.data(), count}, choices);
 
+  LitBounces lit;
   LightTriangles triangles;
   // For each of the triangles, and for each sample of an environment, the index of the choice that drew it.
   std::array<size_t, kBounceBlock> byTriangles, byEnvironments;
@@ -107,38 +107,37 @@ void sampleLights(const PathSettings& settings, Bounces bounces) {
     } else if (choice.emitter->partCount() == 0) {
       byEnvironments[environmentCount++] = i;
     } else {
-      estimateLight(*choosing[i]->vertex, sampleChosen(*choosing[i], choice), choice.probability,
-                    choosing[i]->light);
+      estimateLight(*choosing[i], sampleChosen(*choosing[i], choice), choice.probability, lit);
     }
   }
   for (std::span<size_t> rest(byEnvironments.data(), environmentCount); !rest.empty();) {
     const Emitter* environment = choices[rest.front()].emitter;
     const auto others =
         std::partition(rest.begin(), rest.end(), [&](size_t i) { return choices[i].emitter == environment; });
-    sampleEnvironment(*environment, {rest.begin(), others}, choosing, choices);
+    sampleEnvironment(*environment, {rest.begin(), others}, choosing, choices, lit);
     rest = {others, rest.end()};
   }
   if (triangles.size() > 0) triangles.find();
   for (size_t i = 0; i < triangles.size(); ++i)
-    estimateLight(*choosing[byTriangles[i]]->vertex, triangles[i], choices[byTriangles[i]].probability,
-                  choosing[byTriangles[i]]->light);
-  fetchTexels(bounces);
+    estimateLight(*choosing[byTriangles[i]], triangles[i], choices[byTriangles[i]].probability, lit);
+  fetchTexels(lit);
+  return lit;
 }
 
-void weighLights(Bounces bounces) {
+void weighLights(const LitBounces& lit) {
   MapLookUps lookUps;
-  for (const Bounce& bounce : bounces)
-    if (hasMapPdf(bounce)) lookUps.add(*bounce.bsdf.map(), bounce.light.texel);
+  for (const Bounce* bounce : lit)
+    if (hasMapPdf(*bounce)) lookUps.add(*bounce->bsdf.map(), bounce->light.texel);
   findPdfs(lookUps);
   const float* mapPdf = lookUps.pdf.of;
-  for (Bounce& bounce : bounces)
-    bounce.direct =
-        bounce.light.radiance * misWeight(bounce.light, bounce.bsdf, hasMapPdf(bounce) ? *mapPdf++ : 0);
+  for (Bounce* bounce : lit)
+    bounce->direct =
+        bounce->light.radiance * misWeight(bounce->light, bounce->bsdf, hasMapPdf(*bounce) ? *mapPdf++ : 0);
 }
 
-void requestShadowRays(const PathSettings& settings, Batch& batch, Bounces bounces) {
-  for (Bounce& bounce : bounces) {
-    bounce.shadowRayProbability = 0;
+void requestShadowRays(const PathSettings& settings, Batch& batch, const LitBounces& lit) {
+  for (Bounce* each : lit) {
+    Bounce& bounce = *each;
     if (isBlack(bounce.direct)) continue;
     Path& path = *bounce.path;
     float probability = 1;

@@ -94,7 +94,7 @@ struct VertexNumbers {
 
 // The shading normal on the side that the path came from; `wo` in the shading frame.
 inline Vec3 facingNormal(const SurfacePoint& at, const Vec3& wo) {
-  return wo.z < 0 ? -at.shading.n : at.shading.n;
+  return at.shading.n * signOfSide(wo.z < 0);
 }
 
 // What the choice among lights depends on at a vertex; `wo`, in the shading frame, says on which side it is.

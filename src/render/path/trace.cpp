@@ -54,13 +54,13 @@ Bounces takeSteps(const PathSettings& settings, Batch& batch, Bounces bounces) {
   drawNumbers(settings, batch, bounces);
   prepareDirections(settings, bounces);
   countGuidable(bounces);
-  sampleLights(settings, bounces);
+  const LitBounces lit = sampleLights(settings, bounces);
   chooseBlocks(bounces);
-  weighLights(bounces);
+  weighLights(lit);
   sampleDirections(bounces);
   describeFirstHits(settings, bounces);
   playRouletteOnDeparture(settings, bounces);
-  requestShadowRays(settings, batch, bounces);
+  requestShadowRays(settings, batch, lit);
   recordBounces(batch, bounces);
   departRays(bounces);
   return bounces;

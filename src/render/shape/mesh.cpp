@@ -211,9 +211,17 @@ void Mesh::findTangents(SurfacePoint& at, const Triangle& corners) const {
 
 uint32_t Mesh::drawTriangle(Vec2& u) const {
   // The first triangle whose end lies above u: those without area begin where they end, and are never found.
-  const auto end = std::upper_bound(m_cdf.begin() + 1, m_cdf.end() - 1, u.x);
-  u.x = std::min((u.x - end[-1]) / (end[0] - end[-1]), kOneMinusEpsilon);
-  return uint32_t(end - m_cdf.begin() - 1);
+  // Ends of a few triangles are counted, as the branches of a search would be mispredicted.
+  constexpr size_t kFew = 8;
+  const std::span<const float> ends(m_cdf.begin() + 1, m_cdf.end() - 1);
+  size_t triangle = 0;
+  if (ends.size() < kFew)
+    for (const float end : ends) triangle += size_t(end <= u.x);
+  else
+    triangle = size_t(std::upper_bound(ends.begin(), ends.end(), u.x) - ends.begin());
+  const float begin = m_cdf[triangle];
+  u.x = std::min((u.x - begin) / (m_cdf[triangle + 1] - begin), kOneMinusEpsilon);
+  return uint32_t(triangle);
 }
 
 Mesh::Draw Mesh::drawOverArea(Vec2 u) const {
