@@ -24,8 +24,8 @@ class Diffuse final : public Bsdf {
   }
 
   BsdfValue evaluate(const SurfacePoint& at, const Vec3& wo, const Vec3& wi) const override {
-    if (!(wo.z > 0) || !(wi.z > 0)) return {};
-    const float pdf = cosineHemispherePdf(wi.z);
+    if (!(wo.z > 0)) return {};
+    const float pdf = cosineHemispherePdf(wi.z);  // 0 below the surface
     return {m_reflectance(at) * pdf, pdf, pdf};
   }
 

@@ -65,13 +65,15 @@ struct ShadowRay {
   Rgb radiance;
 };
 
-// What the paths of a batch share while they are traced; kept from batch to batch for its memory. 284 bytes a
+// What the paths of a batch share while they are traced; kept from batch to batch for its memory. 288 bytes a
 // path and 49 a shadow ray.
 struct Batch {
   std::vector<uint32_t> active;  // paths that have a ray to trace
   std::vector<Ray> rays;         // theirs
   std::vector<Hit> hits;         // what those met
   std::vector<Vertex> vertices;  // the same as points on surfaces
+  std::vector<uint32_t> met;     // which of them lie on one
+  size_t metCount = 0;           // how many
   std::vector<uint32_t> cells;   // of the guide; kNoCell where there is none
   std::vector<Place> places;     // of the vertices that may have one
   std::vector<uint32_t> placed;  // which those are
@@ -83,6 +85,17 @@ struct Batch {
   std::vector<uint8_t> hidden;
   bool recording = false;
   PathRecorder recorder;
+
+  // Makes room for what is found of so many rays. What was there for more is kept, so that it need not be
+  // filled again.
+  void reserve(size_t count) {
+    if (count <= rays.size()) return;
+    rays.resize(count);
+    hits.resize(count);
+    vertices.resize(count);
+    met.resize(count);
+  }
+  std::span<const uint32_t> surfaces() const { return {met.data(), metCount}; }
 };
 
 using Bounces = std::span<Bounce>;

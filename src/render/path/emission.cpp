@@ -50,20 +50,20 @@ const LightReference* competitor(const Path& path) {
 }  // namespace
 
 void meetEmission(const PathSettings& settings, Batch& batch, Bounces bounces) {
-  std::array<Escape, kBounceBlock> escapes;
-  std::array<const Bounce*, kBounceBlock> escaping;
-  size_t count = 0;
+  // Told apart without a branch, which would often be mispredicted.
+  std::array<Bounce*, kBounceBlock> arriving, leaving;
+  size_t arrived = 0, left = 0;
   for (Bounce& bounce : bounces) {
-    Path& path = *bounce.path;
-    ++path.counts.rays;
+    ++bounce.path->counts.rays;
     bounce.scatters = false;
-    if (!bounce.vertex->at.shape) {
-      if (batch.recording) batch.recorder.escape(path.handle);
-      if (path.hidesEnvironment) continue;
-      escaping[count] = &bounce;
-      escapes[count++] = {&path.ray, competitor(path)};
-      continue;
-    }
+    const bool met = bounce.vertex->at.shape;
+    arriving[arrived] = leaving[left] = &bounce;
+    arrived += met;
+    left += !met;
+  }
+  for (Bounce* each : std::span(arriving.data(), arrived)) {
+    Bounce& bounce = *each;
+    Path& path = *bounce.path;
     arriveAt(batch, bounce);
     ifShining(path.ray, bounce.vertex->at, competitor(path),
               [&](const Emission& met) { addEmission(settings, batch, bounce, met); });
@@ -71,9 +71,18 @@ void meetEmission(const PathSettings& settings, Batch& batch, Bounces bounces) {
     // Where depth ends a path nobody draws a lobe, and the surface counts as one that hides what is behind.
     if (!bounce.scatters) path.visible = true;
   }
+  std::array<Escape, kBounceBlock> escapes;
+  size_t count = 0;
+  for (Bounce* bounce : std::span(leaving.data(), left)) {
+    const Path& path = *bounce->path;
+    if (batch.recording) batch.recorder.escape(path.handle);
+    if (path.hidesEnvironment) continue;
+    leaving[count] = bounce;
+    escapes[count++] = {&path.ray, competitor(path)};
+  }
   if (count == 0) return;
   forEachEnvironment(*settings.scene, {escapes.data(), count},
-                     [&](size_t i, const Emission& met) { addEmission(settings, batch, *escaping[i], met); });
+                     [&](size_t i, const Emission& met) { addEmission(settings, batch, *leaving[i], met); });
 }
 
 namespace {

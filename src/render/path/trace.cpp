@@ -9,17 +9,19 @@ namespace {
 
 // Traces the paths' rays and turns what they hit into vertices.
 void findVertices(const PathSettings& settings, std::span<const Path> paths, Batch& batch) {
-  batch.rays.resize(batch.active.size());
-  for (size_t i = 0; i < batch.rays.size(); ++i) batch.rays[i] = paths[batch.active[i]].ray;
-  batch.hits.resize(batch.rays.size());
-  settings.scene->intersect(batch.rays, batch.hits);
-  batch.vertices.resize(batch.hits.size());
-  for (size_t i = 0; i < batch.hits.size(); ++i) {
-    const Hit& hit = batch.hits[i];
+  const size_t count = batch.active.size();
+  batch.reserve(count);
+  for (size_t i = 0; i < count; ++i) batch.rays[i] = paths[batch.active[i]].ray;
+  settings.scene->intersect({batch.rays.data(), count}, batch.hits);
+  batch.metCount = 0;
+  for (size_t i = 0; i < count; ++i) {  // without a branch, which would often be mispredicted
+    batch.vertices[i].at.shape = batch.hits[i].shape;
+    batch.met[batch.metCount] = uint32_t(i);
+    batch.metCount += batch.hits[i].shape != nullptr;
+  }
+  for (const uint32_t i : batch.surfaces()) {
     Vertex& vertex = batch.vertices[i];
-    vertex.at.shape = hit.shape;
-    if (!hit.shape) continue;
-    new (&vertex.at) SurfacePoint(hit.surfacePoint(batch.rays[i]));  // without a copy
+    new (&vertex.at) SurfacePoint(batch.hits[i].surfacePoint(batch.rays[i]));  // without a copy
     vertex.wo = vertex.at.shading.toLocal(-batch.rays[i].direction);
   }
 }
@@ -27,14 +29,14 @@ void findVertices(const PathSettings& settings, std::span<const Path> paths, Bat
 // Finds the cells that guide the vertices. Those with delta lobes only, on mirrors and glass, have none: what
 // they return depends on the one direction that the path came from, of which a cell knows nothing.
 void findGuidingCells(const PathSettings& settings, std::span<const Path> paths, Batch& batch) {
-  batch.cells.assign(batch.vertices.size(), kNoCell);
+  batch.cells.assign(batch.active.size(), kNoCell);
   if (!settings.guide) return;
   batch.places.clear();
   batch.placed.clear();
-  for (uint32_t i = 0; i < batch.vertices.size(); ++i) {
+  for (const uint32_t i : batch.surfaces()) {
     const auto& [at, wo] = batch.vertices[i];
     const Path& path = paths[batch.active[i]];
-    if (!at.shape || !at.shape->bsdf().traits().evaluable || !guidesAt(settings, path)) continue;
+    if (!at.shape->bsdf().traits().evaluable || !guidesAt(settings, path)) continue;
     batch.places.push_back({toOdis(at.p), toOdis(facingNormal(at, wo)), path.identity.pixel,
                             path.identity.sample, path.guidable == 0});
     batch.placed.push_back(i);

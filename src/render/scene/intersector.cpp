@@ -105,6 +105,7 @@ Intersector::Intersector(const std::vector<ShapePtr>& shapes, const std::vector<
   rtcSetDeviceMemoryMonitorFunction(m_device, countBytes, &m_bytes);
 
   m_scene = makeScene(shapes, m_shapes);
+  m_shapes.push_back(nullptr);
   std::map<const void*, size_t> groupIndex;
   for (const Instance& instance : instances) {
     const auto [entry, isNew] = groupIndex.try_emplace(instance.group.get(), m_groups.size());
@@ -165,8 +166,8 @@ bool Intersector::intersect(const Ray& ray, SurfacePoint& at) const {
 }
 
 Hit Intersector::resolve(unsigned geometry, unsigned instance, const RawHit& raw) const {
-  if (geometry == RTC_INVALID_GEOMETRY_ID) return {};
-  if (instance == RTC_INVALID_GEOMETRY_ID) return {m_shapes[geometry], raw};
+  if (instance == RTC_INVALID_GEOMETRY_ID)
+    return {m_shapes[std::min(size_t(geometry), m_shapes.size() - 1)], raw};
   const Placed& placed = m_placed[instance - m_shapes.size()];
   Hit hit{(*placed.shapes)[geometry], raw, placed.motion};
   hit.raw.instance = &placed.placement;

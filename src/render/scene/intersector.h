@@ -45,7 +45,7 @@ class Intersector {
   RTCDeviceTy* m_device = nullptr;
   RTCSceneTy* m_scene = nullptr;
   std::vector<RTCSceneTy*> m_groupScenes;
-  ShapeArray m_shapes;
+  ShapeArray m_shapes;  // and null, for rays that met nothing
   std::vector<std::unique_ptr<ShapeArray>> m_groups;
   std::vector<Placed> m_placed;
 };
