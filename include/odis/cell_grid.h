@@ -69,10 +69,11 @@ class CellGrid {
   // 0 to 5: +x, -x, +y, -y, +z, -z.
   ODIS_HOST_DEVICE static uint32_t dominantAxis(const Float3& n) {
     const float x = abs(n.x), y = abs(n.y), z = abs(n.z);
-    // Without branches, which would often be mispredicted.
+    // Without branches, which would often be mispredicted: compilers choose between integers without.
     const bool isX = (x >= y) & (x >= z), isY = !isX & (y >= z);
-    const float along = isX ? n.x : isY ? n.y : n.z;
-    return (isX ? 0u : isY ? 2u : 4u) + uint32_t(!(along >= 0));
+    const uint32_t alongX = !(n.x >= 0), alongY = 2 + uint32_t(!(n.y >= 0)),
+                   alongZ = 4 + uint32_t(!(n.z >= 0));
+    return isX ? alongX : isY ? alongY : alongZ;
   }
   ODIS_HOST_DEVICE static uint64_t packed(int value) { return uint64_t(value + kMiddle) & kMask; }
   ODIS_HOST_DEVICE static int unpacked(uint64_t key, int shift) {

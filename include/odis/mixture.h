@@ -59,8 +59,11 @@ class Mixture {
   };
   ODIS_HOST_DEVICE Choice choose(Real u) const {
     const auto fromMap = u >= m_fraction;
-    const Real ofMap = min((u - m_fraction) / (Real(1) - m_fraction), Real(0x1.fffffep-1f));
-    return {fromMap, select(fromMap, ofMap, u / m_fraction)};
+    // The part of [0, 1) that u lies in begins at 0 or m_fraction. Without a branch on scalars, which would
+    // be mispredicted.
+    const Real isMap = select(fromMap, Real(1), Real(0));
+    const Real begin = isMap * m_fraction, length = isMap + (Real(1) - Real(2) * isMap) * m_fraction;
+    return {fromMap, min((u - begin) / length, Real(0x1.fffffep-1f))};
   }
 
   // Samples the mixture, for one path. `map` has sample(u, v), with the fields wi and pdf, and pdf(wi),

@@ -145,7 +145,7 @@ struct SavedVertexSamples {
     };
     for (const CellSample& sample : tile.cells.samples)
       file.require(isFinite(sample.position) && isFinite(sample.normal) &&
-                       (!(sample.lightSquare > 0) || sample.lightGroup < kMaxLightGroups),
+                       sample.lightGroup < kMaxLightGroups && sample.half <= 1,
                    name + ".samples: are damaged");
     for (const BatchSamples::Cell& cell : tile.cells.cells)
       file.require(CellGrid::levelOf(cell.key) == 0, name + ".cells: are damaged");

@@ -129,10 +129,13 @@ void accumulate(CellStatistics& cell, LightField* field, const Float3& middle, f
     const double brightness = luminance(outgoing);
     cell.outgoingSquares += brightness * brightness;
     cell.rays += sample.rays;
-    if (sample.half == 1)
-      addTo(cell.secondHalf, {1, {outgoing.x, outgoing.y, outgoing.z}, brightness * brightness});
-    if (sample.lightSquare != kNoLights) cell.lightCount += 1;
-    if (sample.lightSquare > 0) cell.lightSquares[sample.lightGroup] += sample.lightSquare;
+    // Of all samples, those that do not count as zeros: branches would be mispredicted.
+    const double half = sample.half;
+    addTo(
+        cell.secondHalf,
+        {half, {half * outgoing.x, half * outgoing.y, half * outgoing.z}, half * (brightness * brightness)});
+    cell.lightCount += sample.lightSquare != kNoLights;
+    cell.lightSquares[sample.lightGroup] += std::max(sample.lightSquare, 0.0f);
     cell.normal = cell.normal + sample.normal;
     if (value <= 0) return;
     const Splat spread = splat(reaim(sample.position, sample.wi, sample.distance, cell.centroid));

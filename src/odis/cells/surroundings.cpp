@@ -51,9 +51,15 @@ void LightField::add(const CellSample& sample, float value, const Float3& middle
 }
 
 uint32_t LightPoints::add(const LightField& field, const Float3& middle) {
-  const TexelDirections& directions = texelDirections();
+  // Which texels are not dark, found without a branch, which would often be mispredicted.
+  std::array<uint16_t, kMapTexels> lit;
+  size_t count = 0;
   for (size_t t = 0; t < kMapTexels; ++t) {
-    if (!(field.value[t] > 0)) continue;
+    lit[count] = uint16_t(t);
+    count += field.value[t] > 0;
+  }
+  const TexelDirections& directions = texelDirections();
+  for (const uint16_t t : std::span(lit.data(), count)) {
     m_x.push_back(directions.x[t]);
     m_y.push_back(directions.y[t]);
     m_z.push_back(directions.z[t]);

@@ -24,9 +24,8 @@ void chooseBlocks(Bounces bounces) {
     if (!map) continue;
     const auto choice = bounce.bsdf.mixture().choose(bounce.numbers.direction.x);
     bounce.draw = {choice.fromMap, choice.u, 0, {}};
-    if (!choice.fromMap) continue;
     drawing[samples.count] = &bounce;
-    samples.add(*map, {choice.u, bounce.numbers.direction.y});
+    samples.addIf(choice.fromMap, map, {choice.u, bounce.numbers.direction.y});
   }
   chooseBlocks(samples);
   for (size_t i = 0; i < samples.count; ++i) {

@@ -80,13 +80,6 @@ ODIS_WIDE void prepareMaps(const MapArrays& arrays, MapPreparations& maps) {
   }
 }
 
-void MapSamples::add(const VertexMap<float>& map, const Vec2& numbers, int32_t block) {
-  maps[count] = &map;
-  u[count] = numbers.x;
-  v[count] = numbers.y;
-  blocks[count++] = block;
-}
-
 void chooseBlocks(MapSamples& samples) {
   if (samples.count == 0) return;
   Weights weights;

@@ -29,7 +29,17 @@ struct MapSamples {
   Columns3 wi;             // unit vectors, world space
   Column pdf;              // with respect to solid angle
 
-  void add(const VertexMap<float>& map, const Vec2& numbers, int32_t block = 0);
+  void add(const VertexMap<float>& map, const Vec2& numbers, int32_t block = 0) {
+    addIf(true, &map, numbers, block);
+  }
+  // Without a branch, which would often be mispredicted. The map may be null where it is not drawn from.
+  void addIf(bool drawn, const VertexMap<float>* map, const Vec2& numbers, int32_t block = 0) {
+    maps[count] = map;
+    u[count] = numbers.x;
+    v[count] = numbers.y;
+    blocks[count] = block;
+    count += drawn;
+  }
 };
 // VertexMap::chooseBlock(): finds `blocks`, and stretches u and v to sample within them.
 void chooseBlocks(MapSamples& samples);
