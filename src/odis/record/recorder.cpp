@@ -151,14 +151,15 @@ void PathRecorder::complete(const OpenPath& path, PathVertex* vertices) const {
 ArrayView<const PathVertex> PathRecorder::finish() {
   size_t next = 0, count = 0;
   for (const OpenPath& path : m_paths) count += path.count;
-  m_finished.resize(count);
+  // What was there for more is kept, so that it need not be filled again.
+  if (m_finished.size() < count) m_finished.resize(count);
   for (const OpenPath& path : m_paths) {
     complete(path, m_finished.data() + next);
     next += path.count;
   }
   m_paths.clear();
   m_pending.clear();
-  return m_finished;
+  return {m_finished.data(), count};
 }
 
 }  // namespace odis::core
