@@ -65,19 +65,24 @@ struct ShadowRay {
   Rgb radiance;
 };
 
-// What the paths of a batch share while they are traced; kept from batch to batch for its memory. 288 bytes a
+// What the paths of a batch share while they are traced; kept from batch to batch for its memory. 294 bytes a
 // path and 49 a shadow ray.
 struct Batch {
   std::vector<uint32_t> active;  // paths that have a ray to trace
   std::vector<Ray> rays;         // theirs
   std::vector<Hit> hits;         // what those met
   std::vector<Vertex> vertices;  // the same as points on surfaces
-  std::vector<uint32_t> met;     // which of them lie on one
-  size_t metCount = 0;           // how many
-  std::vector<uint32_t> cells;   // of the guide; kNoCell where there is none
-  std::vector<Place> places;     // of the vertices that may have one
-  std::vector<uint32_t> placed;  // which those are
-  std::vector<uint32_t> found;   // their cells
+  // The order in which steps are taken, so that calls and branches that depend on the BSDF are foreseen:
+  // vertices sorted by BSDF, then the rays that left the scene.
+  std::vector<uint32_t> order;
+  size_t metCount = 0;            // how many rays met a surface
+  std::vector<uint32_t> met;      // which these are
+  std::vector<uint8_t> buckets;   // of each of these: what it is sorted by
+  std::vector<uint8_t> survives;  // of each path of the batch: whether it goes on
+  std::vector<uint32_t> cells;    // of the guide; kNoCell where there is none
+  std::vector<Place> places;      // of the vertices that may have one
+  std::vector<uint32_t> placed;   // which those are
+  std::vector<uint32_t> found;    // their cells
   std::array<Bounce, kBounceBlock> bounces;
   SamplerBlock samplers;  // those of the bounces' paths
   std::vector<ShadowRay> shadowRays;
@@ -93,9 +98,12 @@ struct Batch {
     rays.resize(count);
     hits.resize(count);
     vertices.resize(count);
+    order.resize(count);
     met.resize(count);
+    buckets.resize(count);
+    survives.resize(count);
   }
-  std::span<const uint32_t> surfaces() const { return {met.data(), metCount}; }
+  std::span<const uint32_t> surfaces() const { return {order.data(), metCount}; }
 };
 
 using Bounces = std::span<Bounce>;

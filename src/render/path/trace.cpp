@@ -1,3 +1,4 @@
+#include <array>
 #include <new>
 #include <numeric>
 
@@ -7,18 +8,41 @@ namespace odis::render {
 
 namespace {
 
+// Some bits of the address of a hit's BSDF, to sort by.
+constexpr int kBucketBits = 6;
+uint8_t bucketOf(const Hit& hit) {
+  const uint64_t address = reinterpret_cast<uintptr_t>(&hit.shape->bsdf());
+  return uint8_t((address * 0x9e3779b97f4a7c15u) >> (64 - kBucketBits));  // Fibonacci hashing
+}
+
+// Sorts what rays hit by BSDF, those of one in their order, and puts rays that left the scene behind it.
+void sortByBsdf(Batch& batch) {
+  const size_t count = batch.active.size();
+  batch.metCount = 0;
+  size_t left = 0;
+  for (size_t i = 0; i < count; ++i) {  // without a branch, which would often be mispredicted
+    const bool met = batch.hits[i].shape;
+    batch.met[batch.metCount] = batch.order[count - 1 - left] = uint32_t(i);
+    batch.metCount += met;
+    left += !met;
+  }
+  std::array<uint32_t, 1 << kBucketBits> ends{};
+  for (size_t k = 0; k < batch.metCount; ++k) {
+    batch.buckets[k] = bucketOf(batch.hits[batch.met[k]]);
+    ++ends[batch.buckets[k]];
+  }
+  std::exclusive_scan(ends.begin(), ends.end(), ends.begin(), 0u);
+  for (size_t k = 0; k < batch.metCount; ++k) batch.order[ends[batch.buckets[k]]++] = batch.met[k];
+}
+
 // Traces the paths' rays and turns what they hit into vertices.
 void findVertices(const PathSettings& settings, std::span<const Path> paths, Batch& batch) {
   const size_t count = batch.active.size();
   batch.reserve(count);
   for (size_t i = 0; i < count; ++i) batch.rays[i] = paths[batch.active[i]].ray;
   settings.scene->intersect({batch.rays.data(), count}, batch.hits);
-  batch.metCount = 0;
-  for (size_t i = 0; i < count; ++i) {  // without a branch, which would often be mispredicted
-    batch.vertices[i].at.shape = batch.hits[i].shape;
-    batch.met[batch.metCount] = uint32_t(i);
-    batch.metCount += batch.hits[i].shape != nullptr;
-  }
+  for (size_t i = 0; i < count; ++i) batch.vertices[i].at.shape = batch.hits[i].shape;
+  sortByBsdf(batch);
   for (const uint32_t i : batch.surfaces()) {
     Vertex& vertex = batch.vertices[i];
     new (&vertex.at) SurfacePoint(batch.hits[i].surfacePoint(batch.rays[i]));  // without a copy
@@ -70,12 +94,13 @@ Bounces takeSteps(const PathSettings& settings, Batch& batch, Bounces bounces) {
 
 // Takes all active paths from their rays' ends to their next rays; those without one are active no more.
 void bounceAll(const PathSettings& settings, std::span<Path> paths, int depth, Batch& batch) {
-  size_t left = 0;
   for (size_t begin = 0; begin < batch.active.size(); begin += kBounceBlock) {
     const size_t count = std::min(kBounceBlock, batch.active.size() - begin);
-    for (size_t i = begin; i < begin + count; ++i) {
-      Bounce& bounce = batch.bounces[i - begin];
+    for (size_t k = begin; k < begin + count; ++k) {
+      const uint32_t i = batch.order[k];
+      Bounce& bounce = batch.bounces[k - begin];
       bounce.index = batch.active[i];
+      batch.survives[bounce.index] = false;
       bounce.path = &paths[bounce.index];
       bounce.vertex = &batch.vertices[i];
       bounce.cell = batch.cells[i];
@@ -83,7 +108,12 @@ void bounceAll(const PathSettings& settings, std::span<Path> paths, int depth, B
       bounce.depth = depth;
     }
     for (const Bounce& bounce : takeSteps(settings, batch, Bounces(batch.bounces.data(), count)))
-      if (bounce.survives) batch.active[left++] = bounce.index;
+      batch.survives[bounce.index] = bounce.survives;
+  }
+  size_t left = 0;
+  for (size_t i = 0; i < batch.active.size(); ++i) {
+    batch.active[left] = batch.active[i];
+    left += batch.survives[batch.active[left]];
   }
   batch.active.resize(left);
 }
