@@ -129,7 +129,7 @@ void accumulate(CellStatistics& cell, LightField* field, const Float3& middle, f
     const double brightness = luminance(outgoing);
     cell.outgoingSquares += brightness * brightness;
     cell.rays += sample.rays;
-    // Of all samples, those that do not count as zeros: branches would be mispredicted.
+    // Added for every sample, as zeros where it does not count: branches would be mispredicted.
     const double half = sample.half;
     addTo(
         cell.secondHalf,

@@ -25,7 +25,7 @@ void chooseBlocks(Bounces bounces) {
     const auto choice = bounce.bsdf.mixture().choose(bounce.numbers.direction.x);
     bounce.draw = {choice.fromMap, choice.u, 0, {}};
     drawing[samples.count] = &bounce;
-    samples.addIf(choice.fromMap, map, {choice.u, bounce.numbers.direction.y});
+    samples.addIf(choice.fromMap, *map, {choice.u, bounce.numbers.direction.y});
   }
   chooseBlocks(samples);
   for (size_t i = 0; i < samples.count; ++i) {

@@ -30,11 +30,11 @@ struct MapSamples {
   Column pdf;              // with respect to solid angle
 
   void add(const VertexMap<float>& map, const Vec2& numbers, int32_t block = 0) {
-    addIf(true, &map, numbers, block);
+    addIf(true, map, numbers, block);
   }
-  // Without a branch, which would often be mispredicted. The map may be null where it is not drawn from.
-  void addIf(bool drawn, const VertexMap<float>* map, const Vec2& numbers, int32_t block = 0) {
-    maps[count] = map;
+  // Without a branch, which would often be mispredicted.
+  void addIf(bool drawn, const VertexMap<float>& map, const Vec2& numbers, int32_t block = 0) {
+    maps[count] = &map;
     u[count] = numbers.x;
     v[count] = numbers.y;
     blocks[count] = block;
