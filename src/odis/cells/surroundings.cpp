@@ -51,7 +51,7 @@ void LightField::add(const CellSample& sample, float value, const Float3& middle
 }
 
 uint32_t LightPoints::add(const LightField& field, const Float3& middle) {
-  // Which texels are not dark, found without a branch, which would often be mispredicted.
+  // First the texels that are not dark are listed, without a branch, which would often be mispredicted.
   std::array<uint16_t, kMapTexels> lit;
   size_t count = 0;
   for (size_t t = 0; t < kMapTexels; ++t) {

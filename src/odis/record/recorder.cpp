@@ -151,7 +151,7 @@ void PathRecorder::complete(const OpenPath& path, PathVertex* vertices) const {
 ArrayView<const PathVertex> PathRecorder::finish() {
   size_t next = 0, count = 0;
   for (const OpenPath& path : m_paths) count += path.count;
-  // What was there for more is kept, so that it need not be filled again.
+  // The vector never shrinks, so that its elements are initialised only once.
   if (m_finished.size() < count) m_finished.resize(count);
   for (const OpenPath& path : m_paths) {
     complete(path, m_finished.data() + next);

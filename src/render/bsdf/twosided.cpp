@@ -40,7 +40,7 @@ class TwoSided final : public Bsdf {
   }
 
  private:
-  // The side that a direction is on, on which directions are seen from the front.
+  // The side that a direction is on; flip() mirrors directions so that they see it as the front.
   struct Side {
     explicit Side(const Vec3& wo) : back(!(wo.z >= 0)), sign(signOfSide(back)) {}
     Vec3 flip(const Vec3& w) const { return {w.x, w.y, sign * w.z}; }

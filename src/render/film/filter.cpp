@@ -49,7 +49,7 @@ class TentFilter final : public Filter {
  private:
   float profile(float x) const { return std::max(0.0f, 1 - std::abs(x) / m_radius) / m_radius; }
   float invert(float u) const {
-    // Of either half by symmetry, without a branch, which would be mispredicted half of the time.
+    // The halves are symmetric. A branch between them would be mispredicted half of the time.
     return m_radius * std::copysign(1 - std::sqrt(2 * std::min(u, 1 - u)), u - 0.5f);
   }
 

@@ -44,7 +44,7 @@ struct Bounce : Arrival {
   VertexNumbers numbers;       // random ones, that what follows is decided by
   GuidedBsdf bsdf;             // that directions are sampled from
   LightReference reference;    // that the choice of lights depends on
-  LightEstimate light;         // next-event estimation, of LitBounces
+  LightEstimate light;         // next-event estimation, where sampleLights() found a light
   Rgb direct;                  // its radiance with the MIS weight, likewise
   float shadowRayProbability;  // with which the shadow ray was traced; 0: it was not
   DirectionDraw draw;          // where the next direction comes from, if there is a map
@@ -91,8 +91,8 @@ struct Batch {
   bool recording = false;
   PathRecorder recorder;
 
-  // Makes room for what is found of so many rays. What was there for more is kept, so that it need not be
-  // filled again.
+  // Makes room for so many rays and for what they meet. Vectors never shrink, so that their elements are
+  // initialised only once.
   void reserve(size_t count) {
     if (count <= rays.size()) return;
     rays.resize(count);
@@ -108,15 +108,15 @@ struct Batch {
 
 using Bounces = std::span<Bounce>;
 
-// The bounces that light reaches if nothing hides it.
-struct LitBounces {
+// Some of the bounces.
+struct BounceList {
   std::array<Bounce*, kBounceBlock> list;
   size_t count = 0;
 
   // Without a branch, which would often be mispredicted.
-  void addIf(bool lit, Bounce& bounce) {
+  void addIf(bool belongs, Bounce& bounce) {
     list[count] = &bounce;
-    count += lit;
+    count += belongs;
   }
   Bounce* const* begin() const { return list.data(); }
   Bounce* const* end() const { return list.data() + count; }
@@ -141,19 +141,19 @@ void drawNumbers(const PathSettings& settings, Batch& batch, Bounces bounces);
 void prepareDirections(const PathSettings& settings, Bounces bounces);
 // Counts the vertices of each path that may be guided, this one included.
 void countGuidable(Bounces bounces);
-// Chooses lights and points on them; returns those that they may reach.
-LitBounces sampleLights(const PathSettings& settings, Bounces bounces);
+// Chooses lights and points on them; returns the bounces that these light if nothing hides them.
+BounceList sampleLights(const PathSettings& settings, Bounces bounces);
 // Chooses between BSDF and map, and a block of the map.
 void chooseBlocks(Bounces bounces);
 // Weighs what lights give against sampling directions.
-void weighLights(const LitBounces& lit);
+void weighLights(const BounceList& lit);
 void sampleDirections(Bounces bounces);
 // Notes features of the first vertex whose direction is not discrete.
 void describeFirstHits(const PathSettings& settings, Bounces bounces);
 // Ends paths by their throughput where nothing was learned, as Mitsuba does.
 void playRouletteOnDeparture(const PathSettings& settings, Bounces bounces);
 // Asks for shadow rays, though not always where the light would add little to the pixel.
-void requestShadowRays(const PathSettings& settings, Batch& batch, const LitBounces& lit);
+void requestShadowRays(const PathSettings& settings, Batch& batch, const BounceList& lit);
 // Tells the recorder what happened.
 void recordBounces(Batch& batch, Bounces bounces);
 // Gives each path that survives its next ray.

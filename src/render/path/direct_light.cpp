@@ -8,7 +8,7 @@ namespace odis::render {
 namespace {
 
 // Fills in what a sample of a light, chosen with a probability, brings to a vertex, unless that is black.
-void estimateLight(Bounce& bounce, const EmitterSample& light, float probability, LitBounces& lit) {
+void estimateLight(Bounce& bounce, const EmitterSample& light, float probability, BounceList& lit) {
   if (!(light.pdf > 0) || isBlack(light.radiance)) return;
   const auto& [at, wo] = *bounce.vertex;
   LightEstimate& result = bounce.light;
@@ -37,7 +37,7 @@ EmitterSample sampleChosen(const Bounce& bounce, const LightSampler::Choice& cho
 // Samples one of the environments for those of the bounces that chose it.
 void sampleEnvironment(const Emitter& environment, std::span<const size_t> which,
                        const std::array<Bounce*, kBounceBlock>& choosing, const Choices& choices,
-                       LitBounces& lit) {
+                       BounceList& lit) {
   std::array<LightDraw, kBounceBlock> draws;
   std::array<EmitterSample, kBounceBlock> samples;
   for (size_t k = 0; k < which.size(); ++k) {
@@ -55,7 +55,7 @@ bool hasMapPdf(const Bounce& bounce) {
 }
 
 // Finds the texels of lights' directions, which are fetched while other steps are taken.
-void fetchTexels(const LitBounces& lit) {
+void fetchTexels(const BounceList& lit) {
   MapLookUps lookUps;
   for (const Bounce* bounce : lit)
     if (hasMapPdf(*bounce)) lookUps.add(*bounce->bsdf.map(), bounce->light.wi);
@@ -71,7 +71,7 @@ LightReference lightReference(const SurfacePoint& at, const Vec3& wo) {
   return {at.p, facingNormal(at, wo), at.shape->bsdf().traits().transmissive};
 }
 
-LitBounces sampleLights(const PathSettings& settings, Bounces bounces) {
+BounceList sampleLights(const PathSettings& settings, Bounces bounces) {
   // The bounces that choose a light, and what they choose.
   std::array<Bounce*, kBounceBlock> choosing;
   std::array<LightSampler::Request, kBounceBlock> requests;
@@ -89,7 +89,7 @@ LitBounces sampleLights(const PathSettings& settings, Bounces bounces) {
   }
   settings.lights->sample({requests.data(), count}, choices);
 
-  LitBounces lit;
+  BounceList lit;
   LightTriangles triangles;
   // For each of the triangles, and for each sample of an environment, the index of the choice that drew it.
   std::array<size_t, kBounceBlock> byTriangles, byEnvironments;
@@ -124,7 +124,7 @@ LitBounces sampleLights(const PathSettings& settings, Bounces bounces) {
   return lit;
 }
 
-void weighLights(const LitBounces& lit) {
+void weighLights(const BounceList& lit) {
   MapLookUps lookUps;
   for (const Bounce* bounce : lit)
     if (hasMapPdf(*bounce)) lookUps.add(*bounce->bsdf.map(), bounce->light.texel);
@@ -135,7 +135,7 @@ void weighLights(const LitBounces& lit) {
         bounce->light.radiance * misWeight(bounce->light, bounce->bsdf, hasMapPdf(*bounce) ? *mapPdf++ : 0);
 }
 
-void requestShadowRays(const PathSettings& settings, Batch& batch, const LitBounces& lit) {
+void requestShadowRays(const PathSettings& settings, Batch& batch, const BounceList& lit) {
   for (Bounce* each : lit) {
     Bounce& bounce = *each;
     if (isBlack(bounce.direct)) continue;

@@ -50,18 +50,15 @@ const LightReference* competitor(const Path& path) {
 }  // namespace
 
 void meetEmission(const PathSettings& settings, Batch& batch, Bounces bounces) {
-  // Told apart without a branch, which would often be mispredicted.
-  std::array<Bounce*, kBounceBlock> arriving, leaving;
-  size_t arrived = 0, left = 0;
+  BounceList arriving, leaving;
   for (Bounce& bounce : bounces) {
     ++bounce.path->counts.rays;
     bounce.scatters = false;
     const bool met = bounce.vertex->at.shape;
-    arriving[arrived] = leaving[left] = &bounce;
-    arrived += met;
-    left += !met;
+    arriving.addIf(met, bounce);
+    leaving.addIf(!met, bounce);
   }
-  for (Bounce* each : std::span(arriving.data(), arrived)) {
+  for (Bounce* each : arriving) {
     Bounce& bounce = *each;
     Path& path = *bounce.path;
     arriveAt(batch, bounce);
@@ -71,18 +68,18 @@ void meetEmission(const PathSettings& settings, Batch& batch, Bounces bounces) {
     // Where depth ends a path nobody draws a lobe, and the surface counts as one that hides what is behind.
     if (!bounce.scatters) path.visible = true;
   }
+  BounceList seeing;  // the environments
   std::array<Escape, kBounceBlock> escapes;
-  size_t count = 0;
-  for (Bounce* bounce : std::span(leaving.data(), left)) {
+  for (Bounce* bounce : leaving) {
     const Path& path = *bounce->path;
     if (batch.recording) batch.recorder.escape(path.handle);
-    if (path.hidesEnvironment) continue;
-    leaving[count] = bounce;
-    escapes[count++] = {&path.ray, competitor(path)};
+    escapes[seeing.count] = {&path.ray, competitor(path)};
+    seeing.addIf(!path.hidesEnvironment, *bounce);
   }
-  if (count == 0) return;
-  forEachEnvironment(*settings.scene, {escapes.data(), count},
-                     [&](size_t i, const Emission& met) { addEmission(settings, batch, *leaving[i], met); });
+  if (seeing.count == 0) return;
+  forEachEnvironment(*settings.scene, {escapes.data(), seeing.count}, [&](size_t i, const Emission& met) {
+    addEmission(settings, batch, *seeing.list[i], met);
+  });
 }
 
 namespace {

@@ -80,7 +80,7 @@ Bounces takeSteps(const PathSettings& settings, Batch& batch, Bounces bounces) {
   drawNumbers(settings, batch, bounces);
   prepareDirections(settings, bounces);
   countGuidable(bounces);
-  const LitBounces lit = sampleLights(settings, bounces);
+  const BounceList lit = sampleLights(settings, bounces);
   chooseBlocks(bounces);
   weighLights(lit);
   sampleDirections(bounces);
