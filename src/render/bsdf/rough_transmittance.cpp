@@ -31,20 +31,27 @@ std::vector<Node> gaussLegendre(int count) {
   return nodes;
 }
 
+// What becomes of light that meets the interface in direction w: how much enters from outside, and how much
+// comes back from inside.
+struct Shares {
+  float entering, reflected;
+};
+
 // Visible normals are sampled with the quadrature's nodes, so the integrand is Fresnel's term and the masking
 // of the direction that leaves.
-float scattered(const Microfacet& facets, const Vec3& w, float eta, bool reflected,
-                const std::vector<Node>& nodes) {
-  double sum = 0;
+Shares sharesOf(const Microfacet& facets, const Vec3& w, float eta, const std::vector<Node>& nodes) {
+  double entering = 0, reflected = 0;
   for (const Node& a : nodes)
     for (const Node& b : nodes) {
       const Vec3 m = facets.sample(w, {a.x, b.x});
-      const DielectricFresnel f = fresnelDielectric(dot(w, m), eta);
-      const Vec3 out = reflected ? reflect(w, m) : refract(w, m, f);
-      if (reflected != (out.z > 0)) continue;
-      sum += a.weight * b.weight * facets.g1(out, m) * (reflected ? f.reflectance : 1 - f.reflectance);
+      const float weight = a.weight * b.weight;
+      const DielectricFresnel outside = fresnelDielectric(dot(w, m), eta);
+      if (const Vec3 in = refract(w, m, outside); !(in.z > 0))
+        entering += weight * facets.g1(in, m) * (1 - outside.reflectance);
+      if (const Vec3 back = reflect(w, m); back.z > 0)
+        reflected += weight * facets.g1(back, m) * fresnelDielectric(dot(w, m), 1 / eta).reflectance;
     }
-  return float(sum);
+  return {float(entering), float(reflected)};
 }
 
 }  // namespace
@@ -56,8 +63,9 @@ RoughTransmittance::RoughTransmittance(Microfacet::Type type, float alpha, float
   for (int i = 0; i < kNodes; ++i) {
     const float mu = std::max(1e-6f, float(i) / (kNodes - 1));
     const Vec3 w(safeSqrt(1 - mu * mu), 0, mu);
-    m_external[i] = scattered(facets, w, eta, false, nodes);
-    reflectance += 2 * mu * scattered(facets, w, 1 / eta, true, nodes) / kNodes;
+    const Shares shares = sharesOf(facets, w, eta, nodes);
+    m_external[i] = shares.entering;
+    reflectance += 2 * mu * shares.reflected / kNodes;
   }
   m_internalReflectance = float(reflectance);
 }

@@ -15,8 +15,9 @@ namespace {
 
 class RoughCoating final : public Bsdf {
  public:
-  RoughCoating(CoatingBase base, const Microfacet& facets, const RoughTransmittance& transmittance)
-      : m_base(std::move(base)), m_facets(facets), m_transmittance(transmittance) {
+  RoughCoating(CoatingBase base, const Microfacet& facets,
+               std::shared_ptr<const RoughTransmittance> transmittance)
+      : m_base(std::move(base)), m_facets(facets), m_transmittance(std::move(transmittance)) {
     m_traits = m_base.nested->traits();
     m_traits.evaluable = m_traits.choosesLobes = true;
   }
@@ -66,14 +67,14 @@ class RoughCoating final : public Bsdf {
 
  private:
   static Vec3 upper(const Vec3& w) { return w.z < 0 ? -w : w; }
-  float transmittance(const Vec3& w) const { return m_transmittance.external(std::abs(w.z)); }
+  float transmittance(const Vec3& w) const { return m_transmittance->external(std::abs(w.z)); }
   BsdfSample finish(const SurfacePoint& at, const Vec3& wo, const Vec3& wi, Lobe lobe, float eta = 1) const {
     return finishSample(wi, evaluate(at, wo, wi), lobe, eta);
   }
 
   CoatingBase m_base;
   Microfacet m_facets;
-  RoughTransmittance m_transmittance;
+  std::shared_ptr<const RoughTransmittance> m_transmittance;
 };
 
 }  // namespace
@@ -85,9 +86,10 @@ BsdfPtr makeRoughCoating(const Properties& properties, Builder& builder) {
                      "\"int_ior\" and \"ext_ior\" of roughcoating are equal, expected two media");
   const RoughnessParameters roughness = readConstantRoughness(properties, builder);
   const float alpha = roughness.alphaU.mean();
-  const RoughTransmittance transmittance(roughness.type, alpha, base.eta);
-  return std::make_shared<RoughCoating>(
-      std::move(base), Microfacet(roughness.type, alpha, alpha, roughness.sampleVisible), transmittance);
+  auto transmittance = builder.roughTransmittance(roughness.type, alpha, base.eta);
+  return std::make_shared<RoughCoating>(std::move(base),
+                                        Microfacet(roughness.type, alpha, alpha, roughness.sampleVisible),
+                                        std::move(transmittance));
 }
 
 }  // namespace odis::render

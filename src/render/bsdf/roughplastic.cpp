@@ -20,22 +20,23 @@ namespace {
 
 class RoughPlastic final : public Bsdf {
  public:
-  RoughPlastic(PlasticBase base, const Microfacet& facets, const RoughTransmittance& transmittance)
-      : m_base(std::move(base)), m_facets(facets), m_transmittance(transmittance) {
-    m_base.internalReflectance = m_transmittance.internalReflectance();
+  RoughPlastic(PlasticBase base, const Microfacet& facets,
+               std::shared_ptr<const RoughTransmittance> transmittance)
+      : m_base(std::move(base)), m_facets(facets), m_transmittance(std::move(transmittance)) {
+    m_base.internalReflectance = m_transmittance->internalReflectance();
     m_base.setWeight();
   }
 
   BsdfSample sample(const SurfacePoint& at, const Vec3& wo, float uLobe, const Vec2& u) const override {
     if (!(wo.z > 0)) return {};
-    const bool coat = uLobe < m_base.specularProbability(m_transmittance.external(wo.z));
+    const bool coat = uLobe < m_base.specularProbability(m_transmittance->external(wo.z));
     const Vec3 wi = coat ? reflect(wo, m_facets.sample(wo, u)) : squareToCosineHemisphere(u);
     return finishSample(wi, evaluate(at, wo, wi), coat ? m_facets.lobe() : Lobe::smooth);
   }
 
   BsdfValue evaluate(const SurfacePoint& at, const Vec3& wo, const Vec3& wi) const override {
     if (!(wo.z > 0) || !(wi.z > 0)) return {};
-    const float entering = m_transmittance.external(wo.z);
+    const float entering = m_transmittance->external(wo.z);
     const float specularProbability = m_base.specularProbability(entering);
     const Vec3 m = normalize(wo + wi);
     const float f = fresnelDielectric(dot(wo, m), m_base.eta).reflectance;
@@ -48,24 +49,25 @@ class RoughPlastic final : public Bsdf {
     result.guidablePdf = m_facets.lobe() == Lobe::smooth ? result.pdf : basePdf;
     result.value = m_base.specular(at) * (f * facets.d * facets.g / (4 * wo.z)) +
                    m_base.baseAlbedo(at) * (cosineHemispherePdf(wi.z) * entering *
-                                            m_transmittance.external(wi.z) / sqr(m_base.eta));
+                                            m_transmittance->external(wi.z) / sqr(m_base.eta));
     return result;
   }
 
   float guidableProbability(const SurfacePoint&, const Vec3& wo) const override {
     if (!(wo.z > 0)) return 0;
     if (m_facets.lobe() == Lobe::smooth) return 1;
-    return 1 - m_base.specularProbability(m_transmittance.external(wo.z));
+    return 1 - m_base.specularProbability(m_transmittance->external(wo.z));
   }
 
   BsdfFeatures features(const SurfacePoint& at, const Vec3& wo) const override {
-    return m_base.features(at, m_transmittance.external(std::abs(wo.z)), std::min(m_facets.alphaMax(), 1.0f));
+    return m_base.features(at, m_transmittance->external(std::abs(wo.z)),
+                           std::min(m_facets.alphaMax(), 1.0f));
   }
 
  private:
   PlasticBase m_base;
   Microfacet m_facets;
-  RoughTransmittance m_transmittance;
+  std::shared_ptr<const RoughTransmittance> m_transmittance;
 };
 
 }  // namespace
@@ -84,7 +86,7 @@ BsdfPtr makeRoughPlastic(const Properties& properties, Builder& builder) {
   const float alpha = roughness.alphaU.mean();
   return std::make_shared<RoughPlastic>(std::move(base),
                                         Microfacet(roughness.type, alpha, alpha, roughness.sampleVisible),
-                                        RoughTransmittance(roughness.type, alpha, base.eta));
+                                        builder.roughTransmittance(roughness.type, alpha, base.eta));
 }
 
 }  // namespace odis::render

@@ -155,4 +155,11 @@ std::shared_ptr<const Image> Builder::image(const std::string& path, bool srgb, 
   return cached;
 }
 
+std::shared_ptr<const RoughTransmittance> Builder::roughTransmittance(Microfacet::Type type, float alpha,
+                                                                      float eta) {
+  std::shared_ptr<const RoughTransmittance>& known = m_roughTransmittances[{type, alpha, eta}];
+  if (!known) known = std::make_shared<const RoughTransmittance>(type, alpha, eta);
+  return known;
+}
+
 }  // namespace odis::render

@@ -3,13 +3,16 @@
 #pragma once
 
 #include <functional>
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
+#include <tuple>
 #include <unordered_map>
 #include <vector>
 
 #include "render/bsdf/bsdf.h"
+#include "render/bsdf/rough_transmittance.h"
 #include "render/emitter/emitter.h"
 #include "render/shape/shape.h"
 #include "render/texture/texture.h"
@@ -70,6 +73,8 @@ class Builder {
 
   // Image files, read once for all who use them. `srgb`: decode the sRGB curve of 8-bit files.
   std::shared_ptr<const Image> image(const std::string& path, bool srgb, const SourceLocation& at);
+  // Tables of what rough interfaces let pass, computed once for all that are alike: some 10 ms each.
+  std::shared_ptr<const RoughTransmittance> roughTransmittance(Microfacet::Type type, float alpha, float eta);
 
  private:
   Warnings& m_warnings;
@@ -79,6 +84,8 @@ class Builder {
   std::unordered_map<const Properties*, TexturePtr> m_textures;
   std::unordered_map<const Properties*, BsdfPtr> m_bsdfs;
   std::unordered_map<std::string, std::shared_ptr<const Image>> m_images;
+  std::map<std::tuple<Microfacet::Type, float, float>, std::shared_ptr<const RoughTransmittance>>
+      m_roughTransmittances;
 };
 
 // The factories: one function a model, defined in the model's own file, listed in the room's registry.cpp.
