@@ -30,10 +30,10 @@ extern "C" int LLVMFuzzerTestOneInput(const uint8_t* bytes, size_t size) {
   if (size < 2 || bytes[0] != 0x1c || bytes[1] != 0x04) whole = packed(bytes, size);
   const odis::fuzz::MemoryFile file(whole.data(), whole.size());
   try {
-    odis::render::SerializedMesh mesh = odis::render::readSerialized(file.path(), 0, {});
+    odis::render::MeshData mesh = odis::render::readSerialized(file.path(), 0, {});
     odis::render::MeshOptions options;
     options.faceNormals = mesh.faceNormals;
-    odis::fuzz::checkMesh(std::move(mesh.data), options);
+    odis::fuzz::checkMesh(std::move(mesh), options);
   } catch (const odis::render::SceneError&) {
   }
   return 0;

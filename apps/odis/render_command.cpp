@@ -155,6 +155,7 @@ static int runRender(RenderArguments& a) {
   std::optional<Denoiser> denoiser;
   if (a.denoise && a.replay.empty()) denoiser.emplace(a.threads);
 
+  const render::ThreadLimit threads(a.threads);
   const auto start = std::chrono::steady_clock::now();
   Warnings warnings;
   const std::unique_ptr<Scene> scene = Scene::load(a.scene, load, warnings);

@@ -68,7 +68,7 @@ std::string fileOf(uint16_t version, const std::vector<std::string>& bodies) {
   return bytes;
 }
 
-SerializedMesh parseSerialized(const std::string& bytes, int64_t index = 0) {
+MeshData parseSerialized(const std::string& bytes, int64_t index = 0) {
   const TemporaryFile file("mesh.serialized", bytes);
   return readSerialized(file.path(), index, {});
 }
@@ -80,20 +80,20 @@ TEST(Serialized, ReadsBothVersionsAndPrecisions) {
       const std::string bytes = fileOf(
           version,
           {body(version, precision, 5), body(version, flags | kFaceNormals, 7), body(version, flags, 9)});
-      const SerializedMesh first = parseSerialized(bytes, 0), second = parseSerialized(bytes, 1),
-                           third = parseSerialized(bytes, 2);
-      EXPECT_EQ(first.data.positions[0], Vec3(5, 0, 0));
-      EXPECT_TRUE(first.data.normals.empty() && first.data.uvs.empty());
-      EXPECT_EQ(second.data.positions[0], Vec3(7, 0, 0));
+      const MeshData first = parseSerialized(bytes, 0), second = parseSerialized(bytes, 1),
+                     third = parseSerialized(bytes, 2);
+      EXPECT_EQ(first.positions[0], Vec3(5, 0, 0));
+      EXPECT_TRUE(first.normals.empty() && first.uvs.empty());
+      EXPECT_EQ(second.positions[0], Vec3(7, 0, 0));
       EXPECT_TRUE(second.faceNormals);
       EXPECT_FALSE(third.faceNormals);
-      EXPECT_EQ(third.data.positions[0], Vec3(9, 0, 0));
-      EXPECT_EQ(third.data.normals[2], Vec3(0, 1, 0));
-      EXPECT_EQ(third.data.uvs[1], Vec2(1, 0));
-      ASSERT_EQ(third.data.attributes.size(), 1u);
-      EXPECT_EQ(third.data.attributes[0].name, "vertex_color");
-      EXPECT_EQ(third.data.attributes[0].values, std::vector<float>(9, 1.0f));
-      EXPECT_EQ(third.data.triangles[0], (Triangle{0, 1, 2}));
+      EXPECT_EQ(third.positions[0], Vec3(9, 0, 0));
+      EXPECT_EQ(third.normals[2], Vec3(0, 1, 0));
+      EXPECT_EQ(third.uvs[1], Vec2(1, 0));
+      ASSERT_EQ(third.attributes.size(), 1u);
+      EXPECT_EQ(third.attributes[0].name, "vertex_color");
+      EXPECT_EQ(third.attributes[0].values, std::vector<float>(9, 1.0f));
+      EXPECT_EQ(third.triangles[0], (Triangle{0, 1, 2}));
       EXPECT_THROW(parseSerialized(bytes, 3), SceneError);
       EXPECT_THROW(parseSerialized(bytes, -1), SceneError);
     }

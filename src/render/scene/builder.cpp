@@ -6,6 +6,8 @@
 #include <map>
 
 #include "render/image/image.h"
+#include "render/scene/files_ahead.h"
+#include "render/shape/mesh_files.h"
 #include "render/texture/constant.h"
 #include "render/xml/find_file.h"
 #include "render/xml/names.h"
@@ -149,10 +151,28 @@ std::string Builder::resolvePath(const std::string& fileName, const SourceLocati
   return m_files.back();
 }
 
+Builder::Builder(Warnings& warnings, std::vector<std::string> folders, const Shutter& shutter)
+    : m_warnings(warnings),
+      m_folders(std::move(folders)),
+      m_shutter(shutter),
+      m_filesAhead(std::make_unique<FilesAhead>()) {}
+
+Builder::~Builder() = default;
+
+void Builder::readAhead(const Properties& root) {
+  m_filesAhead->begin(root, m_folders);
+}
+
 std::shared_ptr<const Image> Builder::image(const std::string& path, bool srgb, const SourceLocation& at) {
-  std::shared_ptr<const Image>& cached = m_images[path + (srgb ? "|srgb" : "|linear")];
+  std::shared_ptr<const Image>& cached = m_images[imageKey(path, srgb)];
+  if (!cached) cached = m_filesAhead->takeImage(path, srgb);
   if (!cached) cached = Image::read(path, srgb, at);
   return cached;
+}
+
+MeshData Builder::mesh(const Properties& shape, const std::string& path, const SourceLocation& at) {
+  if (std::optional<MeshData> read = m_filesAhead->takeMesh(shape, m_warnings)) return std::move(*read);
+  return meshReader(shape)(path, at, m_warnings);
 }
 
 std::shared_ptr<const RoughTransmittance> Builder::roughTransmittance(Microfacet::Type type, float alpha,

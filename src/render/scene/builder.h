@@ -20,7 +20,9 @@
 
 namespace odis::render {
 
+class FilesAhead;
 class Image;
+struct MeshData;
 
 // An element that has an animation for its place, with a place that stands.
 struct Placed {
@@ -38,8 +40,8 @@ inline constexpr NumberRange kGammaRange{0.01, 100, true, true, -1};
 class Builder {
  public:
   // `folders`: where files are looked for that are not beside the scene file that names them.
-  explicit Builder(Warnings& warnings, std::vector<std::string> folders = {}, const Shutter& shutter = {})
-      : m_warnings(warnings), m_folders(std::move(folders)), m_shutter(shutter) {}
+  explicit Builder(Warnings& warnings, std::vector<std::string> folders = {}, const Shutter& shutter = {});
+  ~Builder();
 
   // How an element moves while the shutter is open; nothing if it has no animation.
   std::optional<Placed> placed(const Properties& node, Scale scale);
@@ -71,6 +73,10 @@ class Builder {
   // Lists the parameters that no getter has asked for, apart by whether Mitsuba knows them as of no effect.
   void warnUnqueried(const Properties& node);
 
+  // Begins to read the files that the scene names, ahead of those who ask for them.
+  void readAhead(const Properties& root);
+  // The mesh in the file that a shape names.
+  MeshData mesh(const Properties& shape, const std::string& path, const SourceLocation& at);
   // Image files, read once for all who use them. `srgb`: decode the sRGB curve of 8-bit files.
   std::shared_ptr<const Image> image(const std::string& path, bool srgb, const SourceLocation& at);
   // Tables of what rough interfaces let pass, computed once for all that are alike: some 10 ms each.
@@ -84,6 +90,7 @@ class Builder {
   std::unordered_map<const Properties*, TexturePtr> m_textures;
   std::unordered_map<const Properties*, BsdfPtr> m_bsdfs;
   std::unordered_map<std::string, std::shared_ptr<const Image>> m_images;
+  std::unique_ptr<FilesAhead> m_filesAhead;
   std::map<std::tuple<Microfacet::Type, float, float>, std::shared_ptr<const RoughTransmittance>>
       m_roughTransmittances;
 };

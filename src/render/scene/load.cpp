@@ -79,6 +79,7 @@ std::unique_ptr<Scene> Scene::load(const std::string& path, const LoadOptions& o
   const Properties& root = *parsed.root;
   const Properties* seenBy = findSensor(root);
   Builder builder(warnings, parsed.folders, seenBy ? readShutter(*seenBy) : Shutter());
+  builder.readAhead(root);
   auto scene = std::make_unique<Scene>();
   ShapeLoader shapes(*scene, builder);
 

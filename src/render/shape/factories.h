@@ -24,15 +24,8 @@ inline constexpr NumberRange kRadiusRange = between(1e-30, 1e15);
 // The parameter to_world; throws SceneError if it can't be inverted.
 Matrix4 readToWorld(const Properties& node);
 
-// The parameters that all mesh files share.
-struct MeshFile {
-  MeshFile(const Properties& node, Builder& builder, bool flipTexCoordsDefault);
-  std::shared_ptr<Mesh> makeMesh(MeshData data, Builder& builder) const;
-
-  std::string path;
-  SourceLocation location;  // of the file's name in the scene
-  MeshOptions options;
-  bool flipTexCoords;
-};
+// A mesh from a file, with the parameters that all such shapes share. `flipTexCoords`: unless the scene says
+// otherwise.
+ShapePtr makeMeshOfFile(const Properties& node, Builder& builder, bool flipTexCoords);
 
 }  // namespace odis::render

@@ -28,6 +28,7 @@ struct MeshData {
   std::vector<Vec2> uvs;
   std::vector<Triangle> triangles;
   std::vector<MeshAttribute> attributes;
+  bool faceNormals = false;  // whether the file asks to be shaded by them
 };
 
 struct MeshOptions {

@@ -181,9 +181,7 @@ MeshData readObj(const std::string& path, const SourceLocation& at, Warnings& wa
 }
 
 ShapePtr makeObj(const Properties& node, Builder& builder) {
-  const MeshFile file(node, builder, true);
-  MeshData data = readObj(file.path, file.location, builder.warnings());
-  return file.makeMesh(std::move(data), builder);
+  return makeMeshOfFile(node, builder, true);
 }
 
 }  // namespace odis::render

@@ -351,9 +351,7 @@ MeshData readPly(const std::string& path, const SourceLocation& at, Warnings& wa
 }
 
 ShapePtr makePly(const Properties& node, Builder& builder) {
-  const MeshFile file(node, builder, false);
-  MeshData data = readPly(file.path, file.location, builder.warnings());
-  return file.makeMesh(std::move(data), builder);
+  return makeMeshOfFile(node, builder, false);
 }
 
 }  // namespace odis::render

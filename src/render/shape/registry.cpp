@@ -3,6 +3,7 @@
 
 #include "render/scene/factory_table.h"
 #include "render/shape/factories.h"
+#include "render/shape/mesh_files.h"
 
 namespace odis::render {
 
@@ -40,19 +41,30 @@ Matrix4 readToWorld(const Properties& node) {
   return matrix;
 }
 
-MeshFile::MeshFile(const Properties& node, Builder& builder, bool flipTexCoordsDefault) {
-  location = node.placeOf("filename");
-  path = builder.resolvePath(node.string("filename"), location);
+MeshReader meshReader(const Properties& shape) {
+  if (shape.type == "obj") return readObj;
+  if (shape.type == "ply") return readPly;
+  if (shape.type != "serialized") return {};
+  const int64_t index = shape.integer("shape_index", between(0, INT32_MAX), 0);
+  return [index](const std::string& path, const SourceLocation& at, Warnings&) {
+    return readSerialized(path, index, at);
+  };
+}
+
+ShapePtr makeMeshOfFile(const Properties& node, Builder& builder, bool flipTexCoords) {
+  const SourceLocation& at = node.placeOf("filename");
+  const std::string path = builder.resolvePath(node.string("filename"), at);
+  MeshOptions options;
   options.toWorld = readToWorld(node);
   options.faceNormals = node.boolean("face_normals", false);
   options.flipNormals = node.boolean("flip_normals", false);
-  flipTexCoords = node.boolean("flip_tex_coords", flipTexCoordsDefault);
+  const bool flip = node.boolean("flip_tex_coords", flipTexCoords);
   if (const auto degrees = node.optionalNumber("max_smooth_angle", between(0, 180)))
     options.maxSmoothAngle = *degrees * (kPi / 180);
-}
 
-std::shared_ptr<Mesh> MeshFile::makeMesh(MeshData data, Builder& builder) const {
-  if (flipTexCoords)
+  MeshData data = builder.mesh(node, path, at);
+  options.faceNormals |= data.faceNormals;
+  if (flip)
     for (Vec2& uv : data.uvs) uv.y = 1 - uv.y;
   return Mesh::make(std::move(data), options, {path, 0, 0}, builder.warnings());
 }

@@ -123,7 +123,7 @@ uint64_t findMesh(std::string_view bytes, int64_t index, uint16_t version, const
 
 }  // namespace
 
-SerializedMesh readSerialized(const std::string& path, int64_t shapeIndex, const SourceLocation& at) {
+MeshData readSerialized(const std::string& path, int64_t shapeIndex, const SourceLocation& at) {
   const FileBytes file(path, at);
   const std::string_view bytes = file.view();
   const SourceLocation inFile{path, 0, 0};
@@ -155,29 +155,25 @@ SerializedMesh readSerialized(const std::string& path, int64_t shapeIndex, const
         inFile, fmt::format("mesh {} announces {} vertices and {} triangles, more than the file can hold",
                             shapeIndex, vertices, triangles));
 
-  SerializedMesh mesh;
+  MeshData mesh;
   mesh.faceNormals = flags & kFaceNormals;
-  readVectors(in, mesh.data.positions, vertices, isDouble);
-  if (flags & kHasNormals) readVectors(in, mesh.data.normals, vertices, isDouble);
-  if (flags & kHasUvs) readVectors(in, mesh.data.uvs, vertices, isDouble);
+  readVectors(in, mesh.positions, vertices, isDouble);
+  if (flags & kHasNormals) readVectors(in, mesh.normals, vertices, isDouble);
+  if (flags & kHasUvs) readVectors(in, mesh.uvs, vertices, isDouble);
   if (flags & kHasColors) {
     std::vector<Vec3> colors;
     readVectors(in, colors, vertices, isDouble);
-    MeshAttribute& attribute = mesh.data.attributes.emplace_back();
+    MeshAttribute& attribute = mesh.attributes.emplace_back();
     attribute = {"vertex_color", 3, {}};
     attribute.values.reserve(3 * colors.size());
     for (const Vec3& c : colors) attribute.values.insert(attribute.values.end(), {c.x, c.y, c.z});
   }
-  readElements(in, mesh.data.triangles, triangles);
+  readElements(in, mesh.triangles, triangles);
   return mesh;
 }
 
 ShapePtr makeSerialized(const Properties& node, Builder& builder) {
-  MeshFile file(node, builder, false);
-  SerializedMesh mesh =
-      readSerialized(file.path, node.integer("shape_index", between(0, INT32_MAX), 0), file.location);
-  file.options.faceNormals |= mesh.faceNormals;
-  return file.makeMesh(std::move(mesh.data), builder);
+  return makeMeshOfFile(node, builder, false);
 }
 
 }  // namespace odis::render

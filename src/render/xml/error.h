@@ -58,6 +58,11 @@ class Warnings {
     std::string text = onOneLine(at.file.empty() ? message : at.text() + ": " + message);
     if (m_known.insert(text).second) m_texts[size_t(effect)].push_back(std::move(text));
   }
+  void add(const Warnings& others) {
+    for (size_t effect = 0; effect < m_texts.size(); ++effect)
+      for (const std::string& text : others.m_texts[effect])
+        if (m_known.insert(text).second) m_texts[effect].push_back(text);
+  }
   const std::vector<std::string>& texts(Effect effect = Effect::difference) const {
     return m_texts[size_t(effect)];
   }
