@@ -1,10 +1,12 @@
 // Round trips of EXR and PNG.
 #include <gtest/gtest.h>
 #include <sys/wait.h>
+#include <tbb/global_control.h>
 
 #include <csignal>
 #include <fstream>
 
+#include "image/files.h"
 #include "render/files/replace_file.h"
 #include "render/image/image.h"
 #include "render/image/tonemap.h"
@@ -89,6 +91,20 @@ TEST(WriteExr, ReplacesAnOldFile) {
   const std::string path = folder.path("a.exr");
   for (float value : {1.0f, 2.0f}) writeExr(path, {1, 1, 0, 0, 1, 1}, {{"R", &value}}, {});
   EXPECT_EQ(readExr(path).channels.at("R")[0], 2.0f);
+}
+
+TEST(WriteExr, WritesTheSameBytesByAnyNumberOfThreads) {
+  const test::TemporaryFolder folder;
+  const std::vector<float> r = ramp(90 * 70, 0.37f), g = ramp(90 * 70, -1.1f, 5);
+  std::vector<std::string> files;
+  for (const size_t threads : {1, 2, 5}) {
+    const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
+    const std::string path = folder.path("a.exr");
+    writeExr(path, {90, 70, 0, 0, 90, 70}, {{"R", r.data()}, {"G", g.data(), true}}, {{"note", "a"}});
+    files.push_back(bytesOf(path));
+    EXPECT_EQ(readExr(path).channels.at("R"), r);
+  }
+  EXPECT_TRUE(files[0] == files[1] && files[0] == files[2]);
 }
 
 // A program that is killed while it writes leaves the old file, and beside it the part that it wrote.

@@ -4,8 +4,10 @@
 #include <ImfIO.h>
 #include <ImfOutputFile.h>
 #include <ImfStringAttribute.h>
+#include <ImfThreading.h>
 #include <fmt/format.h>
 #include <half.h>
+#include <tbb/global_control.h>
 
 #include <stdexcept>
 
@@ -39,6 +41,12 @@ class ExrStream final : public Imf::OStream {
  private:
   CheckedStream& m_stream;
 };
+
+// Lets OpenEXR compress with as many threads as TBB may have here.
+void allowThreads() {
+  const size_t threads = tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism);
+  Imf::setGlobalThreadCount(threads > 1 ? int(threads) : 0);
+}
 
 }  // namespace
 
@@ -74,6 +82,7 @@ void writeExr(const std::string& path, const ImageWindow& window, const std::vec
       frame.insert(channel.name, Imf::Slice::Make(type, data, origin, window.width, window.height));
     }
     ExrStream stream(target);
+    allowThreads();
     Imf::OutputFile file(stream, header);
     file.setFrameBuffer(frame);
     file.writePixels(window.height);
