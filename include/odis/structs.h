@@ -157,7 +157,7 @@ typedef struct OdisFrameOptions {
       ODIS_DEFAULT(0);                       // of the image, crop or tile in pixels; below 2^31 pixels
   uint32_t samplesPerPixel ODIS_DEFAULT(4);  // >= 1, pilot included
   // Guided samples per pixel that the guide learns from as well: it is rebuilt after 1, 3, 7, ... if as many
-  // are left.
+  // are left and that is worth its time; with a builder of the host's in any case.
   uint32_t refinementSamples ODIS_DEFAULT(3);
   // Chooses the pilot's pixels; the host draws its random numbers from OdisFramePass.seed.
   uint64_t seed ODIS_DEFAULT(0);
@@ -177,7 +177,7 @@ typedef struct OdisFrameOptions {
   bool keepPilotVertices ODIS_DEFAULT(false);  // whether the pilot's vertices stay after the guide is built
   // >= 0. Time of a ray of a guided path, relative to one of an unguided path. Where the first guided samples
   // show that guiding does not pay, the others are not guided: their passes have a guide without cells. 0:
-  // guides in any case.
+  // costs are not weighed, what follows is guided and the guide refined in any case.
   float guidedCost ODIS_DEFAULT(1);
   const OdisGuideOptions* guide ODIS_DEFAULT(NULL);  // NULL: the defaults; copied
   // The builder to learn into, with its own options (`guide` must be NULL), which may know of earlier frames;

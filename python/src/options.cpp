@@ -63,7 +63,7 @@ constexpr const char* kFrameOptions = R"(How an image is made; all fields but th
 width, height: int, of the image in pixels; below 2^31 pixels
 samples_per_pixel: int >= 1 (4), pilot included
 refinement_samples: int (3): guided samples per pixel that the guide learns from as well: it is rebuilt after
-    1, 3, 7, ... if as many are left
+    1, 3, 7, ... if as many are left and that is worth its time; with a builder of the host's in any case
 seed: int (0), in [0, 2^64): chooses the pilot's pixels; the host's random numbers come from FramePass.seed
 pilot_samples_per_pixel: float >= 0 (0): of the pilot; 0.25 is one sample in each 2 x 2 pixels; 0: 0.25 where
     that is enough to learn from, else 1
@@ -74,7 +74,8 @@ guided: bool (True); False: plain path tracing, without a pilot
 adaptive: bool (True): whether pixels whose first samples differ more get more samples; from 4 samples per
     pixel on
 guided_cost: float >= 0 (1): what a ray of a guided path takes, relative to one of an unguided path; where
-    the first guided samples show that guiding does not pay, the others are not guided. 0: guides in any case
+    the first guided samples show that guiding does not pay, the others are not guided. 0: guides
+    and refines in any case
 guide: GuideOptions
 
 Values out of their range raise Error (INVALID_ARGUMENT) where the options are used.)";

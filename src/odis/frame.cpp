@@ -4,8 +4,6 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "odis/image/guiding_gain.h"
-#include "odis/image/sample_counts.h"
 #include "odis/models/model.h"
 #include "odis/record/vertex_check.h"
 
@@ -26,9 +24,7 @@ constexpr uint32_t kOracleFractionPasses = 2;
 constexpr size_t kFewPixels = 16384;
 constexpr uint64_t kGuideSeed = 0x9e3779b97f4a7c15ull;
 
-// How many cells there are does not depend on the number of pixels. Of a pass of more samples than these the
-// guide learns from some pixels only: more gains nothing and costs memory. Of the pilot's more is kept.
-constexpr uint64_t kMostPilotSamples = 1200000, kMostGuidedSamples = 2400000;
+// Of a pass of more samples than these the guide learns from some pixels only.
 uint32_t pixelsPerLearnedIn(uint64_t samples, uint64_t most) {
   return uint32_t((samples + most - 1) / most);
 }
@@ -217,6 +213,7 @@ void Frame::Data::buildGuide() {
   pixelOracle.reset();
   if (!options.keepPilotVertices) pilotVertices = {};
   useCells();
+  settleRefinement();
   takeStock();
 }
 
@@ -234,8 +231,10 @@ void Frame::Data::countKept() {
 // Notes what building needed, lets go of what was taken from vertices and, when the guide won't learn any
 // more, of the builder.
 void Frame::Data::takeStock() {
-  buildingBytes = std::max<uint64_t>(buildingBytes, builder->bytes() + keptBytes);
-  vertexCounts = builder->vertexCounts();
+  if (builder) {
+    buildingBytes = std::max<uint64_t>(buildingBytes, builder->bytes() + keptBytes);
+    vertexCounts = builder->vertexCounts();
+  }
   passSamples.clear();
   unguided.clear();
   if (!learns()) {
@@ -246,28 +245,16 @@ void Frame::Data::takeStock() {
   countKept();
 }
 
-// Settles how many samples each pixel has.
-void Frame::Data::spreadSamples() {
-  std::vector<PixelNoise> noise(pilot.size());
-  tasks->forEach(options.height, [&](size_t row) {
-    for (size_t pixel = row * options.width; pixel < (row + 1) * options.width; ++pixel) {
-      PixelSums sums = pilot[pixel];
-      addSums(sums, later[pixel]);
-      noise[pixel] = noiseOf(sums);
-    }
-  });
-  schedule.spread(sampleCounts(*tasks, noise, int(options.width), options.samplesPerPixel));
-}
-
 // Learns from the vertices of a guided pass, and rebuilds the guide where it is time.
 void Frame::Data::refineGuide() {
   builder->add(passSamples);
   countKept();
-  if (std::has_single_bit(end + 1)) {
+  done = end;
+  if (std::has_single_bit(done + 1)) {
     cells = builder->rebuild(cells);
     useCells();
+    settleRefinement();
   }
-  done = end;
   takeStock();
 }
 
@@ -282,23 +269,6 @@ void Frame::Data::resume() {
   passVertexCount = vertexCount(passSamples);
   keptBytes += bytesOf(passSamples) + bytesOf(passVertices);
   resumed.reset();
-}
-
-// Whether the first guided samples, compared with the pilot's, were not worth their time.
-bool Frame::Data::guidingDoesNotPay() const {
-  if (done > 0 || !learns() || options.guidedCost == 0) return false;
-  const std::optional<double> ratio = guidedOverUnguided(*tasks, pilot, later, options.width);
-  return ratio && *ratio * options.guidedCost > 1;
-}
-
-// Goes on without a guide. No sample's weight changes, nor how many there are: only samples that are still to
-// be drawn know of it, and their mean is the same in any case.
-void Frame::Data::giveUpGuiding() {
-  guide = cells = Guide();
-  ++guidesBuilt;
-  schedule.endRefinement();
-  done = end;
-  takeStock();
 }
 
 void Frame::Data::endGuidedPass() {

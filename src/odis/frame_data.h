@@ -33,6 +33,10 @@ uint64_t vertexCount(ArrayView<const VertexSamples> tiles);
 uint64_t bytesOf(ArrayView<const VertexSamples> tiles);
 uint64_t bytesOf(const VertexTiles& tiles);
 
+// How many cells there are does not depend on the number of pixels. Of a pass of more samples than these the
+// guide learns from some pixels only: more gains nothing and costs memory. Of the pilot's more is kept.
+inline constexpr uint64_t kMostPilotSamples = 1200000, kMostGuidedSamples = 2400000;
+
 struct Frame::Data {
   Data(const FrameOptions& o, std::shared_ptr<const Tasks> tasks, std::shared_ptr<GuideBuilder> given);
 
@@ -45,6 +49,8 @@ struct Frame::Data {
   void describePixels();
   void learnUnguided(bool forFractions);
   void useCells();
+  bool nextRefinementPays() const;
+  void settleRefinement();
   void buildGuide();
   void endGuidedPass();
   void spreadSamples();

@@ -65,6 +65,9 @@ class Guide {
   uint64_t bytes() const;
   // The variance of a guided sample that the pilot predicts, as a ratio to an unguided one; 1 before build().
   float predictedVarianceRatio() const;
+  // How many rays followed a first vertex of the pilot, on average; 0 before build().
+  double raysPerPath() const;
+  size_t cellCount() const;
 
   // This guide and a cell for each of the maps: with the decisions of the cell that the map's place lies in,
   // and as much of its map as `options` say.

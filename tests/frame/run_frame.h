@@ -59,6 +59,7 @@ inline FrameOptions toyOptions(uint32_t width, uint32_t height, uint32_t samples
   options.samplesPerPixel = samplesPerPixel;
   options.guide.lightGroups = 2;
   options.guide.cellsPerDiagonal = 12;
+  options.guidedCost = 0;  // in so few pixels it would not pay to refine the guide
   return options;
 }
 

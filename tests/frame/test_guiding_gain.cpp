@@ -93,7 +93,8 @@ TEST(GuidingGain, FramesStopGuidingWhereItDoesNotPay) {
 
   options.guidedCost = 0;
   Frame always(options);
-  EXPECT_EQ(guidedPasses(always, options), with);
+  const std::vector<bool> unweighed = guidedPasses(always, options);
+  EXPECT_EQ(std::count(unweighed.begin(), unweighed.end(), false), 1) << "the pilot";
 }
 
 // Which frames stop is decided by their samples: by a half of them, here.
@@ -114,6 +115,81 @@ TEST(GuidingGain, StoppingKeepsTheMean) {
   }
   EXPECT_GT(stopped, 0);
   EXPECT_LT(stopped, 16);
+  expectSameExpectation(estimate(options, {}, kSeeds, 0), estimate(path, {}, kSeeds, 1000));
+}
+
+// A frame of 640 x 360 pixels with 4 samples, a quarter of one in the pilot: in its first cells there are as
+// many paths as in those of real scenes.
+core::PossibleRefinement firstOf(double predictedRatio, double samplesPerPixel) {
+  constexpr double kPixels = 640 * 360;
+  return {predictedRatio, 5, 4000, kPixels / 4, kPixels, (samplesPerPixel - 1.25) * kPixels};
+}
+
+TEST(Refinement, PaysWhereMapsSaveMuchOrManySamplesFollow) {
+  EXPECT_TRUE(core::refinementPays(firstOf(0.4, 4)));
+  EXPECT_FALSE(core::refinementPays(firstOf(0.95, 4)));
+  EXPECT_TRUE(core::refinementPays(firstOf(0.95, 64)));
+  EXPECT_TRUE(core::refinementPays(firstOf(1.5, 64))) << "a pilot that has seen little predicts little";
+  EXPECT_FALSE(core::refinementPays(firstOf(0.4, 1.25))) << "nothing is left to be guided";
+
+  core::PossibleRefinement few = firstOf(0.4, 4);
+  few.seen /= 100;
+  few.learned /= 100;
+  few.remaining /= 100;
+  EXPECT_FALSE(core::refinementPays(few)) << "cells cost as much as in an image of more pixels";
+  core::PossibleRefinement full = firstOf(0.4, 4);
+  full.seen *= 100;
+  EXPECT_FALSE(core::refinementPays(full)) << "cells know enough";
+}
+
+// [pass] whether it is recorded.
+std::vector<bool> recordedPasses(const FrameOptions& options) {
+  Frame frame(options);
+  const ToyHost host({}, options.width, options.height);
+  std::vector<bool> recorded;
+  while (const FramePass* pass = frame.beginPass()) {
+    recorded.push_back(pass->wantsVertices);
+    EXPECT_EQ(frame.guideIsFinal(), !pass->wantsVertices);
+    runPass(frame, *pass, host, options.width * options.height);
+    frame.endPass();
+  }
+  return recorded;
+}
+
+TEST(Refinement, IsLeftOutWhereItDoesNotPay) {
+  const auto recorded = [](const FrameOptions& options) {
+    const std::vector<bool> passes = recordedPasses(options);
+    return std::count(passes.begin(), passes.end(), true);
+  };
+  FrameOptions few = toyOptions(32, 32, 4), many = toyOptions(32, 32, 256);
+  few.guidedCost = many.guidedCost = 1;
+  EXPECT_EQ(recorded(few), 1) << "the pilot";
+  EXPECT_EQ(recorded(many), 4) << "and one and two more samples";
+
+  FrameOptions shared = few, unweighed = few;
+  shared.builder.emplace(few.guide);
+  unweighed.guidedCost = 0;
+  EXPECT_EQ(recorded(shared), 2) << "others may learn from the builder";
+  EXPECT_EQ(recorded(unweighed), 2);
+}
+
+// Whether guides are refined is decided by the pilot: they are in a part of the frames, here.
+TEST(Refinement, KeepsTheMeanWhetherItPaysOrNot) {
+  FrameOptions options = toyOptions(48, 48, 33);
+  options.pilotSamplesPerPixel = 1;
+  options.guidedCost = 1;
+  FrameOptions path = options;
+  path.guided = false;
+  int refined = 0;
+  for (uint64_t seed = 0; seed < 16; ++seed) {
+    FrameOptions own = options;
+    own.seed = seed;
+    const std::vector<bool> recorded = recordedPasses(own);
+    refined += std::count(recorded.begin(), recorded.end(), true) > 1;
+  }
+  EXPECT_GT(refined, 0);
+  EXPECT_LT(refined, 16);
+  constexpr int kSeeds = 32;
   expectSameExpectation(estimate(options, {}, kSeeds, 0), estimate(path, {}, kSeeds, 1000));
 }
 

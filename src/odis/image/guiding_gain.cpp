@@ -2,11 +2,19 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <vector>
 
 namespace odis::core {
 
 namespace {
+
+// What operations cost in the time that a ray takes with all that is computed where it arrives; and what a
+// guide gains that knows everything, for cells that have seen one sample, as a ratio to what maps save
+// (docs/experiments/0015-refinement-and-pilot.md).
+constexpr double kBuiltCell = 70, kRecordedRay = 0.15, kRefinementGain = 4.4;
+// What maps save at least, since a pilot that has seen little predicts little.
+constexpr double kLeastSaving = 0.1;
 
 constexpr size_t kLeastPixels = 2048;
 constexpr double kLeftOut = 0.001;
@@ -121,6 +129,14 @@ std::optional<double> guidedOverUnguided(const Tasks& tasks, ArrayView<const Pix
   const double before = trimmedSum(all.squares[0]) * all.rays[0] / all.counts[0];
   if (!(before > 0)) return {};
   return trimmedSum(all.squares[1]) * all.rays[1] / all.counts[1] / before;
+}
+
+bool refinementPays(const PossibleRefinement& p) {
+  const double cost = kRecordedRay * p.learned * p.raysPerSample + kBuiltCell * p.cells;
+  // What a cell knows is wrong by the inverse square root of the samples that it has seen.
+  const double improvement = std::sqrt(p.cells / p.seen) - std::sqrt(p.cells / (p.seen + p.learned));
+  const double saving = std::max(1 - p.predictedRatio, kLeastSaving);
+  return kRefinementGain * improvement * saving * p.remaining * p.raysPerSample > cost;
 }
 
 }  // namespace odis::core

@@ -1,4 +1,4 @@
-// Whether guided samples are worth what they cost.
+// Whether guided samples, and a better guide, are worth what they cost.
 #pragma once
 
 #include <optional>
@@ -17,5 +17,18 @@ namespace odis::core {
 // than that of the variances. As in the error that images are compared by, the worst 0.1 % are left out.
 std::optional<double> guidedOverUnguided(const Tasks& tasks, ArrayView<const PixelSums> unguided,
                                          ArrayView<const PixelSums> guided, uint32_t width);
+
+// A guide that could be built once more, and what would follow. Samples are those of all pixels.
+struct PossibleRefinement {
+  double predictedRatio;  // of the variance of a guided sample to an unguided one's (GuidingPrediction)
+  double raysPerSample;   // that follow the first vertex
+  double cells;           // of the guide
+  double seen, learned;   // samples that it has learned from, and that it would learn from
+  double remaining;       // samples that it would guide
+};
+
+// Whether that is worth the time of recording and building. What maps save at all tells what better ones
+// would: where it is little, or cells have seen many samples, a guide that has seen more saves little more.
+bool refinementPays(const PossibleRefinement& possible);
 
 }  // namespace odis::core

@@ -56,14 +56,14 @@ struct RenderOptions {
   LightChoiceKind lights = LightChoiceKind::network;   // likewise
   ShadowRayKind shadowRays = ShadowRayKind::roulette;  // likewise
   // Guided samples per pixel that the guide learns from, too: it is rebuilt after 1, 3, 7, ... if as many
-  // are left.
+  // are left and that is worth its time.
   int refineSpp = 3;
   // Samples per pixel of the pilot; 0.25 is one sample per 2x2 pixels. 0: 0.25 where that is enough to
   // learn from (the image is large) and a whole sample would be dear (there are few), else 1.
   double pilotSpp = 0;
   int oracleSpp = 64;  // samples per pixel that the oracle's maps are made from
   GuideOptions guideOptions;
-  float guidedCost = 1;      // of a guided ray relative to an unguided one; 0: guides whether it pays or not
+  float guidedCost = 1;      // of a guided ray relative to an unguided one; 0: guides and refines in any case
   double pilotWeight = 0.6;  // of a pilot sample relative to a guided one
   // Whether paths may end with the cached radiance of cells, which biases the image. The error that they may
   // make is guideOptions.cachedError, or, where that is 0, one that falls with the number of samples.

@@ -1,0 +1,61 @@
+// What a frame decides between its passes by what samples have cost and brought: how many samples pixels get,
+// whether the guide is refined, whether there is one. No clock is read, so that bits stay the same.
+#include "odis/frame_data.h"
+#include "odis/image/guiding_gain.h"
+#include "odis/image/sample_counts.h"
+
+namespace odis::core {
+
+// Settles how many samples each pixel has.
+void Frame::Data::spreadSamples() {
+  std::vector<PixelNoise> noise(pilot.size());
+  tasks->forEach(options.height, [&](size_t row) {
+    for (size_t pixel = row * options.width; pixel < (row + 1) * options.width; ++pixel) {
+      PixelSums sums = pilot[pixel];
+      addSums(sums, later[pixel]);
+      noise[pixel] = noiseOf(sums);
+    }
+  });
+  schedule.spread(sampleCounts(*tasks, noise, int(options.width), options.samplesPerPixel));
+}
+
+// Whether the guide should be built once more, after as many more samples as were guided and one.
+bool Frame::Data::nextRefinementPays() const {
+  const double pixels = double(pilot.size()), learnedInPass = std::min(pixels, double(kMostGuidedSamples));
+  const double pilotSamples = double(schedule.pilotSamples()), next = 2.0 * done + 1;
+  PossibleRefinement possible;
+  possible.predictedRatio = cells.predictedVarianceRatio();
+  possible.raysPerSample = cells.raysPerPath();
+  possible.cells = double(cells.cellCount());
+  possible.seen = std::min(pilotSamples, double(kMostPilotSamples)) + done * learnedInPass;
+  possible.learned = (next - done) * learnedInPass;
+  possible.remaining = (options.samplesPerPixel - next) * pixels - pilotSamples;
+  return refinementPays(possible);
+}
+
+// Lets the guide learn no more where that does not pay. A builder that others learn from learns on, and so
+// does a guide of which nothing was predicted.
+void Frame::Data::settleRefinement() {
+  const bool predicted = guideOptions.fixedBsdfFraction == 0 && cells.raysPerPath() > 0;
+  if (options.guidedCost > 0 && ownsBuilder && predicted && !nextRefinementPays()) schedule.endRefinement();
+}
+
+// Whether the first guided samples, compared with the pilot's, were not worth their time.
+bool Frame::Data::guidingDoesNotPay() const {
+  if (!options.guided || options.oracleSamples > 0 || options.guidedCost == 0) return false;
+  if (done > 0 || end >= schedule.mostRemaining()) return false;
+  const std::optional<double> ratio = guidedOverUnguided(*tasks, pilot, later, options.width);
+  return ratio && *ratio * options.guidedCost > 1;
+}
+
+// Goes on without a guide. No sample's weight changes, nor how many there are: only samples that are still to
+// be drawn know of it, and their mean is the same in any case.
+void Frame::Data::giveUpGuiding() {
+  guide = cells = Guide();
+  ++guidesBuilt;
+  schedule.endRefinement();
+  done = end;
+  takeStock();
+}
+
+}  // namespace odis::core
