@@ -17,8 +17,8 @@
 //   1. the pilot, unguided, tells of each pixel's value;
 //   2. its vertices are gathered in cells; the model turns those into maps, BSDF sampling fractions, what
 //      roulette needs and what the choice of lights needs;
-//   3. guided samples follow; the guide is refined by the first of them, and after the first of all it is
-//      settled how many samples each pixel has.
+//   3. guided samples follow; the guide is refined by the first of them where that is worth its time, and
+//      after the first of all it is settled how many samples each pixel has.
 //
 // Unbiasedness rests on these rules: a sample's guide was built before the sample was drawn, from other
 // samples; what a sample weighs and whether it is drawn does not depend on its own value
