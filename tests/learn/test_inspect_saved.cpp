@@ -194,6 +194,7 @@ TEST(InspectSaved, AFrameTellsWhereItIs) {
   core::FrameOptions options = frameOptions(40, 20, guide);
   options.samplesPerPixel = 8;
   options.pilotWeight = 0.5f;
+  options.guidedCost = 0;  // refined in any case, so that there is a builder after the pilot
   const uint32_t pixels = options.width * options.height;
   const auto stateOf = [&](int passes, uint32_t pixelsOfNext) {
     return look(savedFrame(options, passes, pixelsOfNext)).frame->state;
