@@ -113,7 +113,7 @@ std::vector<Setting> settingsOfPilotAndCells() {
       number<double>("pilot-weight", 0, 1e6, "0.6", "Weight of a pilot sample; a guided one's is 1.",
                      [](Options& o, double v) { o.pilotWeight = v; }),
       number<float>("guided-cost", 0, 1e6, "1",
-                    "Time of a guided ray over another's; what does not pay ends. 0: never.",
+                    "Time of a guided ray over another's. 0: guide and refine even if it does not pay.",
                     [](Options& o, float v) { o.guidedCost = v; }),
       number<float>("bsdf-fraction", 0, 1, "0",
                     "Probability that a guided draw stays with the BSDF. 0: by variance and cost.",

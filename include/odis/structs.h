@@ -156,8 +156,9 @@ typedef struct OdisFrameOptions {
   uint32_t width ODIS_DEFAULT(0), height
       ODIS_DEFAULT(0);                       // of the image, crop or tile in pixels; below 2^31 pixels
   uint32_t samplesPerPixel ODIS_DEFAULT(4);  // >= 1, pilot included
-  // Guided samples per pixel that the guide learns from as well: it is rebuilt after 1, 3, 7, ... if as many
-  // are left and that is worth its time; with a builder of the host's in any case.
+  // Guided samples per pixel that the guide learns from as well. It is rebuilt after 1, 3, 7, ... of them
+  // where at least as many samples follow and rebuilding is worth its time; with the host's own `builder`
+  // whether it is worth it or not.
   uint32_t refinementSamples ODIS_DEFAULT(3);
   // Chooses the pilot's pixels; the host draws its random numbers from OdisFramePass.seed.
   uint64_t seed ODIS_DEFAULT(0);

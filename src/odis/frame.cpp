@@ -24,7 +24,7 @@ constexpr uint32_t kOracleFractionPasses = 2;
 constexpr size_t kFewPixels = 16384;
 constexpr uint64_t kGuideSeed = 0x9e3779b97f4a7c15ull;
 
-// Of a pass of more samples than these the guide learns from some pixels only.
+// Of how many pixels the guide learns from one, so that of all samples of a pass it learns from `most`.
 uint32_t pixelsPerLearnedIn(uint64_t samples, uint64_t most) {
   return uint32_t((samples + most - 1) / most);
 }

@@ -33,8 +33,9 @@ uint64_t vertexCount(ArrayView<const VertexSamples> tiles);
 uint64_t bytesOf(ArrayView<const VertexSamples> tiles);
 uint64_t bytesOf(const VertexTiles& tiles);
 
-// How many cells there are does not depend on the number of pixels. Of a pass of more samples than these the
-// guide learns from some pixels only: more gains nothing and costs memory. Of the pilot's more is kept.
+// The most samples of a pass that the guide learns from; where there are more, it learns from some pixels
+// only. The number of cells does not grow with the image, so more would gain nothing and cost memory. A
+// pilot's samples take more of it than guided ones.
 inline constexpr uint64_t kMostPilotSamples = 1200000, kMostGuidedSamples = 2400000;
 
 struct Frame::Data {

@@ -86,9 +86,6 @@ double Guide::raysPerPath() const {
   if (!m_data || !(m_data->prediction.image.count > 0)) return 0;
   return m_data->prediction.image.rays / m_data->prediction.image.count;
 }
-size_t Guide::cellCount() const {
-  return m_data ? m_data->keys.size() : 0;
-}
 
 VertexSamples::VertexSamples() = default;
 VertexSamples::~VertexSamples() = default;

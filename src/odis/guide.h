@@ -67,7 +67,6 @@ class Guide {
   float predictedVarianceRatio() const;
   // How many rays followed a first vertex of the pilot, on average; 0 before build().
   double raysPerPath() const;
-  size_t cellCount() const;
 
   // This guide and a cell for each of the maps: with the decisions of the cell that the map's place lies in,
   // and as much of its map as `options` say.

@@ -9,11 +9,12 @@ namespace odis::core {
 
 namespace {
 
-// What operations cost in the time that a ray takes with all that is computed where it arrives; and what a
-// guide gains that knows everything, for cells that have seen one sample, as a ratio to what maps save
-// (docs/experiments/0015-refinement-and-pilot.md).
-constexpr double kBuiltCell = 70, kRecordedRay = 0.15, kRefinementGain = 4.4;
-// What maps save at least, since a pilot that has seen little predicts little.
+// What it costs to build a cell, and to record what one ray brings. The unit is the time that a ray takes,
+// with all that is computed where it arrives (docs/experiments/0015-refinement-and-pilot.md).
+constexpr double kBuiltCell = 70, kRecordedRay = 0.15;
+// A refinement gains this times what maps save, times the fall of one over the root of a cell's samples.
+constexpr double kRefinementGain = 4.4;
+// The least that maps are taken to save, since a pilot that has seen little predicts little.
 constexpr double kLeastSaving = 0.1;
 
 constexpr size_t kLeastPixels = 2048;

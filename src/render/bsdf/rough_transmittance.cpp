@@ -45,11 +45,12 @@ Shares sharesOf(const Microfacet& facets, const Vec3& w, float eta, const std::v
     for (const Node& b : nodes) {
       const Vec3 m = facets.sample(w, {a.x, b.x});
       const float weight = a.weight * b.weight;
-      const DielectricFresnel outside = fresnelDielectric(dot(w, m), eta);
+      const float cosine = dot(w, m);
+      const DielectricFresnel outside = fresnelDielectric(cosine, eta);
       if (const Vec3 in = refract(w, m, outside); !(in.z > 0))
         entering += weight * facets.g1(in, m) * (1 - outside.reflectance);
       if (const Vec3 back = reflect(w, m); back.z > 0)
-        reflected += weight * facets.g1(back, m) * fresnelDielectric(dot(w, m), 1 / eta).reflectance;
+        reflected += weight * facets.g1(back, m) * fresnelDielectric(cosine, 1 / eta).reflectance;
     }
   return {float(entering), float(reflected)};
 }

@@ -55,8 +55,8 @@ struct RenderOptions {
   RouletteKind roulette = RouletteKind::formula;       // of the guided samples
   LightChoiceKind lights = LightChoiceKind::network;   // likewise
   ShadowRayKind shadowRays = ShadowRayKind::roulette;  // likewise
-  // Guided samples per pixel that the guide learns from, too: it is rebuilt after 1, 3, 7, ... if as many
-  // are left and that is worth its time.
+  // Guided samples per pixel that the guide learns from, too. It is rebuilt after 1, 3, 7, ... of them where
+  // at least as many samples follow and rebuilding is worth its time.
   int refineSpp = 3;
   // Samples per pixel of the pilot; 0.25 is one sample per 2x2 pixels. 0: 0.25 where that is enough to
   // learn from (the image is large) and a whole sample would be dear (there are few), else 1.

@@ -91,8 +91,8 @@ struct Batch {
   bool recording = false;
   PathRecorder recorder;
 
-  // Makes room for so many rays and for what they meet. Vectors never shrink, so that their elements are
-  // initialised only once.
+  // Makes room for `count` rays and for what they meet. The vectors never shrink: each element is initialised
+  // once, when it is added.
   void reserve(size_t count) {
     if (count <= rays.size()) return;
     rays.resize(count);

@@ -45,7 +45,8 @@ class EarlyWork {
 // then. All members are called by one thread.
 class FilesAhead {
  public:
-  // Meshes wait to be taken in about as many bytes as their files have.
+  // How many bytes of mesh files may be read before their meshes are taken. A mesh is about as large as its
+  // file.
   static constexpr uint64_t kMostBytesWaiting = 128 << 20;
 
   explicit FilesAhead(uint64_t mostBytesWaiting = kMostBytesWaiting) : m_mostBytesWaiting(mostBytesWaiting) {}

@@ -55,19 +55,21 @@ enum class Effect {
 class Warnings {
  public:
   void add(const SourceLocation& at, const std::string& message, Effect effect = Effect::difference) {
-    std::string text = onOneLine(at.file.empty() ? message : at.text() + ": " + message);
-    if (m_known.insert(text).second) m_texts[size_t(effect)].push_back(std::move(text));
+    keep(onOneLine(at.file.empty() ? message : at.text() + ": " + message), effect);
   }
   void add(const Warnings& others) {
     for (size_t effect = 0; effect < m_texts.size(); ++effect)
-      for (const std::string& text : others.m_texts[effect])
-        if (m_known.insert(text).second) m_texts[effect].push_back(text);
+      for (const std::string& text : others.m_texts[effect]) keep(text, Effect(effect));
   }
   const std::vector<std::string>& texts(Effect effect = Effect::difference) const {
     return m_texts[size_t(effect)];
   }
 
  private:
+  void keep(std::string text, Effect effect) {
+    if (m_known.insert(text).second) m_texts[size_t(effect)].push_back(std::move(text));
+  }
+
   std::array<std::vector<std::string>, 3> m_texts;  // by effect
   std::unordered_set<std::string> m_known;
 };
