@@ -63,7 +63,8 @@ constexpr const char* kFrameOptions = R"(How an image is made; all fields but th
 width, height: int, of the image in pixels; below 2^31 pixels
 samples_per_pixel: int >= 1 (4), pilot included
 refinement_samples: int (3): guided samples per pixel that the guide learns from as well; it is rebuilt after
-    1, 3, 7, ... of them where at least as many samples follow and rebuilding is worth its time
+    1, 3, 7, ... of them where at least as many samples follow and rebuilding is worth its time; in frames
+    with a `builder` whether it is worth it or not
 seed: int (0), in [0, 2^64): chooses the pilot's pixels; the host's random numbers come from FramePass.seed
 pilot_samples_per_pixel: float >= 0 (0): of the pilot; 0.25 is one sample in each 2 x 2 pixels; 0: 0.25 where
     that is enough to learn from, else 1
