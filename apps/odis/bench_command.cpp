@@ -43,15 +43,35 @@ nlohmann::ordered_json toJson(const Row& row) {
           {"guidingShare", r.guidingShare},
           {"frameCost", r.frameCost},
           {"bytesPerVertex", r.bytesPerVertex},
-          {"bytesMaps", r.bytesMaps}};
+          {"bytesMaps", r.bytesMaps},
+          {"guidedRayCost", r.costs.guidedRay},
+          {"builtCellCost", r.costs.builtCell},
+          {"recordedRayCost", r.costs.recordedRay}};
 }
 
 void printRow(const Row& row) {
   const eval::BenchmarkResult& r = row.result;
-  fmt::print("| {} | {:.2f} | {:.3f} | {:.2f} | {:.2f} | {:.1f} % | {:.2f} | {:.0f} | {} |\n", row.scene,
-             row.secondsLoad, r.samplesPerSecond * 1e-6, r.raysPerSecond * 1e-6, r.guidedCost,
-             100 * r.guidingShare, r.frameCost, r.bytesPerVertex, bytesText(double(r.bytesMaps)));
+  fmt::print(
+      "| {} | {:.2f} | {:.3f} | {:.2f} | {:.2f} | {:.1f} % | {:.2f} | {:.0f} | {} | {:.2f} | {:.0f} | {:.2f} "
+      "|\n",
+      row.scene, row.secondsLoad, r.samplesPerSecond * 1e-6, r.raysPerSecond * 1e-6, r.guidedCost,
+      100 * r.guidingShare, r.frameCost, r.bytesPerVertex, bytesText(double(r.bytesMaps)), r.costs.guidedRay,
+      r.costs.builtCell, r.costs.recordedRay);
   std::fflush(stdout);
+}
+
+// The means over the scenes of what operations cost, as a frame can be told of them.
+void printCosts(const std::vector<render::OperationCosts>& scenes) {
+  double guidedRay = 0, builtCell = 0, recordedRay = 0;
+  for (const render::OperationCosts& costs : scenes) {
+    guidedRay += costs.guidedRay / double(scenes.size());
+    builtCell += costs.builtCell / double(scenes.size());
+    recordedRay += costs.recordedRay / double(scenes.size());
+  }
+  fmt::print(
+      "\nMeans of the last three columns: {:.2f}, --set built-cell-cost={:.0f}, --set "
+      "recorded-ray-cost={:.2f}\n",
+      guidedRay, builtCell, std::max(recordedRay, 0.0));
 }
 
 }  // namespace
@@ -61,10 +81,12 @@ static int runBench(BenchArguments& a) {
   const InterruptScope interruptible;
   ConsoleProgress progress(a.quiet);
   nlohmann::ordered_json all = nlohmann::ordered_json::array();
+  std::vector<render::OperationCosts> costs;
   if (!a.json)
     fmt::print(
         "| scene | load, s | path, M samples/s | M rays/s | guided sample | guiding of a frame | frame | "
-        "B a vertex | maps |\n|---|---|---|---|---|---|---|---|---|\n");
+        "B a vertex | maps | guided ray | built cell | recorded ray |\n"
+        "|---|---|---|---|---|---|---|---|---|---|---|---|\n");
   for (const std::string& path : a.scenes) {
     Row row{eval::sceneName(path), 0, {}};
     progress.setTitle(row.scene);
@@ -77,12 +99,16 @@ static int runBench(BenchArguments& a) {
     row.secondsLoad = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     row.result = eval::benchmark(*scene, a.settings, progress);
     if (InterruptScope::interrupted()) return kInterrupted;
+    costs.push_back(row.result.costs);
     if (a.json)
       all.push_back(toJson(row));
     else
       printRow(row);
   }
-  if (a.json) fmt::print("{}\n", all.dump(2));
+  if (a.json)
+    fmt::print("{}\n", all.dump(2));
+  else if (costs.size() > 1)
+    printCosts(costs);
   return kOk;
 }
 
@@ -93,7 +119,9 @@ Command addBenchCommand(CLI::App& parent) {
       "sample\" and\n"
       "\"frame\" are times in those of `path`, \"guiding of a frame\" is the share of recording the pilot "
       "and of\n"
-      "building cells, maps and selection probabilities.");
+      "building cells, maps and selection probabilities. The last three columns are times in that of a ray "
+      "of\n"
+      "`path`: `--set built-cell-cost` and `recorded-ray-cost` take them.");
   const auto a = std::make_shared<BenchArguments>();
   app->add_option("SCENE", a->scenes, "Mitsuba scene files")->required();
   app->add_option("--spp", a->settings.spp, "Samples per pixel, of which one is the pilot")

@@ -70,7 +70,7 @@ void applyPaperPreset(RenderOptions& options, bool fast) {
   options.refineSpp = 0;
   options.pilotSpp = 1;
   options.pilotWeight = 1;
-  options.guidedCost = 0;
+  options.costs.guidedRay = 0;
 }
 
 }  // namespace

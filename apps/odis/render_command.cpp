@@ -187,6 +187,7 @@ static int runRender(RenderArguments& a) {
   stats.bytesPeak = peakMemory();
   stats.seed = a.seed;
   stats.cached = a.method.cached;
+  if (options.integrator == IntegratorKind::odis) stats.costs = options.costs;
   stats.scene = a.scene;
   stats.integrator = a.method.integrator;
   stats.commandLine = a.commandLine;

@@ -91,6 +91,10 @@ std::string statsJson(const RunStats& stats) {
                                    {"lights", r.bytesLights},
                                    {"maps", r.bytesMaps}}},
                                  {"denoising", nullptr}};
+  if (const auto& costs = stats.costs)
+    json["costs"] = {{"guidedRay", costs->guidedRay},
+                     {"builtCell", costs->builtCell},
+                     {"recordedRay", costs->recordedRay}};
   const Denoising& d = stats.denoising;
   if (!d.denoiser.empty())
     json["denoising"] = {{"denoiser", d.denoiser},
@@ -115,6 +119,9 @@ std::map<std::string, std::string> statsMetadata(const RunStats& stats) {
       {"odis:secondsPilot", fmt::format("{:.4f}", r.secondsPilot)},
       {"odis:secondsBuild", fmt::format("{:.4f}", r.secondsBuild)},
       {"odis:secondsGuided", fmt::format("{:.4f}", r.secondsGuided)}};
+  if (const auto& costs = stats.costs)
+    metadata["odis:costs"] = fmt::format("guided ray {}, built cell {}, recorded ray {}", costs->guidedRay,
+                                         costs->builtCell, costs->recordedRay);
   metadata.merge(denoisingMetadata(stats.denoising));
   return metadata;
 }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <map>
+#include <optional>
 #include <string>
 
 #include "denoising.h"
@@ -16,6 +17,7 @@ struct RunStats {
   uint64_t bytesScene = 0, bytesPeak = 0;
   uint64_t seed = 0;
   bool cached = false;
+  std::optional<render::OperationCosts> costs;  // that decisions weighed; of frames that are guided
   std::string scene, integrator, commandLine;
 };
 

@@ -77,6 +77,8 @@ adaptive: bool (True): whether pixels whose first samples differ more get more s
 guided_cost: float >= 0 (1): what a ray of a guided path takes, relative to one of an unguided path; where
     the first guided samples show that guiding does not pay, the others are not guided. 0: guides
     and refines in any case
+built_cell_cost, recorded_ray_cost: float >= 0 (70, 0.15): what it takes to build a cell of the guide, and to
+    record what one ray brings, in the time that a ray takes: whether refining pays
 guide: GuideOptions
 
 Values out of their range raise Error (INVALID_ARGUMENT) where the options are used.)";
@@ -141,8 +143,8 @@ void bindFrameOptions(nb::module_& module) {
           "__init__",
           [](FrameOptions* self, uint32_t width, uint32_t height, uint32_t samplesPerPixel,
              uint32_t refinementSamples, uint64_t seed, double pilotSamplesPerPixel, float pilotWeight,
-             uint32_t oracleSamples, bool guided, bool adaptive, float guidedCost,
-             std::optional<GuideOptions> guide) {
+             uint32_t oracleSamples, bool guided, bool adaptive, float guidedCost, float builtCellCost,
+             float recordedRayCost, std::optional<GuideOptions> guide) {
             new (self) FrameOptions{{}, guide ? *guide : GuideOptions()};
             self->width = width;
             self->height = height;
@@ -155,13 +157,16 @@ void bindFrameOptions(nb::module_& module) {
             self->guided = guided;
             self->adaptive = adaptive;
             self->guidedCost = guidedCost;
+            self->builtCellCost = builtCellCost;
+            self->recordedRayCost = recordedRayCost;
           },
           "width"_a, "height"_a, nb::kw_only(), "samples_per_pixel"_a = defaults.samplesPerPixel,
           "refinement_samples"_a = defaults.refinementSamples, "seed"_a = defaults.seed,
           "pilot_samples_per_pixel"_a = defaults.pilotSamplesPerPixel,
           "pilot_weight"_a = defaults.pilotWeight, "oracle_samples"_a = defaults.oracleSamples,
           "guided"_a = defaults.guided, "adaptive"_a = defaults.adaptive,
-          "guided_cost"_a = defaults.guidedCost, "guide"_a = nb::none())
+          "guided_cost"_a = defaults.guidedCost, "built_cell_cost"_a = defaults.builtCellCost,
+          "recorded_ray_cost"_a = defaults.recordedRayCost, "guide"_a = nb::none())
       .def_rw("width", &FrameOptions::width)
       .def_rw("height", &FrameOptions::height)
       .def_rw("samples_per_pixel", &FrameOptions::samplesPerPixel)
@@ -173,6 +178,8 @@ void bindFrameOptions(nb::module_& module) {
       .def_rw("guided", &FrameOptions::guided)
       .def_rw("adaptive", &FrameOptions::adaptive)
       .def_rw("guided_cost", &FrameOptions::guidedCost)
+      .def_rw("built_cell_cost", &FrameOptions::builtCellCost)
+      .def_rw("recorded_ray_cost", &FrameOptions::recordedRayCost)
       .def_rw("guide", &FrameOptions::guide);
 }
 

@@ -94,7 +94,8 @@ class Library(unittest.TestCase):
             self.assertEqual(np.ravel(getattr(options, name)).tolist(), np.ravel(value).tolist())
             self.expect_error(invalid, odis.GuideBuilder, options)
             self.expect_error(invalid, odis.Frame, odis.FrameOptions(4, 4, guide=options))
-        for name, value in {"samples_per_pixel": 0, "pilot_samples_per_pixel": -1, "pilot_weight": -1}.items():
+        for name, value in {"samples_per_pixel": 0, "pilot_samples_per_pixel": -1, "pilot_weight": -1,
+                            "built_cell_cost": -1, "recorded_ray_cost": float("inf")}.items():
             self.expect_error(invalid, odis.Frame, odis.FrameOptions(4, 4, **{name: value}))
         self.expect_error(invalid, odis.Frame, odis.FrameOptions(0, 4))
         with self.assertRaises(TypeError):

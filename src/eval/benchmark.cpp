@@ -18,6 +18,25 @@ double seconds(const RenderStats& s) {
   return s.secondsPilot + s.secondsBuild + s.secondsGuided;
 }
 
+double rays(const RenderStats& s) {
+  return double(s.rays + s.shadowRays);
+}
+
+double guidedSamples(const RenderStats& odis) {
+  return double(odis.samples - odis.pilotSamples);
+}
+
+// Samples of the pilot trace as many rays as those of `path`.
+OperationCosts operationCosts(const RenderStats& path, const RenderStats& odis) {
+  const double perRay = seconds(path) / rays(path), raysPerSample = rays(path) / double(path.samples);
+  const double pilotRays = double(odis.pilotSamples) * raysPerSample;
+  OperationCosts costs;
+  costs.guidedRay = float(odis.secondsGuided / (rays(odis) - pilotRays) / perRay);
+  costs.builtCell = float(odis.secondsBuild / double(std::max<uint64_t>(odis.cellsBuilt, 1)) / perRay);
+  costs.recordedRay = float(odis.secondsPilot / pilotRays / perRay - 1);
+  return costs;
+}
+
 }  // namespace
 
 BenchmarkResult benchmark(const Scene& scene, const BenchmarkSettings& settings, Progress& progress) {
@@ -32,7 +51,8 @@ BenchmarkResult benchmark(const Scene& scene, const BenchmarkSettings& settings,
   guided.integrator = IntegratorKind::odis;
 
   BenchmarkResult result;
-  std::vector<double> samples, cpuSamples, rays, guidedCost, guidingShare, frameCost;
+  std::vector<double> samples, cpuSamples, raysTraced, guidedCost, guidingShare, frameCost;
+  std::vector<double> guidedRay, builtCell, recordedRay;
   for (int round = 0; round < settings.rounds && !progress.cancelled(); ++round) {
     path.seed = guided.seed = uint64_t(round);
     const double cpu = cpuSeconds();
@@ -43,11 +63,15 @@ BenchmarkResult benchmark(const Scene& scene, const BenchmarkSettings& settings,
 
     const double perSample = seconds(plain) / double(plain.samples);
     samples.push_back(1 / perSample);
-    rays.push_back(double(plain.rays + plain.shadowRays) / seconds(plain));
-    guidedCost.push_back(odis.secondsGuided / double(odis.samples - odis.pilotSamples) / perSample);
+    raysTraced.push_back(rays(plain) / seconds(plain));
+    guidedCost.push_back(odis.secondsGuided / guidedSamples(odis) / perSample);
     const double recording = odis.secondsPilot - double(odis.pilotSamples) * perSample;
     guidingShare.push_back((recording + odis.secondsBuild) / seconds(odis));
     frameCost.push_back(seconds(odis) / seconds(plain));
+    const OperationCosts costs = operationCosts(plain, odis);
+    guidedRay.push_back(costs.guidedRay);
+    builtCell.push_back(costs.builtCell);
+    recordedRay.push_back(costs.recordedRay);
     result.bytesPerVertex = double(odis.bytesBuild) / double(std::max<uint64_t>(odis.pilotVertices, 1));
     result.bytesMaps = odis.bytesMaps;
   }
@@ -55,10 +79,11 @@ BenchmarkResult benchmark(const Scene& scene, const BenchmarkSettings& settings,
   result.pixels = uint64_t(crop.width) * uint64_t(crop.height);
   result.samplesPerSecond = median(samples);
   result.samplesPerCpuSecond = median(cpuSamples);
-  result.raysPerSecond = median(rays);
+  result.raysPerSecond = median(raysTraced);
   result.guidedCost = median(guidedCost);
   result.guidingShare = median(guidingShare);
   result.frameCost = median(frameCost);
+  result.costs = {float(median(guidedRay)), float(median(builtCell)), float(median(recordedRay))};
   return result;
 }
 

@@ -24,6 +24,7 @@ struct BenchmarkResult {
   double frameCost = 0;       // time of a frame of `odis` over that of `path` with as many samples
   double bytesPerVertex = 0;  // held at most while building, over the pilot's vertices
   uint64_t bytesMaps = 0;
+  render::OperationCosts costs;  // as measured
 };
 
 // Throws nothing of its own; ends early, with what there is, if progress is cancelled.

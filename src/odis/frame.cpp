@@ -79,6 +79,10 @@ const FrameOptions& checkedOptions(const FrameOptions& o) {
                 "pilotWeight: expected a finite number from 0 on");
   requireOption(o.guidedCost >= 0 && std::isfinite(o.guidedCost),
                 "guidedCost: expected a finite number from 0 on");
+  requireOption(o.builtCellCost >= 0 && std::isfinite(o.builtCellCost),
+                "builtCellCost: expected a finite number from 0 on");
+  requireOption(o.recordedRayCost >= 0 && std::isfinite(o.recordedRayCost),
+                "recordedRayCost: expected a finite number from 0 on");
   return o;
 }
 

@@ -30,6 +30,8 @@ bool Frame::Data::nextRefinementPays() const {
   possible.seen = std::min(pilotSamples, double(kMostPilotSamples)) + done * learnedInPass;
   possible.learned = (next - done) * learnedInPass;
   possible.remaining = (options.samplesPerPixel - next) * pixels - pilotSamples;
+  possible.builtCellCost = options.builtCellCost;
+  possible.recordedRayCost = options.recordedRayCost;
   return refinementPays(possible);
 }
 

@@ -211,6 +211,8 @@ TEST(ApiMisuse, NumbersThatCannotBeAreRefused) {
   refuses([](Options& o, Guides&) { o.size = 0; });
   refuses([](Options& o, Guides&) { o.pilotWeight = NAN; });
   refuses([](Options& o, Guides&) { o.pilotSamplesPerPixel = INFINITY; });
+  refuses([](Options& o, Guides&) { o.builtCellCost = -1; });
+  refuses([](Options& o, Guides&) { o.recordedRayCost = INFINITY; });
   refuses([](Options&, Guides& g) { g.size = 1; });
   refuses([](Options&, Guides& g) { g.clamp = 0; });
   refuses([](Options&, Guides& g) { g.cellsPerDiagonal = -3; });

@@ -136,6 +136,31 @@ TEST_F(Odis, RendersWithMetadataAndStats) {
   EXPECT_TRUE(stats.at("seconds").contains("guided"));
 }
 
+TEST_F(Odis, CostsThatDecisionsWeighedAreInTheHeader) {
+  const auto metadata = [&](const std::string& options) {
+    EXPECT_EQ(run("render room.xml -q -o costs.exr --stats-json s.json " + options).code, 0) << options;
+    return odis::render::readExr(file("costs.exr").string()).metadata;
+  };
+  EXPECT_EQ(metadata("--integrator path").count("odis:costs"), 0u);
+  EXPECT_EQ(metadata("").at("odis:costs"), "guided ray 1, built cell 70, recorded ray 0.15");
+  EXPECT_EQ(metadata("--set built-cell-cost=500 --set recorded-ray-cost=0").at("odis:costs"),
+            "guided ray 1, built cell 500, recorded ray 0");
+  std::ifstream stream(file("s.json"));
+  EXPECT_EQ(nlohmann::json::parse(stream).at("costs").at("builtCell"), 500);
+}
+
+TEST_F(Odis, BenchMeasuresWhatOperationsCost) {
+  const Outcome outcome = run("bench room.xml -q --json --rounds 1 --pixels 4096");
+  ASSERT_EQ(outcome.code, 0) << outcome.text;
+  const nlohmann::json row = nlohmann::json::parse(outcome.text).at(0);
+  EXPECT_GT(row.at("guidedRayCost"), 0.0);
+  EXPECT_GT(row.at("builtCellCost"), 0.0);
+  EXPECT_GT(row.at("recordedRayCost"), -1.0);
+  const Outcome table = run("bench room.xml room.xml -q --rounds 1 --pixels 1024");
+  EXPECT_NE(table.text.find("| built cell | recorded ray |\n"), std::string::npos) << table.text;
+  EXPECT_NE(table.text.find("--set built-cell-cost="), std::string::npos) << table.text;
+}
+
 TEST_F(Odis, ConstantSkyIsOneAndDefinesReachTheScene) {
   ASSERT_EQ(run("render room.xml --integrator path -D radiance=2 --crop 0,0,2,2 -o sky.exr -q").code, 0);
   const odis::render::ExrFile image = odis::render::readExr(file("sky.exr").string());

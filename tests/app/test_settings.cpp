@@ -45,6 +45,7 @@ TEST(Settings, ReachTheOptions) {
                     "cached-error=0.2",    "shadow-rays=all",
                     "pilot-spp=0.25",      "refine=0",
                     "pilot-weight=0.5",    "guided-cost=1.5",
+                    "built-cell-cost=90",  "recorded-ray-cost=0.25",
                     "bsdf-fraction=0.3",   "prior-samples=1:2:3.5:0",
                     "map-floor=0.1",       "ppg-threshold=500",
                     "ppg-flux=0.5",        "ppg-directional=nearest",
@@ -63,7 +64,9 @@ TEST(Settings, ReachTheOptions) {
   EXPECT_EQ(o.pilotSpp, 0.25);
   EXPECT_EQ(o.refineSpp, 0);
   EXPECT_EQ(o.pilotWeight, 0.5);
-  EXPECT_EQ(o.guidedCost, 1.5f);
+  EXPECT_EQ(o.costs.guidedRay, 1.5f);
+  EXPECT_EQ(o.costs.builtCell, 90);
+  EXPECT_EQ(o.costs.recordedRay, 0.25f);
   EXPECT_EQ(o.guideOptions.fixedBsdfFraction, 0.3f);
   const float expected[] = {1, 2, 3.5f, 0};
   EXPECT_TRUE(std::equal(expected, expected + 4, o.guideOptions.priorSamples));

@@ -122,7 +122,15 @@ TEST(GuidingGain, StoppingKeepsTheMean) {
 // many paths as in those of real scenes.
 core::PossibleRefinement firstOf(double predictedRatio, double samplesPerPixel) {
   constexpr double kPixels = 640 * 360;
-  return {predictedRatio, 5, 4000, kPixels / 4, kPixels, (samplesPerPixel - 1.25) * kPixels};
+  const FrameOptions usual;
+  return {predictedRatio,
+          5,
+          4000,
+          kPixels / 4,
+          kPixels,
+          (samplesPerPixel - 1.25) * kPixels,
+          usual.builtCellCost,
+          usual.recordedRayCost};
 }
 
 TEST(Refinement, PaysWhereMapsSaveMuchOrManySamplesFollow) {
@@ -140,6 +148,14 @@ TEST(Refinement, PaysWhereMapsSaveMuchOrManySamplesFollow) {
   core::PossibleRefinement full = firstOf(0.4, 4);
   full.seen *= 100;
   EXPECT_FALSE(core::refinementPays(full)) << "cells know enough";
+
+  core::PossibleRefinement cells = firstOf(0.4, 4), recording = cells, free = firstOf(0.95, 4);
+  cells.builtCellCost *= 10;
+  recording.recordedRayCost *= 10;
+  free.builtCellCost = free.recordedRayCost = 0;
+  EXPECT_FALSE(core::refinementPays(cells));
+  EXPECT_FALSE(core::refinementPays(recording));
+  EXPECT_TRUE(core::refinementPays(free));
 }
 
 // [pass] whether it is recorded.
@@ -171,6 +187,14 @@ TEST(Refinement, IsLeftOutWhereItDoesNotPay) {
   unweighed.guidedCost = 0;
   EXPECT_EQ(recorded(shared), 2) << "others may learn from the builder";
   EXPECT_EQ(recorded(unweighed), 2);
+
+  FrameOptions cells = many, recording = many, free = few;
+  cells.builtCellCost = 1e6;
+  recording.recordedRayCost = 1e6;
+  free.builtCellCost = free.recordedRayCost = 0;
+  EXPECT_EQ(recorded(cells), 1);
+  EXPECT_EQ(recorded(recording), 1);
+  EXPECT_EQ(recorded(free), 2);
 }
 
 // Whether guides are refined is decided by the pilot: they are in a part of the frames, here.

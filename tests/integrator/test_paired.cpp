@@ -79,7 +79,7 @@ struct PairedCase {
     options.spp = spp;
     options.sampler = sampler;
     options.seed = seed;
-    options.guidedCost = 0;  // in so few pixels it would not pay to refine the guide
+    options.costs.guidedRay = 0;  // in so few pixels it would not pay to refine the guide
     if (oneGuide()) {
       options.samples = SampleSpread::even;
       options.refineSpp = 0;

@@ -48,7 +48,7 @@ class PixelMapsTest : public test::AgainstPath<PixelRoom> {
     options.refineSpp = 0;
     options.pilotSpp = 1;
     options.pilotWeight = 1;
-    options.guidedCost = 0;
+    options.costs.guidedRay = 0;
     return options;
   }
 };

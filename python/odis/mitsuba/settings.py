@@ -74,6 +74,8 @@ _SETTINGS = {
     "refine": ("frame", "refinement_samples", Number(int, 0, 1 << 20)),
     "pilot-weight": ("frame", "pilot_weight", Number(float, 0, 1e6)),
     "guided-cost": ("frame", "guided_cost", Number(float, 0, 1e6)),
+    "built-cell-cost": ("frame", "built_cell_cost", Number(float, 0, 1e6)),
+    "recorded-ray-cost": ("frame", "recorded_ray_cost", Number(float, 0, 1e6)),
     "bsdf-fraction": ("guide", "fixed_bsdf_fraction", Number(float, 0, 1)),
     "cells": ("guide", "cells_per_diagonal", Number(int, 0, 1 << 16)),
     "prior-samples": ("guide", "prior_samples", Levels()),

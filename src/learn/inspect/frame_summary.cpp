@@ -33,6 +33,8 @@ std::vector<ChosenOption> chosenOptions(const core::SavedOptions& saved) {
   ofFrame("guided", &core::FrameOptions::guided);
   ofFrame("adaptive", &core::FrameOptions::adaptive);
   ofFrame("guidedCost", &core::FrameOptions::guidedCost);
+  ofFrame("builtCellCost", &core::FrameOptions::builtCellCost);
+  ofFrame("recordedRayCost", &core::FrameOptions::recordedRayCost);
   ofFrame("keepPilotVertices", &core::FrameOptions::keepPilotVertices);
   ofGuide("cellsPerDiagonal", &core::GuideOptions::cellsPerDiagonal);
   for (size_t level = 0; level < kCellLevels; ++level)

@@ -9,10 +9,8 @@ namespace odis::core {
 
 namespace {
 
-// What it costs to build a cell, and to record what one ray brings. The unit is the time that a ray takes,
-// with all that is computed where it arrives (docs/experiments/0015-refinement-and-pilot.md).
-constexpr double kBuiltCell = 70, kRecordedRay = 0.15;
-// A refinement gains this times what maps save, times the fall of one over the root of a cell's samples.
+// A refinement gains this times what maps save, times the fall of one over the root of a cell's samples
+// (docs/experiments/0015-refinement-and-pilot.md).
 constexpr double kRefinementGain = 4.4;
 // The least that maps are taken to save, since a pilot that has seen little predicts little.
 constexpr double kLeastSaving = 0.1;
@@ -133,7 +131,7 @@ std::optional<double> guidedOverUnguided(const Tasks& tasks, ArrayView<const Pix
 }
 
 bool refinementPays(const PossibleRefinement& p) {
-  const double cost = kRecordedRay * p.learned * p.raysPerSample + kBuiltCell * p.cells;
+  const double cost = p.recordedRayCost * p.learned * p.raysPerSample + p.builtCellCost * p.cells;
   // What a cell knows is wrong by the inverse square root of the samples that it has seen.
   const double improvement = std::sqrt(p.cells / p.seen) - std::sqrt(p.cells / (p.seen + p.learned));
   const double saving = std::max(1 - p.predictedRatio, kLeastSaving);

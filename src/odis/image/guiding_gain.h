@@ -25,6 +25,7 @@ struct PossibleRefinement {
   double cells;           // of the guide
   double seen, learned;   // samples that it has learned from, and that it would learn from
   double remaining;       // samples that it would guide
+  double builtCellCost, recordedRayCost;  // in the time of a ray (FrameOptions)
 };
 
 // Whether that is worth the time of recording and building. What maps save at all tells what better ones

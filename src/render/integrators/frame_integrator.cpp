@@ -111,7 +111,10 @@ void FrameIntegrator::run(const FramePass& framePass) {
   trace(framePass);
   const Stopwatch building;
   m_frame.endPass(m_job.stop());
-  if (kind != ODIS_PASS_GUIDED || framePass.wantsVertices) stats.secondsBuild += building.seconds();
+  if (kind != ODIS_PASS_GUIDED || framePass.wantsVertices) {
+    stats.secondsBuild += building.seconds();
+    stats.cellsBuilt += m_frame.statistics().cells;
+  }
 }
 
 void FrameIntegrator::render() {

@@ -42,7 +42,9 @@ FrameOptions guidedFrameOptions(const RenderJob& job) {
   frame.adaptive = options.samples != SampleSpread::even;
   frame.pilotSamplesPerPixel = options.pilotSpp;
   frame.pilotWeight = float(options.pilotWeight);
-  frame.guidedCost = options.guidedCost;
+  frame.guidedCost = options.costs.guidedRay;
+  frame.builtCellCost = options.costs.builtCell;
+  frame.recordedRayCost = options.costs.recordedRay;
   frame.refinementSamples = uint32_t(options.refineSpp);
   const bool oracle =
       options.guide == GuideKind::oracle || options.guideOptions.pixelMaps == ODIS_PIXEL_MAPS_ORACLE;

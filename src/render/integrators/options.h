@@ -25,6 +25,14 @@ struct SavingOptions {
   std::string subject;
 };
 
+// What operations cost that a guided frame decides about, in the time that a ray of an unguided path takes
+// with all that is computed where it arrives.
+struct OperationCosts {
+  float guidedRay = 1;        // a ray of a guided path; 0: guides and refines in any case
+  float builtCell = 70;       // building a cell of the guide
+  float recordedRay = 0.15f;  // recording what one ray brings
+};
+
 struct RenderOptions {
   IntegratorKind integrator = IntegratorKind::odis;
   SamplerKind sampler = SamplerKind::sobol;
@@ -63,7 +71,7 @@ struct RenderOptions {
   double pilotSpp = 0;
   int oracleSpp = 64;  // samples per pixel that the oracle's maps are made from
   GuideOptions guideOptions;
-  float guidedCost = 1;      // of a guided ray relative to an unguided one; 0: guides and refines in any case
+  OperationCosts costs;
   double pilotWeight = 0.6;  // of a pilot sample relative to a guided one
   // Whether paths may end with the cached radiance of cells, which biases the image. The error that they may
   // make is guideOptions.cachedError, or, where that is 0, one that falls with the number of samples.

@@ -16,6 +16,7 @@ struct RenderStats {
   double secondsPilot = 0, secondsBuild = 0, secondsGuided = 0;
   uint64_t samples = 0, pilotSamples = 0, rays = 0, shadowRays = 0;
   uint64_t pilotVertices = 0, cells = 0;
+  uint64_t cellsBuilt = 0;  // in secondsBuild: those of all guides, of which the last has `cells`
   uint64_t bytesBuild = 0;  // held at most until the guide is built: pilot vertices and what is made of them
   uint64_t bytesMaps = 0, bytesLights = 0;
   double pilotWeight = 0;  // of the pilot's mean in the image
