@@ -180,8 +180,8 @@ typedef struct OdisFrameOptions {
   // show that guiding does not pay, the others are not guided: their passes have a guide without cells. 0:
   // costs are not weighed, what follows is guided and the guide refined in any case.
   float guidedCost ODIS_DEFAULT(1);
-  // >= 0, in the time that a ray takes, with all that is computed where it arrives: to build a cell of the guide,
-  // and to record what one ray brings. They say whether refining pays; `odis bench` measures them.
+  // >= 0, in the time that a ray takes with all that is computed where it arrives: to build a cell of the
+  // guide, and to record what one ray brings. By them a frame decides whether refining pays.
   float builtCellCost ODIS_DEFAULT(70), recordedRayCost ODIS_DEFAULT(0.15f);
   const OdisGuideOptions* guide ODIS_DEFAULT(NULL);  // NULL: the defaults; copied
   // The builder to learn into, with its own options (`guide` must be NULL), which may know of earlier frames;
