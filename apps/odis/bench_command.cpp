@@ -119,9 +119,8 @@ Command addBenchCommand(CLI::App& parent) {
       "sample\" and\n"
       "\"frame\" are times in those of `path`, \"guiding of a frame\" is the share of recording the pilot "
       "and of\n"
-      "building cells, maps and selection probabilities. The last three columns are times in that of a ray "
-      "of\n"
-      "`path`: `--set built-cell-cost` and `recorded-ray-cost` take them.");
+      "building cells, maps and selection probabilities. The last three columns are times in that of a ray\n"
+      "of `path`: `--set built-cell-cost` and `recorded-ray-cost` take them.");
   const auto a = std::make_shared<BenchArguments>();
   app->add_option("SCENE", a->scenes, "Mitsuba scene files")->required();
   app->add_option("--spp", a->settings.spp, "Samples per pixel, of which one is the pilot")

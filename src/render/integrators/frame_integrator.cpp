@@ -108,13 +108,12 @@ void FrameIntegrator::trace(const FramePass& framePass) {
 void FrameIntegrator::run(const FramePass& framePass) {
   RenderStats& stats = m_job.stats;
   const OdisPassKind kind = framePass.kind;
+  if (m_guideIsNew) stats.cellsBuilt += framePass.guide->cellCount;
   trace(framePass);
   const Stopwatch building;
   m_frame.endPass(m_job.stop());
-  if (kind != ODIS_PASS_GUIDED || framePass.wantsVertices) {
-    stats.secondsBuild += building.seconds();
-    stats.cellsBuilt += m_frame.statistics().cells;
-  }
+  m_guideIsNew = kind != ODIS_PASS_GUIDED || framePass.wantsVertices;
+  if (m_guideIsNew) stats.secondsBuild += building.seconds();
 }
 
 void FrameIntegrator::render() {

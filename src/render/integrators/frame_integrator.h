@@ -32,6 +32,7 @@ class FrameIntegrator : public Integrator {
   FrameSaver m_saver;
   odis::Frame m_frame;
   const char* m_stage = nullptr;  // that progress tells of
+  bool m_guideIsNew = false;      // that the next pass has
 };
 
 // What a frame of the job's image is asked for, without a guide.
