@@ -34,10 +34,6 @@ uint32_t TileCollector::placeInTile(uint32_t pixel) const {
   return ((y / 4) * 4 + x / 4) * 16 + (y % 4) * 4 + x % 4;
 }
 
-uint64_t TileCollector::orderInTile(const VertexIdentity& v) const {
-  return uint64_t(placeInTile(v.pixel)) << 48 | uint64_t(v.sample) << 16 | v.depth;
-}
-
 bool TileCollector::isDue(uint32_t pixel, uint32_t sample) const {
   if (pixel >= m_width * m_height) return false;
   const SampleRange range = m_due(pixel);
@@ -140,20 +136,30 @@ void TileCollector::addTiles(ArrayView<const FrameSample> samples, const VertexS
         sampleOrder.isSorted() && count > 0
             ? ArrayView<const FrameSample>(&samples[sampleOrder.index(tiles[t], 0)], count)
             : ArrayView<const FrameSample>(sorted);
-    addToTile(tiles[t], ofTile, inOrder(vertices, vertexOrder, tiles[t]));
+    Order order = orderOf(vertices, vertexOrder.count(tiles[t]),
+                          [&](size_t k) { return vertexOrder.index(tiles[t], k); });
+    addToTile(tiles[t], ofTile, copyInOrder(vertices, std::move(order)));
   });
   m_refused += vertices.size() - vertexOrder.size();
 }
 
-// Vertices of a tile in the order in which they are handed on.
-std::vector<PathVertex> TileCollector::inOrder(const VertexSource& vertices, const TileOrder& byTile,
-                                               uint32_t tile) const {
-  std::vector<std::pair<uint64_t, size_t>> order;  // vertices of the same order stay as they came
-  order.reserve(byTile.count(tile));
-  for (size_t k = 0; k < byTile.count(tile); ++k) {
-    const size_t i = byTile.index(tile, k);
-    order.emplace_back(orderInTile(vertices.identity(i)), i);
+// The order in which `count` vertices of a tile are handed on, those at indexAt(0), indexAt(1), ...
+template <class IndexAt>
+TileCollector::Order TileCollector::orderOf(const VertexSource& vertices, size_t count,
+                                            const IndexAt& indexAt) const {
+  Order order;
+  order.reserve(count);
+  uint32_t pixel = ~0u, place = 0;
+  for (size_t k = 0; k < count; ++k) {
+    const size_t i = indexAt(k);
+    const VertexIdentity v = vertices.identity(i);
+    if (v.pixel != pixel) place = placeInTile(pixel = v.pixel);
+    order.emplace_back(uint64_t(place) << 48 | uint64_t(v.sample) << 16 | v.depth, i);
   }
+  return order;
+}
+
+std::vector<PathVertex> TileCollector::copyInOrder(const VertexSource& vertices, Order order) {
   if (!std::is_sorted(order.begin(), order.end())) std::sort(order.begin(), order.end());
   std::vector<PathVertex> ordered;
   ordered.reserve(order.size());
@@ -230,14 +236,10 @@ void TileCollector::handOn(uint32_t tile, ArrayView<const FrameSample> samples, 
     });
     samples = orderedSamples;
   }
-  const auto precedes = [this](const PathVertex& a, const PathVertex& b) {
-    return orderInTile(identityOf(a)) < orderInTile(identityOf(b));
-  };
-  const ArrayView<const PathVertex> given = vertices.view();
-  if (std::is_sorted(given.begin(), given.end(), precedes)) return m_sink(tile, samples, vertices);
-  std::vector<PathVertex> orderedVertices = vertices.take();
-  std::stable_sort(orderedVertices.begin(), orderedVertices.end(), precedes);
-  TileVertices ordered(std::move(orderedVertices));
+  const VertexArray given(vertices.view());
+  Order order = orderOf(given, given.size(), [](size_t k) { return k; });
+  if (std::is_sorted(order.begin(), order.end())) return m_sink(tile, samples, vertices);
+  TileVertices ordered(copyInOrder(given, std::move(order)));
   m_sink(tile, samples, ordered);
 }
 

@@ -58,10 +58,11 @@ class TileCollector {
     uint64_t due = 0;  // number of samples due in the pass; 0: not counted yet
     std::atomic<bool> done{false};
   };
+  // Of vertices: pixel, sample and depth in one number, then their index, so that those of the same order stay
+  // as they came.
+  using Order = std::vector<std::pair<uint64_t, size_t>>;
   uint32_t tileOf(uint32_t pixel) const;
   uint32_t placeInTile(uint32_t pixel) const;
-  // What a tile's vertices are ordered by: pixel, sample and depth in one number.
-  uint64_t orderInTile(const VertexIdentity& v) const;
   bool isDue(uint32_t pixel, uint32_t sample) const;
   uint64_t samplesDue(uint32_t tile) const;
   bool allIn(uint32_t tile, ArrayView<const FrameSample> samples, ArrayView<const PathVertex> vertices) const;
@@ -69,7 +70,9 @@ class TileCollector {
   void forEach(bool byThreads, size_t count, const Body& body) const;
   template <class IdentityAt>
   std::vector<uint32_t> tilesOf(bool byThreads, size_t count, const IdentityAt& identityAt) const;
-  std::vector<PathVertex> inOrder(const VertexSource& vertices, const TileOrder& byTile, uint32_t tile) const;
+  template <class IndexAt>
+  Order orderOf(const VertexSource& vertices, size_t count, const IndexAt& indexAt) const;
+  static std::vector<PathVertex> copyInOrder(const VertexSource& vertices, Order order);
   void requireOpen(uint32_t tile) const;
   void addTiles(ArrayView<const FrameSample> samples, const VertexSource& vertices);
   void addToTile(uint32_t tile, ArrayView<const FrameSample> samples, TileVertices vertices);
