@@ -24,7 +24,7 @@ constexpr uint32_t kOracleFractionPasses = 2;
 constexpr size_t kFewPixels = 16384;
 constexpr uint64_t kGuideSeed = 0x9e3779b97f4a7c15ull;
 
-// Of how many pixels the guide learns from one, so that of all samples of a pass it learns from `most`.
+// The guide learns from one in so many pixels, so that it learns from at most `most` of a pass's samples.
 uint32_t pixelsPerLearnedIn(uint64_t samples, uint64_t most) {
   return uint32_t((samples + most - 1) / most);
 }
@@ -68,21 +68,20 @@ uint64_t bytesOf(const VertexTiles& tiles) {
   return bytes;
 }
 
+void requireFromZero(double value, const std::string& name) {
+  requireOption(value >= 0 && std::isfinite(value), (name + ": expected a finite number from 0 on").c_str());
+}
+
 const FrameOptions& checkedOptions(const FrameOptions& o) {
   requireOption(o.width > 0 && o.height > 0, "width, height: expected at least one pixel");
   requireOption(uint64_t(o.width) * o.height < (uint64_t(1) << 31),
                 "width, height: expected less than 2^31 pixels");
   requireOption(o.samplesPerPixel > 0, "samplesPerPixel: expected at least 1");
-  requireOption(o.pilotSamplesPerPixel >= 0 && std::isfinite(o.pilotSamplesPerPixel),
-                "pilotSamplesPerPixel: expected a finite number from 0 on");
-  requireOption(o.pilotWeight >= 0 && std::isfinite(o.pilotWeight),
-                "pilotWeight: expected a finite number from 0 on");
-  requireOption(o.guidedCost >= 0 && std::isfinite(o.guidedCost),
-                "guidedCost: expected a finite number from 0 on");
-  requireOption(o.builtCellCost >= 0 && std::isfinite(o.builtCellCost),
-                "builtCellCost: expected a finite number from 0 on");
-  requireOption(o.recordedRayCost >= 0 && std::isfinite(o.recordedRayCost),
-                "recordedRayCost: expected a finite number from 0 on");
+  requireFromZero(o.pilotSamplesPerPixel, "pilotSamplesPerPixel");
+  requireFromZero(o.pilotWeight, "pilotWeight");
+  requireFromZero(o.guidedCost, "guidedCost");
+  requireFromZero(o.builtCellCost, "builtCellCost");
+  requireFromZero(o.recordedRayCost, "recordedRayCost");
   return o;
 }
 

@@ -58,8 +58,8 @@ class TileCollector {
     uint64_t due = 0;  // number of samples due in the pass; 0: not counted yet
     std::atomic<bool> done{false};
   };
-  // Of vertices: pixel, sample and depth in one number, then their index, so that those of the same place
-  // stay in the order in which they came.
+  // What vertices are sorted by: first a number made of pixel, sample and depth, then the index at which they
+  // came.
   using Order = std::vector<std::pair<uint64_t, size_t>>;
   uint32_t tileOf(uint32_t pixel) const;
   uint32_t placeInTile(uint32_t pixel) const;
