@@ -1,5 +1,7 @@
-// Directions of several vertices side by side: drawn and weighed as each would be by itself.
+// Directions and lights of several vertices side by side: drawn and weighed as each would be by itself.
 #include <gtest/gtest.h>
+
+#include <deque>
 
 #include "integrator/test_scenes.h"
 #include "odis/maps/pack.h"
@@ -87,11 +89,60 @@ bool same(const BsdfSample& a, const BsdfSample& b) {
          a.eta == b.eta && a.lobe == b.lobe;
 }
 
+// Paths that arrive at one surface in [-1, 1]^2, from in front of it.
+class Arrivals {
+ public:
+  explicit Arrivals(const Scene& scene) : m_scene(scene) {}
+
+  // Puts new ones into all but the last lanes, and random numbers.
+  void fill(Bounces& bounces, Random& random) {
+    m_paths.clear();
+    bounces.depth = 1;
+    bounces.count = kCount;
+    for (size_t i = 0; i < kCount; ++i) {
+      const Vec3 target(2 * random() - 1, 2 * random() - 1, 0), origin = random.inCube(1) + Vec3(0, 0, 3);
+      const Ray ray{origin, normalize(target - origin)};
+      Hit hit;
+      m_scene.intersect({&ray, 1}, {&hit, 1});
+      ASSERT_TRUE(hit.shape);
+      Vertex& vertex = m_vertices[i];
+      vertex.at = hit.surfacePoint(ray);
+      vertex.wo = vertex.at.shading.toLocal(-ray.direction);
+      Path& path = m_paths.emplace_back(ray, Sampler(SamplerKind::independent, 1, uint32_t(i), 0));
+      const float guidable = vertex.at.shape->bsdf().guidableProbability(vertex.at, vertex.wo);
+      bounces.arrivals[i] = {&path, uint32_t(i), &vertex, kNoCell, guidable, true};
+      VertexNumbers& numbers = bounces.numbers;
+      for (Column* column : {&numbers.lightChoice, &numbers.lightU, &numbers.lightV, &numbers.lobe,
+                             &numbers.directionU, &numbers.directionV})
+        (*column)[i] = random();
+    }
+  }
+
+ private:
+  const Scene& m_scene;
+  std::deque<Path> m_paths;
+  std::array<Vertex, kCount> m_vertices;
+};
+
+constexpr const char* kSurfaces[] = {
+    "<bsdf type=\"diffuse\"/>",  //
+    "<bsdf type=\"twosided\"><bsdf type=\"diffuse\"><rgb name=\"reflectance\" "
+    "value=\"0.1,0.5,0.9\"/></bsdf></bsdf>",
+    "<bsdf type=\"roughplastic\"><float name=\"alpha\" value=\"0.3\"/></bsdf>",
+    // Lobes that are too sharp to be guided, and delta lobes, beside one that may be.
+    "<bsdf type=\"roughplastic\"><float name=\"alpha\" value=\"0.01\"/></bsdf>", "<bsdf type=\"plastic\"/>",
+    "<bsdf type=\"roughdielectric\"><float name=\"alpha\" value=\"0.4\"/></bsdf>"};
+
+std::string rectangle(const std::string& bsdf) {
+  return "<shape type=\"rectangle\">" + bsdf + "</shape>";
+}
+
+const std::string kCamera = sensor("origin=\"0,0,5\" target=\"0,0,0\" up=\"0,1,0\"", 40, 8, 8);
+
 // Vertices on one surface, some of whose cells guide and some not: the steps of a bounce sample the very
 // mixture that Mixture::sample() is the definition of.
 void expectDirectionsOfTheMixture(const std::string& bsdf, Random& random) {
-  const auto scene = loadScene(sensor("origin=\"0,0,5\" target=\"0,0,0\" up=\"0,1,0\"", 40, 8, 8) +
-                               "<shape type=\"rectangle\">" + bsdf + "</shape>");
+  const auto scene = loadScene(kCamera + rectangle(bsdf));
   const Maps maps(random);
   std::vector<OdisCellDecisions> decisions(Maps::kCells);
   for (OdisCellDecisions& cell : decisions)
@@ -103,42 +154,27 @@ void expectDirectionsOfTheMixture(const std::string& bsdf, Random& random) {
   settings.scene = scene.get();
   settings.guide = &view;
   int guided = 0, fromMaps = 0;
+  Arrivals arrivals(*scene);
+  const auto bounces = std::make_unique<Bounces>();
   for (int round = 0; round < 300; ++round) {
-    std::vector<Path> paths;
-    std::vector<Vertex> vertices(kCount);
-    std::array<Bounce, kCount> bounces;
+    arrivals.fill(*bounces, random);
+    for (Arrival& arrival : bounces->arriving())
+      arrival.cell = random() < 0.2f ? kNoCell : uint32_t(random() * Maps::kCells);
+    readSurfaces(*bounces);
+    prepareDirections(settings, *bounces);
+    chooseBlocks(*bounces);
+    sampleDirections(*bounces);
     for (size_t i = 0; i < kCount; ++i) {
-      const Vec3 target(2 * random() - 1, 2 * random() - 1, 0), origin = random.inCube(1) + Vec3(0, 0, 3);
-      const Ray ray{origin, normalize(target - origin)};
-      Hit hit;
-      scene->intersect({&ray, 1}, {&hit, 1});
-      ASSERT_TRUE(hit.shape);
-      vertices[i].at = hit.surfacePoint(ray);
-      vertices[i].wo = vertices[i].at.shading.toLocal(-ray.direction);
-      paths.emplace_back(ray, Sampler(SamplerKind::independent, 1, uint32_t(i), 0));
-    }
-    for (size_t i = 0; i < kCount; ++i) {
-      Bounce& bounce = bounces[i];
-      bounce.path = &paths[i];
-      bounce.vertex = &vertices[i];
-      bounce.cell = random() < 0.2f ? kNoCell : uint32_t(random() * Maps::kCells);
-      bounce.guidable = vertices[i].at.shape->bsdf().guidableProbability(vertices[i].at, vertices[i].wo);
-      bounce.numbers.lobe = random();
-      bounce.numbers.direction = random.pair();
-    }
-    prepareDirections(settings, bounces);
-    chooseBlocks(bounces);
-    sampleDirections(bounces);
-    for (const Bounce& bounce : bounces) {
-      const BsdfHost host{*bounce.vertex, bounce.numbers.lobe};
-      const auto [u, v] = bounce.numbers.direction;
-      const VertexMap<float>* map = bounce.bsdf.map();
-      BsdfSample expected =
-          map ? bounce.bsdf.mixture().sample(OneMap{*map}, u, v, host) : host.sampleBsdf(u, v);
+      const BsdfHost host{*bounces->arrivals[i].vertex, bounces->numbers.lobe[i]};
+      const float u = bounces->numbers.directionU[i], v = bounces->numbers.directionV[i];
+      const bool hasMap = bounces->bsdfs.hasMap[i];
+      BsdfSample expected = hasMap
+                                ? bounces->bsdfs.mixture(i).sample(OneMap{bounces->bsdfs.maps[i]}, u, v, host)
+                                : host.sampleBsdf(u, v);
       if (!isFinite(expected.weight)) expected = {};
-      EXPECT_TRUE(same(bounce.next, expected)) << bsdf;
-      guided += map != nullptr;
-      fromMaps += map && bounce.draw.fromMap;
+      EXPECT_TRUE(same(bounces->next[i], expected)) << bsdf;
+      guided += hasMap;
+      fromMaps += bounces->draws.fromMap[i];
     }
   }
   EXPECT_GT(guided, 500) << bsdf;
@@ -147,13 +183,70 @@ void expectDirectionsOfTheMixture(const std::string& bsdf, Random& random) {
 
 TEST(Directions, AreThoseOfTheMixture) {
   Random random(2);
-  for (const char* bsdf : {"<bsdf type=\"diffuse\"/>",  //
-                           "<bsdf type=\"roughplastic\"><float name=\"alpha\" value=\"0.3\"/></bsdf>",
-                           // Lobes that are too sharp to be guided, and delta lobes, beside one that may be.
-                           "<bsdf type=\"roughplastic\"><float name=\"alpha\" value=\"0.01\"/></bsdf>",
-                           "<bsdf type=\"plastic\"/>",
-                           "<bsdf type=\"roughdielectric\"><float name=\"alpha\" value=\"0.4\"/></bsdf>"})
-    expectDirectionsOfTheMixture(bsdf, random);
+  for (const char* bsdf : kSurfaces) expectDirectionsOfTheMixture(bsdf, random);
+}
+
+// Next-event estimation side by side is what the choice of a light, its sample and the BSDF say one by one.
+void expectLightOfEachPath(const std::string& bsdf, const std::string& lights, Random& random) {
+  const auto scene = loadScene(kCamera + rectangle(bsdf) + lights);
+  const LightSampler sampler(scene->emitters());
+  PathSettings settings;
+  settings.scene = scene.get();
+  settings.lights = &sampler;
+  Arrivals arrivals(*scene);
+  const auto bounces = std::make_unique<Bounces>();
+  size_t expectedLit = 0, foundLit = 0;
+  for (int round = 0; round < 100; ++round) {
+    arrivals.fill(*bounces, random);
+    readSurfaces(*bounces);
+    prepareDirections(settings, *bounces);
+    const LaneList lit = sampleLights(settings, *bounces);
+    weighLights(*bounces, lit);
+    foundLit += lit.count;
+    std::array<bool, kLanes> isLit{};
+    for (const size_t i : lit) isLit[i] = true;
+    for (size_t i = 0; i < kCount; ++i) {
+      const auto& [at, wo] = *bounces->arrivals[i].vertex;
+      const VertexNumbers& numbers = bounces->numbers;
+      const LightSampler::Choice choice = sampler.sample(lightReference(at, wo), numbers.lightChoice[i],
+                                                         Vec2(numbers.lightU[i], numbers.lightV[i]));
+      if (!choice.emitter) continue;
+      const EmitterSample sample = choice.emitter->sample(choice.part, at.p, choice.u);
+      const BsdfValue value = at.shape->bsdf().evaluate(at, wo, at.shading.toLocal(sample.wi));
+      const bool expected = sample.pdf > 0 && !isBlack(sample.radiance) && !isBlack(value.value);
+      EXPECT_EQ(isLit[i], expected) << bsdf << lights;
+      expectedLit += expected;
+      if (!expected || !isLit[i]) continue;
+      const LightEstimates& light = bounces->light;
+      const float pdf = sample.pdf * choice.probability;
+      const float weight = sample.delta ? 1.0f : powerHeuristic(pdf, value.pdf);
+      EXPECT_EQ(light.wi[i], sample.wi);
+      EXPECT_EQ(light.distance[i], sample.distance);
+      EXPECT_EQ(light.pdf[i], sample.delta ? 0 : pdf);
+      EXPECT_EQ(light.bsdfPdf[i], value.pdf);
+      EXPECT_EQ(light.guidablePdf[i], value.guidablePdf);
+      EXPECT_EQ(Rgb(light.radiance[i]), value.value * sample.radiance / pdf);
+      EXPECT_EQ(Rgb(light.direct[i]), value.value * sample.radiance / pdf * weight);
+    }
+  }
+  EXPECT_EQ(foundLit, expectedLit);
+  EXPECT_GT(foundLit, 300u) << bsdf << lights;
+}
+
+TEST(Lights, AreThoseOfEachPath) {
+  Random random(3);
+  const std::string square =
+      "<shape type=\"rectangle\"><transform name=\"to_world\"><scale value=\"0.5\"/>"
+      "<rotate x=\"1\" angle=\"180\"/><translate z=\"4.5\"/></transform><emitter type=\"area\"/></shape>";
+  const std::string ball =
+      "<shape type=\"sphere\"><point name=\"center\" x=\"3\" y=\"0\" z=\"5\"/><emitter "
+      "type=\"area\"/></shape>";
+  const std::string point =
+      "<emitter type=\"point\"><point name=\"position\" x=\"-3\" y=\"0\" z=\"5\"/></emitter>";
+  const std::string sky = "<emitter type=\"constant\"/>";
+  for (const char* bsdf : kSurfaces)
+    for (const std::string& lights : {square, square + ball + point, sky, square + ball + point + sky})
+      expectLightOfEachPath(bsdf, lights, random);
 }
 
 }  // namespace

@@ -51,6 +51,21 @@ struct BsdfFeatures {
   float roughness = 1;  // alpha in [0, 1] of the lobe that matters most; 0 for delta, 1 for diffuse
 };
 
+class RgbParameter;
+
+// How a Lambertian surface scatters: `reflectance` / pi on one side.
+struct DiffuseReflection {
+  Rgb reflectance{0, 0, 0};
+  float side = 0;  // of the shading normal: 1 or -1; 0 if nothing is scattered
+};
+
+// One side of a surface. If it is a Lambertian one it scatters to `side` of the shading normal: 1 the front,
+// -1 the back, 0 nowhere.
+struct DiffuseSide {
+  const RgbParameter* reflectance = nullptr;  // null: some other BSDF
+  float side = 0;
+};
+
 // Static properties, fixed at construction.
 struct BsdfTraits {
   bool evaluable = true;      // has smooth or nearDelta lobes somewhere, so next-event estimation makes sense
@@ -80,10 +95,16 @@ class Bsdf {
   // That of features() alone, for those that know it without looking at textures.
   virtual float roughness(const SurfacePoint& at, const Vec3& wo) const { return features(at, wo).roughness; }
 
+  // Whether all that the functions above say here is what they say of a Lambertian surface, and of which, so
+  // that callers may work it out by themselves. Defined in parameter.h.
+  bool isDiffuse(const SurfacePoint& at, const Vec3& wo, DiffuseReflection& reflection) const;
+  const DiffuseSide& diffuseSide(bool back) const { return m_diffuse[back]; }
+
   const BsdfTraits& traits() const { return m_traits; }
 
  protected:
   BsdfTraits m_traits;
+  DiffuseSide m_diffuse[2];  // front and back
 };
 
 using BsdfPtr = std::shared_ptr<const Bsdf>;

@@ -14,6 +14,8 @@ class Diffuse final : public Bsdf {
  public:
   explicit Diffuse(RgbParameter reflectance) : m_reflectance(std::move(reflectance)) {
     m_traits.choosesLobes = false;
+    m_diffuse[0] = {&m_reflectance, 1};
+    m_diffuse[1] = {&m_reflectance, 0};
   }
 
   BsdfSample sample(const SurfacePoint& at, const Vec3& wo, float, const Vec2& u) const override {

@@ -37,6 +37,13 @@ class RgbParameter {
   bool m_clamped = false;  // to [0, 1]
 };
 
+inline bool Bsdf::isDiffuse(const SurfacePoint& at, const Vec3& wo, DiffuseReflection& reflection) const {
+  const auto& [reflectance, side] = m_diffuse[!(wo.z >= 0)];
+  if (!reflectance) return false;
+  reflection = {(*reflectance)(at), std::abs(wo.z) > 0 ? side : 0.0f};
+  return true;
+}
+
 class ScalarParameter {
  public:
   ScalarParameter(float constant = 0) : m_mean(constant) {}

@@ -11,6 +11,9 @@ class TwoSided final : public Bsdf {
  public:
   TwoSided(BsdfPtr front, BsdfPtr back) : m_sides{std::move(front), std::move(back)} {
     m_traits = m_sides[0]->traits() | m_sides[1]->traits();
+    m_diffuse[0] = m_sides[0]->diffuseSide(false);
+    m_diffuse[1] = m_sides[1]->diffuseSide(false);
+    m_diffuse[1].side *= -1;
   }
 
   BsdfSample sample(const SurfacePoint& at, const Vec3& wo, float uLobe, const Vec2& u) const override {

@@ -16,36 +16,41 @@ struct alignas(64) LightTriangle {
   Rgb radiance;
 };
 
-// Up to kLanes samples. What find() finds of each is what the emitter's sample() does.
+// Samples of lights for several paths: EmitterSample, in columns.
+struct LightSamples {
+  Columns3 wi, radiance;
+  Column distance, pdf;
+  IntColumn delta;
+
+  void set(size_t lane, const EmitterSample& sample) {
+    wi.set(lane, sample.wi);
+    radiance.set(lane, sample.radiance);
+    distance[lane] = sample.distance;
+    pdf[lane] = sample.pdf;
+    delta[lane] = sample.delta;
+  }
+};
+
+// The triangles that lanes sample.
 class LightTriangles {
  public:
-  size_t size() const { return m_count; }
-  // Adds a sample of a triangle, for u in [0, 1)^2, to be seen from `ref`.
-  void add(const LightTriangle& triangle, const Vec2& u, const Vec3& ref) {
-    m_triangles[m_count] = &triangle;
-    m_u[m_count] = u.x;
-    m_v[m_count] = u.y;
-    m_ref.set(m_count, ref);
-    ++m_count;
+  LightTriangles();
+  bool empty() const { return m_empty; }
+  // A lane samples a triangle, for u in [0, 1)^2.
+  void set(size_t lane, const LightTriangle& triangle, const Vec2& u) {
+    m_triangles[lane] = &triangle;
+    m_u[lane] = u.x;
+    m_v[lane] = u.y;
+    m_empty = false;
   }
-  void find();
-  EmitterSample operator[](size_t lane) const {
-    return {.wi = m_wi[lane], .distance = m_distance[lane], .radiance = m_radiance[lane], .pdf = m_pdf[lane]};
-  }
+  // What the emitters' sample() finds of the first `count` lanes, seen from `ref`. The density is 0 behind a
+  // triangle and where a lane has none.
+  void find(size_t count, const Columns3& ref, LightSamples& samples) const;
 
  private:
-  static void findPoints(LightTriangles& of);
-
-  size_t m_count = 0;
+  bool m_empty = true;
   std::array<const LightTriangle*, kLanes> m_triangles;
-  Column m_u, m_v;
-  Columns3 m_ref;
-  // The triangles, in columns.
-  Columns3 m_corners[3], m_normal, m_radiance;
-  Column m_area;
-  // What find() computes.
-  Columns3 m_wi;
-  Column m_distance, m_pdf;  // the latter zero behind the triangle
+  Column m_u{}, m_v{};
 };
 
 }  // namespace odis::render

@@ -5,6 +5,7 @@
 #include <xmmintrin.h>
 
 #include <cstddef>
+#include <cstdint>
 
 #include "render/math/vec.h"
 
@@ -24,6 +25,29 @@ struct alignas(64) Column {
 
   float& operator[](size_t lane) { return of[lane]; }
   float operator[](size_t lane) const { return of[lane]; }
+};
+
+// An integer of each; as a mask it is 0 where something is not so.
+struct alignas(64) IntColumn {
+  int32_t of[kLanes];
+
+  int32_t& operator[](size_t lane) { return of[lane]; }
+  int32_t operator[](size_t lane) const { return of[lane]; }
+};
+
+// Some of the lanes.
+struct LaneList {
+  uint8_t lanes[kLanes];
+  size_t count = 0;
+
+  // Without a branch, which would often be mispredicted.
+  void addIf(bool belongs, size_t lane) {
+    lanes[count] = uint8_t(lane);
+    count += belongs;
+  }
+  bool empty() const { return count == 0; }
+  const uint8_t* begin() const { return lanes; }
+  const uint8_t* end() const { return lanes + count; }
 };
 
 // A vector of each.
@@ -49,6 +73,19 @@ void toColumns(size_t first, const Row& row, float* a, float* b, float* c, float
   _mm_store_ps(b + first, r1);
   _mm_store_ps(c + first, r2);
   _mm_store_ps(d + first, r3);
+}
+
+// The way back: row(lane) says where the four numbers go.
+template <class Row>
+void fromColumns(size_t first, const Row& row, const float* a, const float* b, const float* c,
+                 const float* d) {
+  __m128 r0 = _mm_load_ps(a + first), r1 = _mm_load_ps(b + first), r2 = _mm_load_ps(c + first),
+         r3 = _mm_load_ps(d + first);
+  _MM_TRANSPOSE4_PS(r0, r1, r2, r3);
+  _mm_storeu_ps(row(first), r0);
+  _mm_storeu_ps(row(first + 1), r1);
+  _mm_storeu_ps(row(first + 2), r2);
+  _mm_storeu_ps(row(first + 3), r3);
 }
 
 }  // namespace odis::render

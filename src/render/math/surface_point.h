@@ -11,20 +11,30 @@ class Shape;
 class Texture;
 
 struct SurfacePoint {
+  // Paths read these in rows of four numbers.
   Vec3 p;                   // world space
   Vec3 ng;                  // unit geometric normal, on the side that the shape calls its outside
   CoordinateFrame shading;  // unit shading frame; n points to the same side as ng, s follows dpdu
   Vec2 uv;                  // texture coordinates
-  Vec3 dpdu, dpdv;  // world-space partial derivatives of p with respect to uv (zero where there are none)
-  float time = 0;   // of the ray that met it
-  const Shape* shape = nullptr;
+  float time = 0;           // of the ray that met it
+  Vec2 barycentric;         // (b1, b2) on a triangle
+
   uint32_t primitive = 0;  // triangle of a mesh; 0 for analytic shapes
-  Vec2 barycentric;        // (b1, b2) on a triangle
-  float pError = 0;        // how far p may be off the surface, set by shapes for Scene::spawn()
+  const Shape* shape = nullptr;
+  // World-space partial derivatives of p with respect to uv; zero where there are none.
+  Vec3 dpdu{0, 0, 0}, dpdv{0, 0, 0};
 
   // The latest look-up in a texture at this uv: light, direction and features ask for the same one.
   mutable const Texture* texture = nullptr;
   mutable Rgb textureValue;
+
+  float pError = 0;  // how far p may be off the surface, set by shapes for Scene::spawn()
+};
+
+// Where a path met a surface.
+struct Vertex {
+  SurfacePoint at;
+  Vec3 wo;  // towards where the path came from, in the shading frame; a row of four numbers with at.pError
 };
 
 }  // namespace odis::render

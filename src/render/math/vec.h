@@ -59,7 +59,7 @@ inline float luminance(const Rgb& c) {
   return 0.212671f * c.x + 0.715160f * c.y + 0.072169f * c.z;
 }
 inline float maxComponent(const Rgb& c) {
-  return std::max({c.x, c.y, c.z});
+  return std::max(std::max(c.x, c.y), c.z);
 }
 inline float average(const Rgb& c) {
   return (c.x + c.y + c.z) * (1.0f / 3.0f);

@@ -23,12 +23,12 @@ inline Vec2 squareToDisk(const Vec2& u) {
   const bool nearX = std::abs(x) > std::abs(y);
   float r = y, other = x;
   swapIf(nearX, r, other);
-  if (r == 0.0f) return {0.0f, 0.0f};
+  const bool isCentre = r == 0.0f;
   const float t = (kPi / 4) * (other / r), t2 = t * t;
   float along = r * (1 + t2 * (-1.0f / 2 + t2 * (1.0f / 24 + t2 * (-1.0f / 720 + t2 * (1.0f / 40320)))));
   float across = r * t * (1 + t2 * (-1.0f / 6 + t2 * (1.0f / 120 + t2 * (-1.0f / 5040))));
   swapIf(nearX, across, along);
-  return {across, along};
+  return {isCentre ? 0.0f : across, isCentre ? 0.0f : along};
 }
 
 // Cosine-weighted on the hemisphere z > 0; solid-angle density cos(theta)/pi.

@@ -8,56 +8,98 @@
 
 namespace odis::render {
 
-// Next-event estimation at a vertex, before it is known whether something hides the light.
-struct LightEstimate {
-  Rgb radiance{0, 0, 0};       // outgoing, without MIS weight: f |cos| Le / pdf
-  Vec3 wi{0, 0, 1};            // world space
-  float distance = 0;          // to the light
-  float pdf = 0;               // with respect to solid angle; 0 where MIS does not apply
-  BsdfValue bsdf;              // in direction wi
-  uint32_t group = 0;          // group of lights that the light was drawn from
-  float groupProbability = 0;  // of that group
-  int32_t texel = 0;           // of the map there that wi falls into
+// Random numbers in [0, 1) that what follows is decided by, as far as any are asked for.
+struct VertexNumbers {
+  Column lightChoice;             // chooses a light
+  Column lightU, lightV;          // sample a point or direction of it
+  Column lobe;                    // chooses a lobe of the BSDF
+  Column directionU, directionV;  // sample a direction
+  Column survival;                // decides whether the path goes on
+  Column shadowRay;               // and whether the light is asked for
 };
 
-// One path as it arrives at one vertex.
-struct Arrival {
-  Path* path;
-  uint32_t index;        // of the path in the batch
-  const Vertex* vertex;  // without a shape where the ray left the scene
-  uint32_t cell;         // of the guide, or kNoCell
-  float guidable;        // Bsdf::guidableProbability() of the vertex, where anybody asks
-  int depth;             // 1 for the first vertex
-  bool scatters;         // whether the path goes on to be scattered here
+// Where paths are scattered.
+struct Surfaces {
+  Columns3 p, ng;    // see SurfacePoint
+  Columns3 s, t, n;  // the shading frame
+  Columns3 wo;       // see Vertex
+  Columns3 facing;   // facingNormal()
+  Column pError;
+  const Bsdf* bsdfs[kLanes];
+  // Where the BSDF is that of a Lambertian surface, which costs no virtual calls: how it scatters.
+  IntColumn isDiffuse;
+  Columns3 reflectance;
+  Column side;
 };
 
-// How the next direction of a path is drawn where a map guides the vertex.
-struct DirectionDraw {
-  bool fromMap;      // from the map, unless the BSDF draws a lobe that is not guided; else from the BSDF
-  float u;           // draws the direction, together with VertexNumbers::direction.y
-  int32_t block;     // of the map: the one that was chosen
-  Vec2 withinBlock;  // the numbers that sample within it
+// Next-event estimation, before it is known whether something hides the light.
+struct LightEstimates {
+  Columns3 radiance;            // outgoing, without MIS weight: f |cos| Le / pdf
+  Columns3 wi;                  // world space
+  Column distance;              // to the light
+  Column pdf;                   // with respect to solid angle; 0 where MIS does not apply
+  Column bsdfPdf;               // of the BSDF in direction wi
+  Column guidablePdf;           // and the part of it that may be guided
+  IntColumn group;              // of lights that the light was drawn from
+  Column groupProbability;      // of that group
+  IntColumn texel;              // of the map there that wi falls into
+  Columns3 direct;              // the radiance with the MIS weight
+  Column shadowRayProbability;  // with which the shadow ray was traced; 0: it was not
 };
 
-// The same from its arrival to its departure. Steps fill it in one after another.
-struct Bounce : Arrival {
-  VertexNumbers numbers;       // random ones, that what follows is decided by
-  GuidedBsdf bsdf;             // that directions are sampled from
-  LightReference reference;    // that the choice of lights depends on
-  LightEstimate light;         // next-event estimation, where sampleLights() found a light
-  Rgb direct;                  // its radiance with the MIS weight, likewise
-  float shadowRayProbability;  // with which the shadow ray was traced; 0: it was not
-  DirectionDraw draw;          // where the next direction comes from, if there is a map
-  BsdfSample next;             // the sampled direction
-  Rgb weight;                  // of that direction, divided by `survival`; black if the path ends
-  float survival;              // probability with which roulette by throughput lets the path go on
-  bool survives;
+// How next directions are drawn.
+struct DirectionDraws {
+  IntColumn fromMap;                  // from the map, unless the BSDF draws a lobe that is not guided
+  Column u;                           // draws the direction, together with VertexNumbers::directionV
+  IntColumn block;                    // of the map: the one that was chosen
+  Column withinBlockU, withinBlockV;  // the numbers that sample within it
 };
 
-// Steps are taken by a few paths at a time: as many as the first-level cache holds, so that each finds what
-// the step before it left.
-inline constexpr size_t kBounceBlock = SamplerBlock::kSize;
-static_assert(kBounceBlock <= DirectionGuide::kVerticesAtOnce);
+// The sampled directions: see BsdfSample.
+struct NextDirections {
+  Columns3 wi;  // in the shading frame
+  Columns3 weight;
+  Column pdf, guidablePdf, eta;
+  IntColumn lobe;  // Lobe
+
+  void set(size_t lane, const BsdfSample& sample) {
+    wi.set(lane, sample.wi);
+    weight.set(lane, sample.weight);
+    pdf[lane] = sample.pdf;
+    guidablePdf[lane] = sample.guidablePdf;
+    eta[lane] = sample.eta;
+    lobe[lane] = int32_t(sample.lobe);
+  }
+  Lobe lobeAt(size_t lane) const { return Lobe(lobe[lane]); }
+  BsdfSample operator[](size_t lane) const {
+    return {wi[lane], Rgb(weight[lane]), pdf[lane], guidablePdf[lane], eta[lane], lobeAt(lane)};
+  }
+};
+
+// Some paths from their arrival at vertices of one depth to their departure: as many as the first-level cache
+// holds, so that each step finds what the step before it left. Steps fill in one column after another; lanes
+// from `count` on hold anything.
+struct Bounces {
+  int depth = 0;     // 1 for the first vertex
+  size_t count = 0;  // of the paths
+  std::array<Arrival, kLanes> arrivals;
+
+  Columns3 throughput;  // of the paths, up to the vertices
+  VertexNumbers numbers;
+  Surfaces at;
+  GuidedBsdfs bsdfs;                              // that directions are sampled from
+  std::array<LightReference, kLanes> references;  // that the choices of lights depend on
+  LightEstimates light;
+  DirectionDraws draws;
+  NextDirections next;
+  Columns3 weight;  // of these directions, divided by `survival`; black if the path ends
+  Column survival;  // probability with which roulette by throughput lets the path go on
+  IntColumn survives;
+
+  std::span<Arrival> arriving() { return {arrivals.data(), count}; }
+};
+static_assert(kLanes <= DirectionGuide::kVerticesAtOnce);
+static_assert(kLanes == SamplerBlock::kSize);
 
 // A shadow ray adds this radiance to its path if nothing is in the way.
 struct ShadowRay {
@@ -83,8 +125,9 @@ struct Batch {
   std::vector<Place> places;      // of the vertices that may have one
   std::vector<uint32_t> placed;   // which those are
   std::vector<uint32_t> found;    // their cells
-  std::array<Bounce, kBounceBlock> bounces;
-  SamplerBlock samplers;  // those of the bounces' paths
+  Bounces bounces;
+  SamplerBlock samplers;   // those of the bounces' paths
+  size_t shadowCount = 0;  // of the shadow rays that have been asked for
   std::vector<ShadowRay> shadowRays;
   std::vector<Ray> shadowSegments;  // theirs
   std::vector<uint8_t> hidden;
@@ -102,62 +145,50 @@ struct Batch {
     met.resize(count);
     buckets.resize(count);
     survives.resize(count);
+    shadowRays.resize(count + 1);  // room for one that is not asked for
+    shadowSegments.resize(count + 1);
+    hidden.resize(count + 1);
   }
   std::span<const uint32_t> surfaces() const { return {order.data(), metCount}; }
 };
 
-using Bounces = std::span<Bounce>;
-
-// Some of the bounces.
-struct BounceList {
-  std::array<Bounce*, kBounceBlock> list;
-  size_t count = 0;
-
-  // Without a branch, which would often be mispredicted.
-  void addIf(bool belongs, Bounce& bounce) {
-    list[count] = &bounce;
-    count += belongs;
-  }
-  Bounce* const* begin() const { return list.data(); }
-  Bounce* const* end() const { return list.data() + count; }
-};
-
 // Adds the emission that rays met, weighted against next-event estimation where that could have found it
 // too. Paths go on where they met a surface and are not too deep.
-void meetEmission(const PathSettings& settings, Batch& batch, Bounces bounces);
+void meetEmission(const PathSettings& settings, Batch& batch, Bounces& bounces);
 // Finds out how often the BSDFs draw from lobes that may be guided.
-void findGuidableLobes(const PathSettings& settings, Batch& batch, Bounces bounces);
+void findGuidableLobes(const PathSettings& settings, Batch& batch, Bounces& bounces);
 // Ends paths with the cached radiance of where they arrive, if the guide may (odis::cachedRadiance).
-void endInCache(const PathSettings& settings, Batch& batch, Bounces bounces);
+void endInCache(const PathSettings& settings, Batch& batch, Bounces& bounces);
 // Lets paths go on by what is known to come back from here. Paths that end add the cell's mean outgoing
 // radiance instead of what they would have found.
-void playRouletteOnArrival(const PathSettings& settings, Batch& batch, Bounces bounces);
-// Moves the paths that are scattered to the front, in their order, and returns them. All steps from here on
-// are theirs.
-Bounces keepScattered(Bounces bounces);
+void playRouletteOnArrival(const PathSettings& settings, Batch& batch, Bounces& bounces);
+// Keeps the paths that are scattered, in their order. All steps from here on are theirs.
+void keepScattered(Bounces& bounces);
+// Brings the surfaces into columns.
+void readSurfaces(Bounces& bounces);
 // Draws the random numbers that the steps from here on need.
-void drawNumbers(const PathSettings& settings, Batch& batch, Bounces bounces);
+void drawNumbers(const PathSettings& settings, Batch& batch, Bounces& bounces);
 // Finds out what directions are sampled from.
-void prepareDirections(const PathSettings& settings, Bounces bounces);
+void prepareDirections(const PathSettings& settings, Bounces& bounces);
 // Counts the vertices of each path that may be guided, this one included.
-void countGuidable(Bounces bounces);
-// Chooses lights and points on them; returns the bounces that these light if nothing hides them.
-BounceList sampleLights(const PathSettings& settings, Bounces bounces);
+void countGuidable(Bounces& bounces);
+// Chooses lights and points on them; returns the paths that these light if nothing hides them.
+LaneList sampleLights(const PathSettings& settings, Bounces& bounces);
 // Chooses between BSDF and map, and a block of the map.
-void chooseBlocks(Bounces bounces);
+void chooseBlocks(Bounces& bounces);
 // Weighs what lights give against sampling directions.
-void weighLights(const BounceList& lit);
-void sampleDirections(Bounces bounces);
+void weighLights(Bounces& bounces, const LaneList& lit);
+void sampleDirections(Bounces& bounces);
 // Notes features of the first vertex whose direction is not discrete.
-void describeFirstHits(const PathSettings& settings, Bounces bounces);
+void describeFirstHits(const PathSettings& settings, Bounces& bounces);
 // Ends paths by their throughput where nothing was learned, as Mitsuba does.
-void playRouletteOnDeparture(const PathSettings& settings, Bounces bounces);
+void playRouletteOnDeparture(const PathSettings& settings, Bounces& bounces);
 // Asks for shadow rays, though not always where the light would add little to the pixel.
-void requestShadowRays(const PathSettings& settings, Batch& batch, const BounceList& lit);
+void requestShadowRays(const PathSettings& settings, Batch& batch, Bounces& bounces, const LaneList& lit);
 // Tells the recorder what happened.
-void recordBounces(Batch& batch, Bounces bounces);
+void recordBounces(Batch& batch, const Bounces& bounces);
 // Gives each path that survives its next ray.
-void departRays(Bounces bounces);
+void departRays(Bounces& bounces);
 
 // Traces the shadow rays of a bounce: adds the light that nothing hides.
 void traceShadowRays(const Scene& scene, std::span<Path> paths, Batch& batch);

@@ -1,171 +1,268 @@
 // Next-event estimation: the choice of a light, its MIS weight, shadow rays.
+#include <odis/instruction_sets.h>
+
 #include "render/emitter/light_triangles.h"
 #include "render/emitter/moving_light.h"
+#include "render/math/warp.h"
 #include "render/path/bounce.h"
+#include "render/scene/spawn.h"
 
 namespace odis::render {
-
-namespace {
-
-// Fills in what a sample of a light, chosen with a probability, brings to a vertex, unless that is black.
-void estimateLight(Bounce& bounce, const EmitterSample& light, float probability, BounceList& lit) {
-  if (!(light.pdf > 0) || isBlack(light.radiance)) return;
-  const auto& [at, wo] = *bounce.vertex;
-  LightEstimate& result = bounce.light;
-  result.wi = light.wi;
-  result.distance = light.distance;
-  result.bsdf = at.shape->bsdf().evaluate(at, wo, at.shading.toLocal(light.wi));
-  result.radiance = result.bsdf.value * light.radiance / (light.pdf * probability);
-  result.pdf = light.delta ? 0 : light.pdf * probability;
-  lit.addIf(!isBlack(result.bsdf.value), bounce);
-}
-
-// The weight of next-event estimation against the mixture that directions are sampled from; `mapPdf` is what
-// the map that guides gives the light's direction, if one does.
-float misWeight(const LightEstimate& light, const GuidedBsdf& bsdf, float mapPdf) {
-  if (!(light.pdf > 0)) return 1;
-  return powerHeuristic(light.pdf, bsdf.pdf(light.bsdf, light.wi, mapPdf));
-}
-
-using Choices = std::array<LightSampler::Choice, kBounceBlock>;
-
-EmitterSample sampleChosen(const Bounce& bounce, const LightSampler::Choice& choice) {
-  const SurfacePoint& at = bounce.vertex->at;
-  return sampleLightAt(at.time, *choice.emitter, choice.part, at.p, choice.u);
-}
-
-// Samples one of the environments for those of the bounces that chose it.
-void sampleEnvironment(const Emitter& environment, std::span<const size_t> which,
-                       const std::array<Bounce*, kBounceBlock>& choosing, const Choices& choices,
-                       BounceList& lit) {
-  std::array<LightDraw, kBounceBlock> draws;
-  std::array<EmitterSample, kBounceBlock> samples;
-  for (size_t k = 0; k < which.size(); ++k) {
-    draws[k] = {0, choosing[which[k]]->vertex->at.p, choices[which[k]].u};
-    if (environment.motion()) samples[k] = sampleChosen(*choosing[which[k]], choices[which[k]]);
-  }
-  if (!environment.motion()) environment.sampleEach(std::span(draws.data(), which.size()), samples);
-  for (size_t k = 0; k < which.size(); ++k)
-    estimateLight(*choosing[which[k]], samples[k], choices[which[k]].probability, lit);
-}
-
-// Whether the map that guides a vertex is asked for the density of its light's direction.
-bool hasMapPdf(const Bounce& bounce) {
-  return bounce.light.pdf > 0 && bounce.bsdf.map();
-}
-
-// Finds the texels of lights' directions, which are fetched while other steps are taken.
-void fetchTexels(const BounceList& lit) {
-  MapLookUps lookUps;
-  for (const Bounce* bounce : lit)
-    if (hasMapPdf(*bounce)) lookUps.add(*bounce->bsdf.map(), bounce->light.wi);
-  findTexels(lookUps);
-  const int32_t* texel = lookUps.texels;
-  for (Bounce* bounce : lit)
-    if (hasMapPdf(*bounce)) bounce->light.texel = *texel++;
-}
-
-}  // namespace
 
 LightReference lightReference(const SurfacePoint& at, const Vec3& wo) {
   return {at.p, facingNormal(at, wo), at.shape->bsdf().traits().transmissive};
 }
 
-BounceList sampleLights(const PathSettings& settings, Bounces bounces) {
-  // The bounces that choose a light, and what they choose.
-  std::array<Bounce*, kBounceBlock> choosing;
-  std::array<LightSampler::Request, kBounceBlock> requests;
-  Choices choices;
-  size_t count = 0;
-  for (Bounce& bounce : bounces) {
-    const Vertex& vertex = *bounce.vertex;
-    bounce.shadowRayProbability = 0;
-    bounce.reference = lightReference(vertex.at, vertex.wo);
-    if (settings.learnedLights && bounce.cell != kNoCell)
-      bounce.reference.learned = learnedLights(*settings.guide, bounce.cell);
-    if (!vertex.at.shape->bsdf().traits().evaluable) continue;
-    choosing[count] = &bounce;
-    requests[count++] = {&bounce.reference, bounce.numbers.lightChoice, bounce.numbers.lightPoint};
-  }
-  settings.lights->sample({requests.data(), count}, choices);
+namespace {
 
-  BounceList lit;
+// What lanes choose, and the points of lights that they sample.
+struct ChosenLights {
+  std::array<LightSampler::Choice, kLanes> choices;
+  Column probability;  // of the choice
+  LightSamples samples;
+};
+
+// Chooses lights for all that may be lit; false if none of them may.
+bool chooseLights(const PathSettings& settings, Bounces& bounces, ChosenLights& lights) {
+  const VertexNumbers& numbers = bounces.numbers;
+  const Surfaces& at = bounces.at;
+  std::array<LightSampler::Request, kLanes> requests;
+  LaneList unlit;
+  for (size_t i = 0; i < bounces.count; ++i) {
+    const BsdfTraits& traits = at.bsdfs[i]->traits();
+    LightReference& reference = bounces.references[i];
+    reference = {at.p[i], at.facing[i], traits.transmissive};
+    if (const uint32_t cell = bounces.arrivals[i].cell; settings.learnedLights && cell != kNoCell)
+      reference.learned = learnedLights(*settings.guide, cell);
+    requests[i] = {&reference, numbers.lightChoice[i], Vec2(numbers.lightU[i], numbers.lightV[i])};
+    unlit.addIf(!traits.evaluable, i);
+  }
+  if (unlit.count == bounces.count) return false;
+  settings.lights->sample({requests.data(), bounces.count}, lights.choices);
+  for (const size_t i : unlit) lights.choices[i].emitter = nullptr;
+  return true;
+}
+
+EmitterSample sampleChosen(const Bounces& bounces, size_t lane, const LightSampler::Choice& choice) {
+  const SurfacePoint& at = bounces.arrivals[lane].vertex->at;
+  return sampleLightAt(at.time, *choice.emitter, choice.part, at.p, choice.u);
+}
+
+// Samples one of the environments in the lanes that chose it.
+void sampleEnvironment(const Emitter& environment, const Bounces& bounces, std::span<const uint8_t> lanes,
+                       ChosenLights& lights) {
+  std::array<LightDraw, kLanes> draws;
+  std::array<EmitterSample, kLanes> samples;
+  for (size_t k = 0; k < lanes.size(); ++k) {
+    const LightSampler::Choice& choice = lights.choices[lanes[k]];
+    draws[k] = {0, bounces.at.p[lanes[k]], choice.u};
+    if (environment.motion()) samples[k] = sampleChosen(bounces, lanes[k], choice);
+  }
+  if (!environment.motion()) environment.sampleEach(std::span(draws.data(), lanes.size()), samples);
+  for (size_t k = 0; k < lanes.size(); ++k) lights.samples.set(lanes[k], samples[k]);
+}
+
+// Samples points or directions of the lights that were chosen.
+void samplePoints(Bounces& bounces, ChosenLights& lights) {
   LightTriangles triangles;
-  // For each of the triangles, and for each sample of an environment, the index of the choice that drew it.
-  std::array<size_t, kBounceBlock> byTriangles, byEnvironments;
-  size_t environmentCount = 0;
-  for (size_t i = 0; i < count; ++i) {
-    LightSampler::Choice& choice = choices[i];
+  LaneList environments, others, dark;
+  for (size_t i = 0; i < bounces.count; ++i) {
+    LightSampler::Choice& choice = lights.choices[i];
+    dark.addIf(!choice.emitter, i);
+    lights.probability[i] = choice.probability;
     if (!choice.emitter) continue;
-    choosing[i]->light.group = choice.group;
-    choosing[i]->light.groupProbability = choice.groupProbability();
+    bounces.light.group[i] = int32_t(choice.group);
+    bounces.light.groupProbability[i] = choice.groupProbability();
     const LightTriangle* triangle =
         choice.emitter->motion() ? nullptr : choice.emitter->drawTriangle(choice.part, choice.u);
-    if (triangle) {
-      byTriangles[triangles.size()] = i;
-      triangles.add(*triangle, choice.u, choosing[i]->vertex->at.p);
-    } else if (choice.emitter->partCount() == 0) {
-      byEnvironments[environmentCount++] = i;
-    } else {
-      estimateLight(*choosing[i], sampleChosen(*choosing[i], choice), choice.probability, lit);
-    }
+    if (triangle)
+      triangles.set(i, *triangle, choice.u);
+    else
+      (choice.emitter->partCount() == 0 ? environments : others).addIf(true, i);
   }
-  for (std::span<size_t> rest(byEnvironments.data(), environmentCount); !rest.empty();) {
-    const Emitter* environment = choices[rest.front()].emitter;
-    const auto others =
-        std::partition(rest.begin(), rest.end(), [&](size_t i) { return choices[i].emitter == environment; });
-    sampleEnvironment(*environment, {rest.begin(), others}, choosing, choices, lit);
-    rest = {others, rest.end()};
+  if (!triangles.empty()) triangles.find(bounces.count, bounces.at.p, lights.samples);
+  for (const size_t i : dark) lights.samples.pdf[i] = 0;
+  for (const size_t i : others) lights.samples.set(i, sampleChosen(bounces, i, lights.choices[i]));
+  for (std::span<uint8_t> rest(environments.lanes, environments.count); !rest.empty();) {
+    const Emitter* environment = lights.choices[rest.front()].emitter;
+    const auto end = std::partition(rest.begin(), rest.end(),
+                                    [&](size_t i) { return lights.choices[i].emitter == environment; });
+    sampleEnvironment(*environment, bounces, {rest.begin(), end}, lights);
+    rest = {end, rest.end()};
   }
-  if (triangles.size() > 0) triangles.find();
-  for (size_t i = 0; i < triangles.size(); ++i)
-    estimateLight(*choosing[byTriangles[i]], triangles[i], choices[byTriangles[i]].probability, lit);
-  fetchTexels(lit);
+}
+
+// What Lambertian surfaces scatter of the samples. `arrives` is whether a sample brings light at all.
+ODIS_WIDE void estimateAtDiffuse(const LightSamples& samples, Bounces& bounces, IntColumn& arrives) {
+  LightEstimates& light = bounces.light;
+  const Surfaces& at = bounces.at;
+  for (size_t i = 0, end = endOfLanes(bounces.count); i < end; ++i) {
+    const Vec3 wi = samples.wi[i];
+    const float pdf = cosineHemispherePdf(at.side[i] * dot(wi, at.n[i]));
+    light.wi.set(i, wi);
+    light.distance[i] = samples.distance[i];
+    light.radiance.set(i, at.reflectance[i] * pdf);  // the value of the BSDF, for the moment
+    light.bsdfPdf[i] = light.guidablePdf[i] = pdf;
+    arrives[i] = (samples.pdf[i] > 0) & !isBlack(Rgb(samples.radiance[i]));
+  }
+}
+
+void estimateElsewhere(const LaneList& lanes, Bounces& bounces) {
+  LightEstimates& light = bounces.light;
+  for (const size_t i : lanes) {
+    const auto& [at, wo] = *bounces.arrivals[i].vertex;
+    const BsdfValue bsdf = bounces.at.bsdfs[i]->evaluate(at, wo, at.shading.toLocal(light.wi[i]));
+    light.radiance.set(i, bsdf.value);
+    light.bsdfPdf[i] = bsdf.pdf;
+    light.guidablePdf[i] = bsdf.guidablePdf;
+  }
+}
+
+// From values of BSDFs to radiance; lanes that are lit remain in `lit`.
+ODIS_WIDE void estimateRadiance(const ChosenLights& lights, Bounces& bounces, IntColumn& lit) {
+  LightEstimates& light = bounces.light;
+  const LightSamples& samples = lights.samples;
+  for (size_t i = 0, end = endOfLanes(bounces.count); i < end; ++i) {
+    const Rgb value(light.radiance[i]);
+    const float pdf = samples.pdf[i] * lights.probability[i];
+    light.radiance.set(i, value * Rgb(samples.radiance[i]) / pdf);
+    light.pdf[i] = samples.delta[i] ? 0.0f : pdf;
+    lit[i] = lit[i] & !isBlack(value);
+  }
+}
+
+// Whether the map that guides a vertex is asked for the density of its light's direction.
+bool hasMapPdf(const Bounces& bounces, size_t lane) {
+  return bounces.light.pdf[lane] > 0 && bounces.bsdfs.hasMap[lane];
+}
+
+// Finds the texels of lights' directions, which are fetched while other steps are taken.
+void fetchTexels(const LaneList& lit, Bounces& bounces) {
+  MapLookUps lookUps;
+  for (const size_t i : lit)
+    if (hasMapPdf(bounces, i)) lookUps.add(bounces.bsdfs.maps[i], bounces.light.wi[i]);
+  findTexels(lookUps);
+  const int32_t* texel = lookUps.texels;
+  for (const size_t i : lit)
+    if (hasMapPdf(bounces, i)) bounces.light.texel[i] = *texel++;
+}
+
+}  // namespace
+
+LaneList sampleLights(const PathSettings& settings, Bounces& bounces) {
+  ChosenLights lights;
+  if (!chooseLights(settings, bounces, lights)) return {};
+  samplePoints(bounces, lights);
+  IntColumn arrives;
+  estimateAtDiffuse(lights.samples, bounces, arrives);
+  LaneList elsewhere, lit;
+  for (size_t i = 0; i < bounces.count; ++i) elsewhere.addIf(arrives[i] & !bounces.at.isDiffuse[i], i);
+  estimateElsewhere(elsewhere, bounces);
+  estimateRadiance(lights, bounces, arrives);
+  for (size_t i = 0; i < bounces.count; ++i) lit.addIf(arrives[i], i);
+  fetchTexels(lit, bounces);
   return lit;
 }
 
-void weighLights(const BounceList& lit) {
-  MapLookUps lookUps;
-  for (const Bounce* bounce : lit)
-    if (hasMapPdf(*bounce)) lookUps.add(*bounce->bsdf.map(), bounce->light.texel);
-  findPdfs(lookUps);
-  const float* mapPdf = lookUps.pdf.of;
-  for (Bounce* bounce : lit)
-    bounce->direct =
-        bounce->light.radiance * misWeight(bounce->light, bounce->bsdf, hasMapPdf(*bounce) ? *mapPdf++ : 0);
+namespace {
+
+// The weights of next-event estimation against the mixtures that directions are sampled from; `mapPdf` is
+// what guides give the lights' directions, where one does.
+ODIS_WIDE void weigh(Bounces& bounces, const Column& mapPdf) {
+  LightEstimates& light = bounces.light;
+  const GuidedBsdfs& bsdfs = bounces.bsdfs;
+  for (size_t i = 0, end = endOfLanes(bounces.count); i < end; ++i) {
+    const Mixture<float> mixture = bsdfs.mixture(i);
+    const float mixed = mixture.pdf(light.bsdfPdf[i], light.guidablePdf[i], mapPdf[i]);
+    const float other = mixture.guides() ? mixed : light.bsdfPdf[i];
+    const float weight = light.pdf[i] > 0 ? powerHeuristic(light.pdf[i], other) : 1.0f;
+    light.direct.set(i, light.radiance[i] * weight);
+  }
 }
 
-void requestShadowRays(const PathSettings& settings, Batch& batch, const BounceList& lit) {
-  for (Bounce* each : lit) {
-    Bounce& bounce = *each;
-    if (isBlack(bounce.direct)) continue;
-    Path& path = *bounce.path;
-    float probability = 1;
-    if (settings.shadowRoulette && bounce.cell != kNoCell)
-      probability = shadowRayProbability(settings.guide->rules,
-                                         luminance(path.throughput * bounce.direct) / path.pixelValue);
-    if (probability < 1 && !(bounce.numbers.shadowRay < probability)) continue;
-    bounce.shadowRayProbability = probability;
-    bounce.direct /= probability;
-    bounce.light.radiance /= probability;
-    ++path.counts.shadowRays;
-    batch.shadowRays.push_back({bounce.index, path.throughput * bounce.direct});
-    batch.shadowSegments.push_back(Scene::spawn(bounce.vertex->at, bounce.light.wi, bounce.light.distance));
+}  // namespace
+
+void weighLights(Bounces& bounces, const LaneList& lit) {
+  if (lit.empty()) return;
+  MapLookUps lookUps;
+  for (const size_t i : lit)
+    if (hasMapPdf(bounces, i)) lookUps.add(bounces.bsdfs.maps[i], bounces.light.texel[i]);
+  findPdfs(lookUps);
+  const float* found = lookUps.pdf.of;
+  Column mapPdf{};
+  for (const size_t i : lit) {
+    if (hasMapPdf(bounces, i)) mapPdf[i] = *found++;
+    if (const DirectionSampler* rival = bounces.bsdfs.rivals[i]) mapPdf[i] = rival->pdf(bounces.light.wi[i]);
+  }
+  weigh(bounces, mapPdf);
+}
+
+namespace {
+
+// Shadow rays of all lanes, and what they bring to the pixels if nothing is in the way.
+struct ShadowRays {
+  Columns3 origin, direction, radiance;
+  Column tMax;
+};
+
+ODIS_WIDE void spawnShadowRays(const Bounces& bounces, ShadowRays& rays) {
+  const Surfaces& at = bounces.at;
+  const LightEstimates& light = bounces.light;
+  for (size_t i = 0, end = endOfLanes(bounces.count); i < end; ++i) {
+    const Ray ray = spawnRay(at.p[i], at.ng[i], at.pError[i], light.wi[i], light.distance[i], 0);
+    rays.origin.set(i, ray.origin);
+    rays.direction.set(i, ray.direction);
+    rays.tMax[i] = ray.tMax;
+    rays.radiance.set(i, bounces.throughput[i] * light.direct[i]);
+  }
+}
+
+// Divides what a shadow ray brings by the probability with which it is traced.
+void playForShadowRay(const PathSettings& settings, Bounces& bounces, size_t i, ShadowRays& rays) {
+  LightEstimates& light = bounces.light;
+  const Arrival& arrival = bounces.arrivals[i];
+  if (arrival.cell == kNoCell) return;
+  const float probability = shadowRayProbability(settings.guide->rules,
+                                                 luminance(Rgb(rays.radiance[i])) / arrival.path->pixelValue);
+  if (probability >= 1) return;
+  light.shadowRayProbability[i] = bounces.numbers.shadowRay[i] < probability ? probability : 0.0f;
+  light.direct.set(i, light.direct[i] / probability);
+  light.radiance.set(i, light.radiance[i] / probability);
+  rays.radiance.set(i, bounces.throughput[i] * light.direct[i]);
+}
+
+}  // namespace
+
+void requestShadowRays(const PathSettings& settings, Batch& batch, Bounces& bounces, const LaneList& lit) {
+  LightEstimates& light = bounces.light;
+  std::fill_n(light.shadowRayProbability.of, kLanes, 0.0f);
+  if (lit.empty()) return;
+  ShadowRays rays;
+  spawnShadowRays(bounces, rays);
+  for (const size_t i : lit) light.shadowRayProbability[i] = isBlack(Rgb(light.direct[i])) ? 0.0f : 1.0f;
+  if (settings.shadowRoulette)
+    for (const size_t i : lit) playForShadowRay(settings, bounces, i, rays);
+  for (const size_t i : lit) {
+    const Arrival& arrival = bounces.arrivals[i];
+    const bool asked = light.shadowRayProbability[i] > 0;
+    batch.shadowRays[batch.shadowCount] = {arrival.index, Rgb(rays.radiance[i])};
+    batch.shadowSegments[batch.shadowCount] = {rays.origin[i], rays.direction[i], rays.tMax[i],
+                                               arrival.vertex->at.time};
+    batch.shadowCount += asked;
+    arrival.path->counts.shadowRays += asked;
   }
 }
 
 void traceShadowRays(const Scene& scene, std::span<Path> paths, Batch& batch) {
-  batch.hidden.resize(batch.shadowRays.size());
-  scene.occluded(batch.shadowSegments, batch.hidden);
-  for (size_t i = 0; i < batch.shadowRays.size(); ++i) {
+  scene.occluded({batch.shadowSegments.data(), batch.shadowCount}, batch.hidden);
+  for (size_t i = 0; i < batch.shadowCount; ++i) {
     Path& path = paths[batch.shadowRays[i].path];
     if (!batch.hidden[i])
       path.radiance += batch.shadowRays[i].radiance;
     else if (batch.recording)
       batch.recorder.lightHidden(path.handle);
   }
-  batch.shadowRays.clear();
-  batch.shadowSegments.clear();
+  batch.shadowCount = 0;
 }
 
 }  // namespace odis::render

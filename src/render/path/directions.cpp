@@ -1,97 +1,214 @@
 // Directions of many paths, sampled from their BSDFs and from what guides them.
+#include <odis/instruction_sets.h>
+
+#include "render/math/warp.h"
 #include "render/path/bounce.h"
 
 namespace odis::render {
 
-void prepareDirections(const PathSettings& settings, Bounces bounces) {
+void prepareDirections(const PathSettings& settings, Bounces& bounces) {
+  GuidedBsdfs& bsdfs = bounces.bsdfs;
+  bsdfs.clear();
+  if (!settings.guide && !settings.rival) return;
   MapPreparations maps;
-  for (Bounce& bounce : bounces)
-    bounce.bsdf.begin(settings, *bounce.path, *bounce.vertex, bounce.cell, bounce.guidable, maps);
+  for (size_t i = 0; i < bounces.count; ++i)
+    bsdfs.begin(settings, bounces.arrivals[i], bounces.at.isDiffuse[i], i, maps);
   if (maps.count == 0) return;
   prepareMaps(settings.guide->maps, maps);
-  for (Bounce& bounce : bounces) bounce.bsdf.finish();
+  for (size_t i = 0; i < bounces.count; ++i) bsdfs.finish(i);
 }
 
-void countGuidable(Bounces bounces) {
-  for (Bounce& bounce : bounces) bounce.path->guidable += bounce.guidable > 0;
+void countGuidable(Bounces& bounces) {
+  for (const Arrival& arrival : bounces.arriving()) arrival.path->guidable += arrival.guidable > 0;
 }
 
-void chooseBlocks(Bounces bounces) {
+namespace {
+
+ODIS_WIDE void chooseSources(Bounces& bounces) {
+  DirectionDraws& draws = bounces.draws;
+  for (size_t i = 0, end = endOfLanes(bounces.count); i < end; ++i) {
+    const auto choice = bounces.bsdfs.mixture(i).choose(bounces.numbers.directionU[i]);
+    draws.fromMap[i] = bounces.bsdfs.hasMap[i] & int32_t(choice.fromMap);
+    draws.u[i] = bounces.bsdfs.hasMap[i] ? choice.u : bounces.numbers.directionU[i];
+  }
+}
+
+}  // namespace
+
+void chooseBlocks(Bounces& bounces) {
+  DirectionDraws& draws = bounces.draws;
+  draws.u = bounces.numbers.directionU;
+  draws.fromMap = {};
+  if (!bounces.bsdfs.anyMap()) return;
+  chooseSources(bounces);
   MapSamples samples;
-  std::array<Bounce*, kBounceBlock> drawing;
-  for (Bounce& bounce : bounces) {
-    const VertexMap<float>* map = bounce.bsdf.map();
-    if (!map) continue;
-    const auto choice = bounce.bsdf.mixture().choose(bounce.numbers.direction.x);
-    bounce.draw = {choice.fromMap, choice.u, 0, {}};
-    drawing[samples.count] = &bounce;
-    samples.addIf(choice.fromMap, *map, {choice.u, bounce.numbers.direction.y});
+  LaneList drawing;
+  for (size_t i = 0; i < bounces.count; ++i) {
+    const bool fromMap = draws.fromMap[i];
+    samples.addIf(fromMap, bounces.bsdfs.maps[i], {draws.u[i], bounces.numbers.directionV[i]});
+    drawing.addIf(fromMap, i);
   }
   chooseBlocks(samples);
-  for (size_t i = 0; i < samples.count; ++i) {
-    drawing[i]->draw.block = samples.blocks[i];
-    drawing[i]->draw.withinBlock = {samples.u[i], samples.v[i]};
-    samples.maps[i]->prefetch(samples.blocks[i]);
+  for (size_t k = 0; k < samples.count; ++k) {
+    const size_t i = drawing.lanes[k];
+    draws.block[i] = samples.blocks[k];
+    draws.withinBlockU[i] = samples.u[k];
+    draws.withinBlockV[i] = samples.v[k];
+    samples.maps[k]->prefetch(samples.blocks[k]);
   }
 }
 
 namespace {
 
-BsdfHost hostOf(const Bounce& bounce) {
-  return {*bounce.vertex, bounce.numbers.lobe};
-}
+// Where a direction comes from: the steps of Mixture::sample(). `plain` has no map to be mixed with.
+enum class Source : int32_t { plain, bsdf, map };
 
-// Where a direction that is sampled at a vertex with a map comes from: the steps of Mixture::sample().
-enum class Source { bsdf, map, neither };
-Source sampleBsdf(Bounce& bounce) {
-  const BsdfHost host = hostOf(bounce);
-  const float guidable = bounce.bsdf.mixture().guidableProbability();
-  if (!bounce.draw.fromMap || guidable < 1) {
-    bounce.next = host.sampleBsdf(bounce.draw.u, bounce.numbers.direction.y);
-    if (host.isDiscrete(bounce.next)) return Source::neither;
+// Samples what Lambertian surfaces scatter: all lanes, as if they were. `drawn` is whether there is anything.
+ODIS_WIDE void sampleDiffuse(Bounces& bounces, IntColumn& drawn) {
+  NextDirections& next = bounces.next;
+  const Surfaces& at = bounces.at;
+  for (size_t i = 0, end = endOfLanes(bounces.count); i < end; ++i) {
+    const Vec3 wi = squareToCosineHemisphere({bounces.draws.u[i], bounces.numbers.directionV[i]});
+    const float side = at.side[i], pdf = cosineHemispherePdf(wi.z) * (side * side);
+    next.wi.set(i, {wi.x, wi.y, side * wi.z});
+    next.weight.set(i, at.reflectance[i]);
+    next.pdf[i] = pdf;
+    next.guidablePdf[i] = pdf;
+    next.eta[i] = 1;
+    drawn[i] = pdf > 0;
   }
-  if (bounce.draw.fromMap && (guidable >= 1 || !host.isSharp(bounce.next))) return Source::map;
-  return host.failed(bounce.next) ? Source::neither : Source::bsdf;
 }
 
-}  // namespace
+// The same for other BSDFs, one by one.
+Source sampleOther(Bounces& bounces, size_t lane) {
+  const BsdfHost host{*bounces.arrivals[lane].vertex, bounces.numbers.lobe[lane]};
+  const float u = bounces.draws.u[lane], v = bounces.numbers.directionV[lane];
+  if (!bounces.bsdfs.hasMap[lane]) {
+    bounces.next.set(lane, sampleWithoutMap(bounces.bsdfs, lane, host, {u, v}));
+    return Source::plain;
+  }
+  const bool fromMap = bounces.draws.fromMap[lane];
+  const float guidable = bounces.bsdfs.guidable[lane];
+  BsdfSample drawn;
+  if (!fromMap || guidable < 1) {
+    drawn = host.sampleBsdf(u, v);
+    bounces.next.set(lane, drawn);
+    if (host.isDiscrete(drawn)) return Source::plain;
+  }
+  if (fromMap && (guidable >= 1 || !host.isSharp(drawn))) return Source::map;
+  return host.failed(drawn) ? Source::plain : Source::bsdf;
+}
 
-void sampleDirections(Bounces bounces) {
+// At a Lambertian surface.
+Source sourceAtDiffuse(Bounces& bounces, size_t lane, bool drawn) {
+  bounces.next.lobe[lane] = int32_t(drawn ? Lobe::smooth : Lobe::none);
+  if (bounces.draws.fromMap[lane]) return Source::map;
+  return drawn && bounces.bsdfs.hasMap[lane] ? Source::bsdf : Source::plain;
+}
+
+ODIS_WIDE void turnToWorld(const Bounces& bounces, Columns3& world) {
+  const Surfaces& at = bounces.at;
+  for (size_t i = 0, end = endOfLanes(bounces.count); i < end; ++i)
+    world.set(i, CoordinateFrame(at.s[i], at.t[i], at.n[i]).toWorld(bounces.next.wi[i]));
+}
+
+// Evaluates the BSDFs in the directions that maps have drawn, as if they were Lambertian. Values take the
+// place of weights.
+ODIS_WIDE void evaluateDiffuse(const IntColumn& sources, const Columns3& world, Bounces& bounces) {
+  NextDirections& next = bounces.next;
+  const Surfaces& at = bounces.at;
+  for (size_t i = 0, end = endOfLanes(bounces.count); i < end; ++i) {
+    const bool fromMap = sources[i] == int32_t(Source::map);
+    const Vec3 local = CoordinateFrame(at.s[i], at.t[i], at.n[i]).toLocal(world[i]), old = next.wi[i];
+    const float pdf = cosineHemispherePdf(at.side[i] * local.z);
+    next.wi.set(i, {fromMap ? local.x : old.x, fromMap ? local.y : old.y, fromMap ? local.z : old.z});
+    const Vec3 value = at.reflectance[i] * pdf, weight = next.weight[i];
+    next.weight.set(
+        i, {fromMap ? value.x : weight.x, fromMap ? value.y : weight.y, fromMap ? value.z : weight.z});
+    next.pdf[i] = fromMap ? pdf : next.pdf[i];
+    next.guidablePdf[i] = fromMap ? pdf : next.guidablePdf[i];
+  }
+}
+
+void evaluateOther(Bounces& bounces, size_t lane) {
+  const auto& [at, wo] = *bounces.arrivals[lane].vertex;
+  const BsdfValue value = bounces.at.bsdfs[lane]->evaluate(at, wo, bounces.next.wi[lane]);
+  bounces.next.weight.set(lane, value.value);
+  bounces.next.pdf[lane] = value.pdf;
+  bounces.next.guidablePdf[lane] = value.guidablePdf;
+}
+
+// Weighs directions by the densities of the mixtures.
+ODIS_WIDE void mix(const IntColumn& sources, const Column& mapPdf, Bounces& bounces) {
+  NextDirections& next = bounces.next;
+  for (size_t i = 0, end = endOfLanes(bounces.count); i < end; ++i) {
+    const float mixed = bounces.bsdfs.mixture(i).pdf(next.pdf[i], next.guidablePdf[i], mapPdf[i]);
+    const bool fromMap = sources[i] == int32_t(Source::map), fromBsdf = sources[i] == int32_t(Source::bsdf);
+    const Rgb weight(next.weight[i]);
+    const Rgb ofMap = weight / mixed, ofBsdf = weight * (next.pdf[i] / mixed);
+    const int32_t lobe = isBlack(weight) ? int32_t(Lobe::none) : int32_t(Lobe::smooth);
+    next.weight.set(i, {fromMap    ? ofMap.x
+                        : fromBsdf ? ofBsdf.x
+                                   : weight.x,
+                        fromMap    ? ofMap.y
+                        : fromBsdf ? ofBsdf.y
+                                   : weight.y,
+                        fromMap    ? ofMap.z
+                        : fromBsdf ? ofBsdf.z
+                                   : weight.z});
+    next.pdf[i] = fromMap | fromBsdf ? mixed : next.pdf[i];
+    next.eta[i] = fromMap ? 1.0f : next.eta[i];
+    next.lobe[i] = fromMap ? lobe : next.lobe[i];
+  }
+}
+
+// Mixes directions with the densities of the maps that guide them, and draws those that come from maps.
+void mixWithMaps(const IntColumn& sources, Bounces& bounces) {
+  Columns3 world;
+  turnToWorld(bounces, world);
   MapSamples samples;
   MapLookUps lookUps;
-  std::array<Bounce*, kBounceBlock> fromMaps, fromBsdfs;
-  for (Bounce& bounce : bounces) {
-    const VertexMap<float>* map = bounce.bsdf.map();
-    if (!map) {
-      bounce.next = bounce.bsdf.sample(*bounce.vertex, bounce.numbers);
-      continue;
-    }
-    const Source source = sampleBsdf(bounce);
-    if (source == Source::map) {
-      fromMaps[samples.count] = &bounce;
-      samples.add(*map, bounce.draw.withinBlock, bounce.draw.block);
-    } else if (source == Source::bsdf) {
-      fromBsdfs[lookUps.count] = &bounce;
-      lookUps.add(*map, bounce.vertex->at.shading.toWorld(bounce.next.wi));
-    }
+  LaneList fromMaps, fromBsdfs;
+  const DirectionDraws& draws = bounces.draws;
+  for (size_t i = 0; i < bounces.count; ++i) {
+    const VertexMap<float>& map = bounces.bsdfs.maps[i];
+    const bool fromMap = sources[i] == int32_t(Source::map), fromBsdf = sources[i] == int32_t(Source::bsdf);
+    samples.addIf(fromMap, map, {draws.withinBlockU[i], draws.withinBlockV[i]}, draws.block[i]);
+    fromMaps.addIf(fromMap, i);
+    if (fromBsdf) lookUps.add(map, world[i]);
+    fromBsdfs.addIf(fromBsdf, i);
   }
   findTexels(lookUps);
   sampleWithinBlocks(samples);
   findPdfs(lookUps);
-  for (size_t i = 0; i < samples.count; ++i) {
-    Bounce& bounce = *fromMaps[i];
-    bounce.next = hostOf(bounce).evaluate(toOdis(samples.wi[i]), [&](float bsdfPdf, float guidablePdf) {
-      return bounce.bsdf.mixture().pdf(bsdfPdf, guidablePdf, samples.pdf[i]);
-    });
+  Column mapPdf{};
+  for (size_t k = 0; k < samples.count; ++k) {
+    world.set(fromMaps.lanes[k], samples.wi[k]);
+    mapPdf[fromMaps.lanes[k]] = samples.pdf[k];
   }
-  for (size_t i = 0; i < lookUps.count; ++i) {
-    Bounce& bounce = *fromBsdfs[i];
-    hostOf(bounce).reweigh(bounce.next, [&](float bsdfPdf, float guidablePdf, const Float3&) {
-      return bounce.bsdf.mixture().pdf(bsdfPdf, guidablePdf, lookUps.pdf[i]);
-    });
+  for (size_t k = 0; k < lookUps.count; ++k) mapPdf[fromBsdfs.lanes[k]] = lookUps.pdf[k];
+  evaluateDiffuse(sources, world, bounces);
+  for (const size_t i : fromMaps)
+    if (!bounces.at.isDiffuse[i]) evaluateOther(bounces, i);
+  mix(sources, mapPdf, bounces);
+}
+
+}  // namespace
+
+void sampleDirections(Bounces& bounces) {
+  IntColumn drawn, sources;
+  sampleDiffuse(bounces, drawn);
+  bool anyMap = false;
+  for (size_t i = 0; i < bounces.count; ++i) {
+    // What rivals guide is mixed as if it were no Lambertian surface.
+    const bool isDiffuse = bounces.at.isDiffuse[i] && !bounces.bsdfs.rivals[i];
+    const Source source = isDiffuse ? sourceAtDiffuse(bounces, i, drawn[i]) : sampleOther(bounces, i);
+    sources[i] = int32_t(source);
+    anyMap |= source != Source::plain;
   }
-  for (Bounce& bounce : bounces)
-    if (!isFinite(bounce.next.weight)) bounce.next = {};
+  if (anyMap) mixWithMaps(sources, bounces);
+  for (size_t i = 0; i < bounces.count; ++i)
+    if (!isFinite(Rgb(bounces.next.weight[i]))) bounces.next.set(i, {});
 }
 
 }  // namespace odis::render

@@ -7,14 +7,13 @@ namespace odis::render {
 
 namespace {
 
-void addEmission(const PathSettings& settings, Batch& batch, const Bounce& bounce, const Emission& met) {
-  Path& path = *bounce.path;
+void addEmission(const PathSettings& settings, Batch& batch, Path& path, int depth, const Emission& met) {
   path.visible |= !settings.scene->integrator().hideEmitters;
   if (isBlack(met.radiance)) return;
   const float pdf = path.bySampling ? lightPdf(*settings.lights, path.previous, met) : 0;
   const float weight = path.bySampling ? powerHeuristic(path.directionPdf, pdf) : 1;
   path.radiance += path.throughput * met.radiance * weight;
-  if (bounce.depth == 1) {
+  if (depth == 1) {
     path.emitted += met.radiance;
     path.emittedPdf = pdf;
     ++path.emissions;
@@ -28,9 +27,9 @@ void addEmission(const PathSettings& settings, Batch& batch, const Bounce& bounc
 }
 
 // Follows the ray to the surface that it met.
-void arriveAt(Batch& batch, const Bounce& bounce) {
-  Path& path = *bounce.path;
-  const auto& [at, wo] = *bounce.vertex;
+void arriveAt(Batch& batch, const Arrival& arrival) {
+  Path& path = *arrival.path;
+  const auto& [at, wo] = *arrival.vertex;
   const float distance = length(at.p - path.ray.origin);
   path.distance += distance;
   if (!batch.recording) return;
@@ -49,36 +48,39 @@ const LightReference* competitor(const Path& path) {
 
 }  // namespace
 
-void meetEmission(const PathSettings& settings, Batch& batch, Bounces bounces) {
-  BounceList arriving, leaving;
-  for (Bounce& bounce : bounces) {
-    ++bounce.path->counts.rays;
-    bounce.scatters = false;
-    const bool met = bounce.vertex->at.shape;
-    arriving.addIf(met, bounce);
-    leaving.addIf(!met, bounce);
+void meetEmission(const PathSettings& settings, Batch& batch, Bounces& bounces) {
+  LaneList arriving, leaving;
+  for (size_t i = 0; i < bounces.count; ++i) {
+    Arrival& arrival = bounces.arrivals[i];
+    ++arrival.path->counts.rays;
+    arrival.scatters = false;
+    const bool met = arrival.vertex->at.shape;
+    arriving.addIf(met, i);
+    leaving.addIf(!met, i);
   }
-  for (Bounce* each : arriving) {
-    Bounce& bounce = *each;
-    Path& path = *bounce.path;
-    arriveAt(batch, bounce);
-    ifShining(path.ray, bounce.vertex->at, competitor(path),
-              [&](const Emission& met) { addEmission(settings, batch, bounce, met); });
-    bounce.scatters = settings.maxDepth < 0 || bounce.depth < settings.maxDepth;
+  const auto add = [&](Path& path) {
+    return [&](const Emission& met) { addEmission(settings, batch, path, bounces.depth, met); };
+  };
+  for (const size_t i : arriving) {
+    Arrival& arrival = bounces.arrivals[i];
+    Path& path = *arrival.path;
+    arriveAt(batch, arrival);
+    ifShining(path.ray, arrival.vertex->at, competitor(path), add(path));
+    arrival.scatters = settings.maxDepth < 0 || bounces.depth < settings.maxDepth;
     // Where depth ends a path nobody draws a lobe, and the surface counts as one that hides what is behind.
-    if (!bounce.scatters) path.visible = true;
+    if (!arrival.scatters) path.visible = true;
   }
-  BounceList seeing;  // the environments
-  std::array<Escape, kBounceBlock> escapes;
-  for (Bounce* bounce : leaving) {
-    const Path& path = *bounce->path;
+  LaneList seeing;  // the environments
+  std::array<Escape, kLanes> escapes;
+  for (const size_t i : leaving) {
+    const Path& path = *bounces.arrivals[i].path;
     if (batch.recording) batch.recorder.escape(path.handle);
     escapes[seeing.count] = {&path.ray, competitor(path)};
-    seeing.addIf(!path.hidesEnvironment, *bounce);
+    seeing.addIf(!path.hidesEnvironment, i);
   }
-  if (seeing.count == 0) return;
-  forEachEnvironment(*settings.scene, {escapes.data(), seeing.count}, [&](size_t i, const Emission& met) {
-    addEmission(settings, batch, *seeing.list[i], met);
+  if (seeing.empty()) return;
+  forEachEnvironment(*settings.scene, {escapes.data(), seeing.count}, [&](size_t k, const Emission& met) {
+    add (*bounces.arrivals[seeing.lanes[k]].path)(met);
   });
 }
 
@@ -91,60 +93,60 @@ constexpr float kLeastCachedRoughness = 0.3f, kLeastCachedGuidable = 0.5f;
 // light of more bounces than max_depth allows. Below this max_depth that light is too bright to be ignored.
 constexpr int kLeastCachedMaxDepth = 8;
 
-bool scattersEvenly(const Bounce& bounce) {
-  const Vertex& vertex = *bounce.vertex;
-  return bounce.guidable >= kLeastCachedGuidable &&
+bool scattersEvenly(const Arrival& arrival) {
+  const Vertex& vertex = *arrival.vertex;
+  return arrival.guidable >= kLeastCachedGuidable &&
          vertex.at.shape->bsdf().roughness(vertex.at, vertex.wo) >= kLeastCachedRoughness;
 }
 
 }  // namespace
 
-void findGuidableLobes(const PathSettings& settings, Batch& batch, Bounces bounces) {
+void findGuidableLobes(const PathSettings& settings, Batch& batch, Bounces& bounces) {
   const bool asked = settings.guide || settings.rival || batch.recording;
-  for (Bounce& bounce : bounces) {
-    bounce.guidable = 0;
-    if (!asked || !bounce.scatters) continue;
-    const Vertex& vertex = *bounce.vertex;
-    bounce.guidable = vertex.at.shape->bsdf().guidableProbability(vertex.at, vertex.wo);
+  for (Arrival& arrival : bounces.arriving()) {
+    arrival.guidable = 0;
+    if (!asked || !arrival.scatters) continue;
+    const Vertex& vertex = *arrival.vertex;
+    arrival.guidable = vertex.at.shape->bsdf().guidableProbability(vertex.at, vertex.wo);
   }
 }
 
-void endInCache(const PathSettings& settings, Batch& batch, Bounces bounces) {
+void endInCache(const PathSettings& settings, Batch& batch, Bounces& bounces) {
   if (!settings.guide || !settings.guide->cached) return;
   if (settings.maxDepth >= 0 && settings.maxDepth < kLeastCachedMaxDepth) return;
-  for (Bounce& bounce : bounces) {
-    if (!bounce.scatters || bounce.depth == 1) continue;
-    Path& path = *bounce.path;
-    const Vertex& vertex = *bounce.vertex;
+  for (Arrival& arrival : bounces.arriving()) {
+    if (!arrival.scatters || bounces.depth == 1) continue;
+    Path& path = *arrival.path;
+    const Vertex& vertex = *arrival.vertex;
     if (path.bySampling)
       path.footprint += segmentFootprint(length(vertex.at.p - path.ray.origin), path.directionPdf,
                                          std::abs(dot(vertex.at.shading.n, path.ray.direction)));
-    if (bounce.cell == kNoCell) continue;
+    if (arrival.cell == kNoCell) continue;
     const CachedRadiance* cached =
-        cachedRadiance(*settings.guide, {{}, {}, path.identity.pixel, path.identity.sample}, bounce.cell,
+        cachedRadiance(*settings.guide, {{}, {}, path.identity.pixel, path.identity.sample}, arrival.cell,
                        luminance(path.throughput) / path.pixelValue, path.footprint);
-    if (!cached || !scattersEvenly(bounce)) continue;
+    if (!cached || !scattersEvenly(arrival)) continue;
     const Float3& radiance = cached->radiance;
     path.radiance += path.throughput * Rgb(radiance.x, radiance.y, radiance.z);
-    bounce.scatters = false;
+    arrival.scatters = false;
     if (batch.recording) batch.recorder.cached(path.handle, radiance);
   }
 }
 
-void playRouletteOnArrival(const PathSettings& settings, Batch& batch, Bounces bounces) {
+void playRouletteOnArrival(const PathSettings& settings, Batch& batch, Bounces& bounces) {
   if (!settings.learnedRoulette) return;
-  for (Bounce& bounce : bounces) {
-    if (!bounce.scatters || bounce.cell == kNoCell || bounce.depth == 1) continue;
-    Path& path = *bounce.path;
-    const CellDecisions& cell = settings.guide->decisions[bounce.cell];
+  for (Arrival& arrival : bounces.arriving()) {
+    if (!arrival.scatters || arrival.cell == kNoCell || bounces.depth == 1) continue;
+    Path& path = *arrival.path;
+    const CellDecisions& cell = settings.guide->decisions[arrival.cell];
     const float survival = survivalProbability(settings.guide->rules, cell.survivalFactor,
                                                luminance(path.throughput) / path.pixelValue);
     // The mean outgoing radiance is a control variate: it leaves the expectation as it is.
     const Float3& outgoing = cell.outgoingRadiance;
     const Rgb standIn = path.throughput * Rgb(outgoing.x, outgoing.y, outgoing.z);
     // The random number is that of the vertex before.
-    bounce.scatters = path.uSurvival < survival;
-    if (!bounce.scatters) {
+    arrival.scatters = path.uSurvival < survival;
+    if (!arrival.scatters) {
       path.radiance += standIn;
       continue;
     }

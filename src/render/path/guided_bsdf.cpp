@@ -13,45 +13,50 @@ struct RivalMap {
 
 }  // namespace
 
-void GuidedBsdf::begin(const PathSettings& settings, const Path& path, const Vertex& vertex, uint32_t cell,
-                       float guidable, MapPreparations& maps) {
-  m_mixture = {};
-  m_rival = nullptr;
-  m_usesMap = false;
-  if (!(guidable > 0) || !guidesAt(settings, path)) return;
+void GuidedBsdfs::clear() {
+  std::fill_n(bsdfFraction.of, kLanes, 1.0f);
+  guidable = {};
+  hasMap = {};
+  rivals.fill(nullptr);
+  mapCount = 0;
+}
+
+void GuidedBsdfs::begin(const PathSettings& settings, const Arrival& arrival, bool isDiffuse, size_t lane,
+                        MapPreparations& preparations) {
+  const auto& [at, wo] = *arrival.vertex;
+  const uint32_t cell = arrival.cell;
+  if (!(arrival.guidable > 0) || !guidesAt(settings, *arrival.path)) return;
   if (!settings.rival && (cell == kNoCell || !guidesDirections(settings.guide->decisions[cell]))) return;
-  const Bsdf& bsdf = vertex.at.shape->bsdf();
-  const Vec3 normal = facingNormal(vertex.at, vertex.wo);
+  const Bsdf& bsdf = at.shape->bsdf();
+  const Vec3 normal = facingNormal(at, wo);
   const bool transmissive = bsdf.traits().transmissive;
   if (settings.rival) {
-    m_rival = settings.rival->at(vertex.at.p, normal, transmissive);
-    if (m_rival) m_mixture = {m_rival->bsdfFraction(), guidable};
+    rivals[lane] = settings.rival->at(at.p, normal, transmissive);
+    if (!rivals[lane]) return;
+    bsdfFraction[lane] = rivals[lane]->bsdfFraction();
+    guidable[lane] = arrival.guidable;
     return;
   }
   const float fraction =
-      odis::bsdfFraction(*settings.guide, int32_t(cell), bsdf.roughness(vertex.at, vertex.wo));
+      odis::bsdfFraction(*settings.guide, int32_t(cell), isDiffuse ? 1.0f : bsdf.roughness(at, wo));
   if (fraction >= 1) return;
-  m_mixture = {fraction, guidable};
-  m_usesMap = true;
-  maps.add(m_map, int32_t(cell), normal, transmissive ? -1.0f : 0.0f);
+  bsdfFraction[lane] = fraction;
+  guidable[lane] = arrival.guidable;
+  hasMap[lane] = true;
+  ++mapCount;
+  preparations.add(maps[lane], int32_t(cell), normal, transmissive ? -1.0f : 0.0f);
 }
 
-void GuidedBsdf::finish() {
-  if (!m_usesMap || m_map.sampleable()) return;
-  m_usesMap = false;
-  m_mixture = {};
+void GuidedBsdfs::finish(size_t lane) {
+  if (!hasMap[lane] || maps[lane].sampleable()) return;
+  hasMap[lane] = false;
+  bsdfFraction[lane] = 1;
+  guidable[lane] = 0;
 }
 
-float GuidedBsdf::pdf(const BsdfValue& bsdf, const Vec3& wiWorld, float mapPdf) const {
-  if (!m_mixture.guides()) return bsdf.pdf;
-  return m_mixture.pdf(bsdf.pdf, bsdf.guidablePdf, m_rival ? m_rival->pdf(wiWorld) : mapPdf);
-}
-
-BsdfSample GuidedBsdf::sample(const Vertex& vertex, const VertexNumbers& numbers) const {
-  const BsdfHost host{vertex, numbers.lobe};
-  const auto [u, v] = numbers.direction;
-  if (!m_rival) return host.sampleBsdf(u, v);
-  return m_mixture.sample(RivalMap{*m_rival}, u, v, host);
+BsdfSample sampleWithoutMap(const GuidedBsdfs& bsdfs, size_t lane, const BsdfHost& host, const Vec2& u) {
+  if (!bsdfs.rivals[lane]) return host.sampleBsdf(u.x, u.y);
+  return bsdfs.mixture(lane).sample(RivalMap{*bsdfs.rivals[lane]}, u.x, u.y, host);
 }
 
 }  // namespace odis::render

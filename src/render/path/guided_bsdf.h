@@ -1,5 +1,5 @@
-// The BSDF at a vertex, mixed with what guides directions there: a cell's map times the cosine, or a
-// rival's density.
+// The BSDFs at vertices, mixed with what guides directions there: a cell's map times the cosine, or a rival's
+// density.
 #pragma once
 
 #include <odis/mixture.h>
@@ -9,32 +9,26 @@
 
 namespace odis::render {
 
-class GuidedBsdf {
- public:
-  // Finds out what guides the vertex. `cell` is kNoCell where the guide knows nothing; `guidable`:
-  // Bsdf::guidableProbability(). A map that guides is added to `maps`; once those are prepared, finish()
-  // says whether it can be sampled.
-  void begin(const PathSettings& settings, const Path& path, const Vertex& vertex, uint32_t cell,
-             float guidable, MapPreparations& maps);
-  void finish();
+// Those of several paths.
+struct GuidedBsdfs {
+  Column bsdfFraction;  // the BSDF sampling fraction: 1 where nothing is guided
+  Column guidable;      // how often the BSDF draws from lobes that may be guided; 0 where nothing is guided
+  IntColumn hasMap;     // whether a map guides
+  std::array<VertexMap<float>, kLanes> maps;
+  std::array<const DirectionSampler*, kLanes> rivals;  // null where none guides
 
-  // The BSDF sampling fraction: 1 where nothing is guided.
-  float bsdfFraction() const { return m_mixture.bsdfFraction(); }
-  const Mixture<float>& mixture() const { return m_mixture; }
-  // The map that guides; null where none does, or a rival's density.
-  const VertexMap<float>* map() const { return m_usesMap ? &m_map : nullptr; }
+  size_t mapCount = 0;  // how many have a map
 
-  // The density of the mixture in a direction, with respect to solid angle. `mapPdf` is that of map(), where
-  // there is one.
-  float pdf(const BsdfValue& bsdf, const Vec3& wiWorld, float mapPdf) const;
-  // Samples a direction where no map guides: from the BSDF, or from its mixture with a rival's density.
-  BsdfSample sample(const Vertex& vertex, const VertexNumbers& numbers) const;
+  bool anyMap() const { return mapCount > 0; }
+  Mixture<float> mixture(size_t lane) const { return {bsdfFraction[lane], guidable[lane]}; }
 
- private:
-  Mixture<float> m_mixture;
-  const DirectionSampler* m_rival = nullptr;
-  bool m_usesMap = false;
-  VertexMap<float> m_map;
+  // Nothing is guided.
+  void clear();
+  // Finds out what guides the vertex where a path arrives. A map that guides is added to `preparations`; once
+  // those are prepared, finish() leaves out what can't be sampled.
+  void begin(const PathSettings& settings, const Arrival& arrival, bool isDiffuse, size_t lane,
+             MapPreparations& preparations);
+  void finish(size_t lane);
 };
 
 // The BSDF at a vertex as Mixture::sample() asks for it.
@@ -71,6 +65,9 @@ struct BsdfHost {
     sample.pdf = mixed;
   }
 };
+
+// Samples a direction where no map guides: from the BSDF, or from its mixture with a rival's density.
+BsdfSample sampleWithoutMap(const GuidedBsdfs& bsdfs, size_t lane, const BsdfHost& host, const Vec2& u);
 
 // Whether directions are guided at all where a path is.
 inline bool guidesAt(const PathSettings& settings, const Path& path) {

@@ -76,20 +76,14 @@ struct Path {
   uint32_t handle = 0;      // of the recorder
 };
 
-// Where a path met a surface.
-struct Vertex {
-  SurfacePoint at;
-  Vec3 wo;  // towards where the path came from, in the shading frame
-};
-
-// The random numbers of a path at a vertex, uniform in [0, 1), as far as any are asked for.
-struct VertexNumbers {
-  float lightChoice;  // chooses a light
-  Vec2 lightPoint;    // samples a point or direction of it
-  float lobe;         // chooses a lobe of the BSDF
-  Vec2 direction;     // samples a direction
-  float survival;     // decides whether the path goes on
-  float shadowRay;    // and whether the light is asked for
+// One path as it arrives at one vertex.
+struct Arrival {
+  Path* path;
+  uint32_t index;        // of the path in the batch
+  const Vertex* vertex;  // without a shape where the ray left the scene
+  uint32_t cell;         // of the guide, or kNoCell
+  float guidable;        // Bsdf::guidableProbability() of the vertex, where anybody asks
+  bool scatters;         // whether the path goes on to be scattered here
 };
 
 // The shading normal on the side that the path came from; `wo` in the shading frame.

@@ -3,56 +3,58 @@
 
 namespace odis::render {
 
-void describeFirstHits(const PathSettings& settings, Bounces bounces) {
+void describeFirstHits(const PathSettings& settings, Bounces& bounces) {
   if (!settings.features) return;
-  for (Bounce& bounce : bounces) {
+  for (size_t i = 0; i < bounces.count; ++i) {
+    const Arrival& arrival = bounces.arrivals[i];
+    const Lobe lobe = bounces.next.lobeAt(i);
     // As in Mitsuba, whatever lobe but a null one is drawn hides what is behind.
-    bounce.path->visible |= bounce.next.lobe != Lobe::null;
-    FirstHit& first = bounce.path->first;
-    if (first.valid || isDiscrete(bounce.next.lobe)) continue;
-    first = firstHitAt(*bounce.vertex, bounce.path->distance);
-    if (!settings.guideFeatures || bounce.cell == kNoCell) continue;
-    first.cell = bounce.cell;
-    first.texels = settings.guide->maps.texels + size_t(bounce.cell) * kMapTexels;
-    first.bsdfFraction = bounce.bsdf.bsdfFraction();
+    arrival.path->visible |= lobe != Lobe::null;
+    FirstHit& first = arrival.path->first;
+    if (first.valid || isDiscrete(lobe)) continue;
+    first = firstHitAt(*arrival.vertex, arrival.path->distance);
+    if (!settings.guideFeatures || arrival.cell == kNoCell) continue;
+    first.cell = arrival.cell;
+    first.texels = settings.guide->maps.texels + size_t(arrival.cell) * kMapTexels;
+    first.bsdfFraction = bounces.bsdfs.bsdfFraction[i];
     if (settings.learnedRoulette)
       first.survival =
-          survivalProbability(settings.guide->rules, settings.guide->decisions[bounce.cell].survivalFactor,
-                              luminance(bounce.path->throughput) / bounce.path->pixelValue);
+          survivalProbability(settings.guide->rules, settings.guide->decisions[arrival.cell].survivalFactor,
+                              luminance(arrival.path->throughput) / arrival.path->pixelValue);
   }
 }
 
-static LightEvent lightEventOf(const Bounce& bounce) {
-  const LightEstimate& light = bounce.light;
+static LightEvent lightEventOf(const LightEstimates& light, size_t lane) {
   LightEvent event;
-  event.unweighted = toOdis(light.radiance);
-  event.weighted = toOdis(bounce.direct);
-  event.wi = toOdis(light.wi);
-  event.pdf = light.pdf;
-  event.bsdfPdf = light.bsdf.pdf;
-  event.guidablePdf = light.bsdf.guidablePdf;
-  event.group = light.group;
-  event.groupProbability = bounce.shadowRayProbability * light.groupProbability;
+  event.unweighted = toOdis(light.radiance[lane]);
+  event.weighted = toOdis(light.direct[lane]);
+  event.wi = toOdis(light.wi[lane]);
+  event.pdf = light.pdf[lane];
+  event.bsdfPdf = light.bsdfPdf[lane];
+  event.guidablePdf = light.guidablePdf[lane];
+  event.group = uint32_t(light.group[lane]);
+  event.groupProbability = light.shadowRayProbability[lane] * light.groupProbability[lane];
   return event;
 }
 
-void recordBounces(Batch& batch, Bounces bounces) {
+void recordBounces(Batch& batch, const Bounces& bounces) {
   if (!batch.recording) return;
-  for (const Bounce& bounce : bounces) {
-    const uint32_t path = bounce.path->handle;
-    const auto& [at, wo] = *bounce.vertex;
-    if (bounce.shadowRayProbability > 0) batch.recorder.light(path, lightEventOf(bounce));
+  for (size_t i = 0; i < bounces.count; ++i) {
+    const Arrival& arrival = bounces.arrivals[i];
+    const uint32_t path = arrival.path->handle;
+    const auto& [at, wo] = *arrival.vertex;
+    if (bounces.light.shadowRayProbability[i] > 0) batch.recorder.light(path, lightEventOf(bounces.light, i));
     const Bsdf& bsdf = at.shape->bsdf();
-    const BsdfSample& next = bounce.next;
+    const BsdfSample next = bounces.next[i];
     BounceEvent event;
     event.wi = toOdis(at.shading.toWorld(next.wi));
-    event.weight = toOdis(bounce.weight);
+    event.weight = toOdis(bounces.weight[i]);
     event.pdf = next.pdf;
     event.guidablePdf = next.guidablePdf;
-    event.guidableProbability = bounce.guidable;
-    event.survival = bounce.survival;
+    event.guidableProbability = arrival.guidable;
+    event.survival = bounces.survival[i];
     event.cosine = std::abs(next.wi.z);
-    event.roughness = bsdf.roughness(at, wo);
+    event.roughness = bounces.at.isDiffuse[i] ? 1.0f : bsdf.roughness(at, wo);
     event.discrete = isDiscrete(next.lobe);
     event.scattersBothSides = bsdf.traits().transmissive;
     batch.recorder.bounce(path, event);

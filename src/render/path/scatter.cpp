@@ -1,85 +1,156 @@
 // Where paths go on, and whether.
+#include <odis/instruction_sets.h>
+
+#include "render/bsdf/parameter.h"
 #include "render/path/bounce.h"
+#include "render/scene/spawn.h"
 
 namespace odis::render {
 
-Bounces keepScattered(Bounces bounces) {
+void keepScattered(Bounces& bounces) {
   size_t left = 0;
-  for (const Bounce& bounce : bounces) {  // without a branch, which would often be mispredicted
-    const Arrival arrival = bounce;
-    static_cast<Arrival&>(bounces[left]) = arrival;
+  for (size_t i = 0; i < bounces.count; ++i) {  // without a branch, which would often be mispredicted
+    const Arrival arrival = bounces.arrivals[i];
+    bounces.arrivals[left] = arrival;
     left += arrival.scatters;
   }
-  return bounces.first(left);
+  bounces.count = left;
 }
 
 namespace {
 
-bool choosesLobe(const Bounce& bounce) {
-  return bounce.vertex->at.shape->bsdf().traits().choosesLobes;
+ODIS_WIDE void findFacingNormals(Bounces& bounces) {
+  Surfaces& at = bounces.at;
+  for (size_t i = 0, end = endOfLanes(bounces.count); i < end; ++i)
+    at.facing.set(i, at.n[i] * (at.wo.z[i] < 0 ? -1.0f : 1.0f));
 }
 
 }  // namespace
 
-void drawNumbers(const PathSettings& settings, Batch& batch, Bounces bounces) {
-  if (bounces.empty()) return;
-  batch.samplers.clear();
-  for (const Bounce& bounce : bounces) batch.samplers.add(bounce.path->sampler);
-  Column x, y;
-  const int depth = bounces.front().depth;
-  const auto draw1D = [&](VertexNumber number, float VertexNumbers::*member) {
-    batch.samplers.draw1D(dimensionOf(depth, number), x);
-    for (size_t i = 0; i < bounces.size(); ++i) bounces[i].numbers.*member = x[i];
-  };
-  const auto draw2D = [&](VertexNumber number, Vec2 VertexNumbers::*member) {
-    batch.samplers.draw2D(dimensionOf(depth, number), x, y);
-    for (size_t i = 0; i < bounces.size(); ++i) bounces[i].numbers.*member = Vec2(x[i], y[i]);
-  };
-  draw1D(kLightChoiceNumber, &VertexNumbers::lightChoice);
-  draw2D(kLightPointNumber, &VertexNumbers::lightPoint);
-  if (std::any_of(bounces.begin(), bounces.end(), choosesLobe)) draw1D(kLobeNumber, &VertexNumbers::lobe);
-  draw2D(kDirectionNumber, &VertexNumbers::direction);
-  if (settings.learnedRoulette || depth >= settings.rrDepth)
-    draw1D(kSurvivalNumber, &VertexNumbers::survival);
-  if (settings.shadowRoulette) draw1D(kShadowRayNumber, &VertexNumbers::shadowRay);
-}
-
-void playRouletteOnDeparture(const PathSettings& settings, Bounces bounces) {
-  for (Bounce& bounce : bounces) {
-    bounce.survives = false;
-    Path& path = *bounce.path;
-    bounce.weight = bounce.next.weight;
-    bounce.survival = 1;
-    path.eta *= bounce.next.eta;
-    // Read where roulette is played: here or, where it was learned, where the path arrives.
-    path.uSurvival = bounce.numbers.survival;
-    bounce.survives = bounce.next.lobe != Lobe::none && !isBlack(bounce.weight);
-    const bool learned = settings.learnedRoulette && bounce.cell != kNoCell;
-    if (bounce.survives && bounce.depth >= settings.rrDepth && !learned) {
-      bounce.survival = std::min(maxComponent(path.throughput * bounce.weight) * sqr(path.eta), 0.95f);
-      // Where roulette is learned no path should weigh more for it than there.
-      if (settings.learnedRoulette)
-        bounce.survival = std::max(bounce.survival, settings.guide->rules.leastSurvival);
-      bounce.survives = path.uSurvival < bounce.survival;
-      path.uSurvival /= bounce.survival;  // as good as new, should the path survive
-      bounce.weight /= bounce.survival;
-    }
-    if (!bounce.survives) bounce.weight = Rgb(0, 0, 0);
+void readSurfaces(Bounces& bounces) {
+  Surfaces& at = bounces.at;
+  const Vertex* vertices[kLanes];
+  for (size_t i = 0; i < kLanes; ++i) vertices[i] = bounces.arrivals[std::min(i, bounces.count - 1)].vertex;
+  static_assert(offsetof(Vertex, wo) == offsetof(SurfacePoint, pError) + sizeof(float));
+  for (size_t first = 0; first < bounces.count; first += 4) {
+    const auto row = [&](size_t offset) {
+      return [&vertices, offset](size_t lane) {
+        return reinterpret_cast<const float*>(vertices[lane]) + offset;
+      };
+    };
+    static_assert(offsetof(SurfacePoint, p) == 0 && offsetof(SurfacePoint, ng) == 12 &&
+                  offsetof(SurfacePoint, shading) == 24);
+    Column uv;  // not asked for
+    toColumns(first, row(0), at.p.x.of, at.p.y.of, at.p.z.of, at.ng.x.of);
+    toColumns(first, row(4), at.ng.y.of, at.ng.z.of, at.s.x.of, at.s.y.of);
+    toColumns(first, row(8), at.s.z.of, at.t.x.of, at.t.y.of, at.t.z.of);
+    toColumns(first, row(12), at.n.x.of, at.n.y.of, at.n.z.of, uv.of);
+    toColumns(first, row(offsetof(SurfacePoint, pError) / sizeof(float)), at.pError.of, at.wo.x.of,
+              at.wo.y.of, at.wo.z.of);
+  }
+  findFacingNormals(bounces);
+  for (size_t i = 0; i < bounces.count; ++i) {
+    const Arrival& arrival = bounces.arrivals[i];
+    const Vertex& vertex = *arrival.vertex;
+    bounces.throughput.set(i, arrival.path->throughput);
+    const Bsdf& bsdf = vertex.at.shape->bsdf();
+    at.bsdfs[i] = &bsdf;
+    DiffuseReflection reflection;
+    at.isDiffuse[i] = bsdf.isDiffuse(vertex.at, vertex.wo, reflection);
+    at.reflectance.set(i, reflection.reflectance);
+    at.side[i] = reflection.side;
   }
 }
 
-void departRays(Bounces bounces) {
-  for (Bounce& bounce : bounces) {
-    if (!bounce.survives) continue;
-    Path& path = *bounce.path;
-    const SurfacePoint& at = bounce.vertex->at;
-    path.throughput *= bounce.weight;
-    if (!path.visible) path.visibleWeight /= bounce.survival;
-    path.hidesEnvironment &= bounce.next.lobe == Lobe::null;
-    path.bySampling = !isDiscrete(bounce.next.lobe);
-    path.directionPdf = bounce.next.pdf;
-    path.previous = bounce.reference;
-    path.ray = Scene::spawn(at, at.shading.toWorld(bounce.next.wi));
+void drawNumbers(const PathSettings& settings, Batch& batch, Bounces& bounces) {
+  batch.samplers.clear();
+  bool choosesLobes = false;
+  for (const Arrival& arrival : bounces.arriving()) batch.samplers.add(arrival.path->sampler);
+  for (size_t i = 0; i < bounces.count; ++i) choosesLobes |= bounces.at.bsdfs[i]->traits().choosesLobes;
+  VertexNumbers& numbers = bounces.numbers;
+  const auto draw1D = [&](VertexNumber number, Column& x) {
+    batch.samplers.draw1D(dimensionOf(bounces.depth, number), x);
+  };
+  const auto draw2D = [&](VertexNumber number, Column& x, Column& y) {
+    batch.samplers.draw2D(dimensionOf(bounces.depth, number), x, y);
+  };
+  draw1D(kLightChoiceNumber, numbers.lightChoice);
+  draw2D(kLightPointNumber, numbers.lightU, numbers.lightV);
+  if (choosesLobes) draw1D(kLobeNumber, numbers.lobe);
+  draw2D(kDirectionNumber, numbers.directionU, numbers.directionV);
+  if (settings.learnedRoulette || bounces.depth >= settings.rrDepth)
+    draw1D(kSurvivalNumber, numbers.survival);
+  if (settings.shadowRoulette) draw1D(kShadowRayNumber, numbers.shadowRay);
+}
+
+namespace {
+
+ODIS_WIDE void keepWeights(Bounces& bounces) {
+  const NextDirections& next = bounces.next;
+  for (size_t i = 0, end = endOfLanes(bounces.count); i < end; ++i) {
+    const Vec3 weight = next.weight[i];
+    bounces.survival[i] = 1;
+    bounces.survives[i] = (next.lobe[i] != int32_t(Lobe::none)) & !isBlack(Rgb(weight));
+    bounces.weight.set(i, bounces.survives[i] ? weight : Vec3(0, 0, 0));
+  }
+}
+
+void playByThroughput(const PathSettings& settings, Bounces& bounces, size_t i) {
+  Path& path = *bounces.arrivals[i].path;
+  Rgb weight(bounces.weight[i]);
+  float survival = std::min(maxComponent(path.throughput * weight) * sqr(path.eta), 0.95f);
+  // Where roulette is learned no path should weigh more for it than there.
+  if (settings.learnedRoulette) survival = std::max(survival, settings.guide->rules.leastSurvival);
+  bounces.survival[i] = survival;
+  bounces.survives[i] = path.uSurvival < survival;
+  path.uSurvival /= survival;  // as good as new, should the path survive
+  bounces.weight.set(i, bounces.survives[i] ? weight / survival : Rgb(0, 0, 0));
+}
+
+}  // namespace
+
+void playRouletteOnDeparture(const PathSettings& settings, Bounces& bounces) {
+  keepWeights(bounces);
+  for (size_t i = 0; i < bounces.count; ++i) {
+    const Arrival& arrival = bounces.arrivals[i];
+    arrival.path->eta *= bounces.next.eta[i];
+    // Read where roulette is played: here or, where it was learned, where the path arrives.
+    arrival.path->uSurvival = bounces.numbers.survival[i];
+    const bool learned = settings.learnedRoulette && arrival.cell != kNoCell;
+    if (bounces.depth >= settings.rrDepth && bounces.survives[i] && !learned)
+      playByThroughput(settings, bounces, i);
+  }
+}
+
+namespace {
+
+ODIS_WIDE void spawnRays(const Bounces& bounces, Columns3& origins, Columns3& directions) {
+  const Surfaces& at = bounces.at;
+  for (size_t i = 0, end = endOfLanes(bounces.count); i < end; ++i) {
+    const Vec3 direction = CoordinateFrame(at.s[i], at.t[i], at.n[i]).toWorld(bounces.next.wi[i]);
+    const Ray ray = spawnRay(at.p[i], at.ng[i], at.pError[i], direction, kInfinity, 0);
+    origins.set(i, ray.origin);
+    directions.set(i, ray.direction);
+  }
+}
+
+}  // namespace
+
+void departRays(Bounces& bounces) {
+  Columns3 origins, directions;
+  spawnRays(bounces, origins, directions);
+  for (size_t i = 0; i < bounces.count; ++i) {
+    if (!bounces.survives[i]) continue;
+    const Arrival& arrival = bounces.arrivals[i];
+    Path& path = *arrival.path;
+    const Lobe lobe = bounces.next.lobeAt(i);
+    path.throughput *= Rgb(bounces.weight[i]);
+    if (!path.visible) path.visibleWeight /= bounces.survival[i];
+    path.hidesEnvironment &= lobe == Lobe::null;
+    path.bySampling = !isDiscrete(lobe);
+    path.directionPdf = bounces.next.pdf[i];
+    path.previous = bounces.references[i];
+    path.ray = {origins[i], directions[i], kInfinity, arrival.vertex->at.time};
   }
 }
 

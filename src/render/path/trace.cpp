@@ -3,6 +3,7 @@
 #include <numeric>
 
 #include "render/path/bounce.h"
+#include "render/shape/mesh_points.h"
 
 namespace odis::render {
 
@@ -43,11 +44,20 @@ void findVertices(const PathSettings& settings, std::span<const Path> paths, Bat
   settings.scene->intersect({batch.rays.data(), count}, batch.hits);
   for (size_t i = 0; i < count; ++i) batch.vertices[i].at.shape = batch.hits[i].shape;
   sortByBsdf(batch);
+  MeshPoints meshPoints;
   for (const uint32_t i : batch.surfaces()) {
+    const Hit& hit = batch.hits[i];
+    const Ray& ray = batch.rays[i];
     Vertex& vertex = batch.vertices[i];
-    new (&vertex.at) SurfacePoint(batch.hits[i].surfacePoint(batch.rays[i]));  // without a copy
-    vertex.wo = vertex.at.shading.toLocal(-batch.rays[i].direction);
+    if (MeshPoints::knows(hit)) {
+      meshPoints.add(hit, ray, vertex);
+      if (meshPoints.full()) meshPoints.find();
+      continue;
+    }
+    new (&vertex.at) SurfacePoint(hit.surfacePoint(ray));  // without a copy
+    vertex.wo = vertex.at.shading.toLocal(-ray.direction);
   }
+  meshPoints.find();
 }
 
 // Finds the cells that guide the vertices. Those with delta lobes only, on mirrors and glass, have none: what
@@ -70,45 +80,46 @@ void findGuidingCells(const PathSettings& settings, std::span<const Path> paths,
   for (size_t i = 0; i < batch.placed.size(); ++i) batch.cells[batch.placed[i]] = batch.found[i];
 }
 
-// Takes some paths through all steps of a bounce; returns those that were scattered.
-Bounces takeSteps(const PathSettings& settings, Batch& batch, Bounces bounces) {
+// Takes some paths through all steps of a bounce; those that are scattered remain.
+void takeSteps(const PathSettings& settings, Batch& batch, Bounces& bounces) {
   meetEmission(settings, batch, bounces);
   findGuidableLobes(settings, batch, bounces);
   endInCache(settings, batch, bounces);
   playRouletteOnArrival(settings, batch, bounces);
-  bounces = keepScattered(bounces);
+  keepScattered(bounces);
+  if (bounces.count == 0) return;
+  readSurfaces(bounces);
   drawNumbers(settings, batch, bounces);
   prepareDirections(settings, bounces);
   countGuidable(bounces);
-  const BounceList lit = sampleLights(settings, bounces);
+  const LaneList lit = sampleLights(settings, bounces);
   chooseBlocks(bounces);
-  weighLights(lit);
+  weighLights(bounces, lit);
   sampleDirections(bounces);
   describeFirstHits(settings, bounces);
   playRouletteOnDeparture(settings, bounces);
-  requestShadowRays(settings, batch, lit);
+  requestShadowRays(settings, batch, bounces, lit);
   recordBounces(batch, bounces);
   departRays(bounces);
-  return bounces;
 }
 
 // Takes all active paths from their rays' ends to their next rays; those without one are active no more.
 void bounceAll(const PathSettings& settings, std::span<Path> paths, int depth, Batch& batch) {
-  for (size_t begin = 0; begin < batch.active.size(); begin += kBounceBlock) {
-    const size_t count = std::min(kBounceBlock, batch.active.size() - begin);
-    for (size_t k = begin; k < begin + count; ++k) {
-      const uint32_t i = batch.order[k];
-      Bounce& bounce = batch.bounces[k - begin];
-      bounce.index = batch.active[i];
-      batch.survives[bounce.index] = false;
-      bounce.path = &paths[bounce.index];
-      bounce.vertex = &batch.vertices[i];
-      bounce.cell = batch.cells[i];
-      if (bounce.cell != kNoCell) prefetchCell(*settings.guide, bounce.cell);  // needed some steps later
-      bounce.depth = depth;
+  Bounces& bounces = batch.bounces;
+  for (size_t begin = 0; begin < batch.active.size(); begin += kLanes) {
+    bounces.depth = depth;
+    bounces.count = std::min(kLanes, batch.active.size() - begin);
+    for (size_t k = 0; k < bounces.count; ++k) {
+      const uint32_t i = batch.order[begin + k];
+      const uint32_t index = batch.active[i];
+      batch.survives[index] = false;
+      bounces.arrivals[k] = {&paths[index], index, &batch.vertices[i], batch.cells[i], 0, false};
+      if (batch.cells[i] != kNoCell)
+        prefetchCell(*settings.guide, batch.cells[i]);  // needed some steps later
     }
-    for (const Bounce& bounce : takeSteps(settings, batch, Bounces(batch.bounces.data(), count)))
-      batch.survives[bounce.index] = bounce.survives;
+    takeSteps(settings, batch, bounces);
+    for (size_t i = 0; i < bounces.count; ++i)
+      batch.survives[bounces.arrivals[i].index] = bounces.survives[i] != 0;
   }
   size_t left = 0;
   for (size_t i = 0; i < batch.active.size(); ++i) {

@@ -49,12 +49,16 @@ constexpr const char* kDeviceConfig = "frequency_level=simd256";
 size_t fillPacket(RTCRay8& packet, int* valid, std::span<const Ray> rays) {
   static_assert(sizeof(Ray) == 8 * sizeof(float));  // two rows of four numbers
   const size_t count = std::min(rays.size(), kPacket);
-  const auto row = [&](size_t number) {
-    return [=](size_t i) { return &rays[std::min(i, count - 1)].origin.x + 4 * number; };
-  };
-  for (size_t first = 0; first < kPacket; first += 4) {
-    toColumns(first, row(0), packet.org_x, packet.org_y, packet.org_z, packet.dir_x);
-    toColumns(first, row(1), packet.dir_y, packet.dir_z, packet.tfar, packet.time);
+  const Ray* first = rays.data();
+  Ray padded[kPacket];
+  if (count < kPacket) {
+    for (size_t i = 0; i < kPacket; ++i) padded[i] = rays[std::min(i, count - 1)];
+    first = padded;
+  }
+  const auto row = [&](size_t number) { return [=](size_t i) { return &first[i].origin.x + 4 * number; }; };
+  for (size_t lane = 0; lane < kPacket; lane += 4) {
+    toColumns(lane, row(0), packet.org_x, packet.org_y, packet.org_z, packet.dir_x);
+    toColumns(lane, row(1), packet.dir_y, packet.dir_z, packet.tfar, packet.time);
   }
   for (size_t i = 0; i < kPacket; ++i) {
     valid[i] = i < count ? -1 : 0;

@@ -3,7 +3,7 @@
 #include <unordered_set>
 
 #include "render/scene/intersector.h"
-#include "render/shape/surface_math.h"
+#include "render/scene/spawn.h"
 
 namespace odis::render {
 
@@ -71,19 +71,7 @@ void Scene::occluded(std::span<const Ray> rays, std::span<uint8_t> hidden) const
 }
 
 Ray Scene::spawn(const SurfacePoint& at, const Vec3& direction, float distance) {
-  // Leave the surface by more than the position may be wrong, to the side that the direction points to.
-  const float error = std::max(at.pError, positionError(maxAbs(at.p)));
-  const float offset = std::copysign(error, dot(at.ng, direction));
-  const Vec3 origin = at.p + at.ng * offset;
-  if (distance == kInfinity) return {origin, direction, distance, at.time};
-  // Aim at the same target from the new origin, and stop before it by what its own position may be wrong and
-  // by what is lost of a long distance.
-  const Vec3 target = at.p + direction * distance;
-  const Vec3 toTarget = target - origin;
-  const float remaining = length(toTarget);
-  const float margin = std::max(remaining * 1e-4f, 2 * (error + positionError(maxAbs(target))));
-  if (!(remaining > margin)) return {origin, direction, 0.0f, at.time};
-  return {origin, toTarget * (1 / remaining), remaining - margin, at.time};
+  return spawnRay(at.p, at.ng, at.pError, direction, distance, at.time);
 }
 
 uint64_t Scene::bytes() const {

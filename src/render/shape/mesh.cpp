@@ -101,6 +101,7 @@ std::shared_ptr<Mesh> Mesh::make(MeshData data, const MeshOptions& options, cons
 }
 
 Mesh::Mesh(MeshData data, const MeshOptions& options) {
+  m_mesh = this;
   if (options.faceNormals)
     data.normals.clear();
   else if (data.normals.empty())

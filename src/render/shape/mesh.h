@@ -76,6 +76,7 @@ class Mesh final : public Shape {
   SurfacePoint placeOn(uint32_t triangle, const Vec2& barycentric) const;
 
  private:
+  friend class MeshPoints;
   // All that is known of a vertex, in one piece: a hit touches three of these and one triangle.
   struct alignas(32) Vertex {
     Vec3 position, normal{0, 0, 0};

@@ -28,6 +28,7 @@ struct RawHit {
   const Placement* instance = nullptr;
 };
 
+class Mesh;
 class Shape;
 
 // What a ray met: null and nothing else if it met nothing.
@@ -92,6 +93,8 @@ class Shape {
   virtual bool hasAttribute(const std::string& /*name*/) const { return false; }
   virtual uint64_t bytes() const { return 0; }
 
+  // This shape if it is a mesh, else null.
+  const Mesh* mesh() const { return m_mesh; }
   const Bsdf& bsdf() const { return *m_bsdf; }
   const SurfaceEmitter* emitter() const { return m_emitter.get(); }
   // Whether an area light may lie on it.
@@ -101,6 +104,9 @@ class Shape {
   SurfaceEmitter* emitter() { return m_emitter.get(); }
   void setBsdf(BsdfPtr bsdf) { m_bsdf = std::move(bsdf); }
   void setEmitter(std::shared_ptr<SurfaceEmitter> emitter) { m_emitter = std::move(emitter); }
+
+ protected:
+  const Mesh* m_mesh = nullptr;
 
  private:
   BsdfPtr m_bsdf;

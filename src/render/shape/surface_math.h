@@ -12,7 +12,7 @@ inline float positionError(float magnitude) {
 }
 
 inline float maxAbs(const Vec3& v) {
-  return std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)});
+  return std::max(std::max(std::abs(v.x), std::abs(v.y)), std::abs(v.z));
 }
 
 // `v` over its length, in double precision so that tiny vectors have a direction too; `fallback` if it has

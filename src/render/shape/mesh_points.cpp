@@ -1,0 +1,115 @@
+#include "render/shape/mesh_points.h"
+
+#include <odis/instruction_sets.h>
+
+#include "render/shape/surface_math.h"
+
+namespace odis::render {
+
+namespace {
+
+// Rows of four numbers begin at pointers, one of each lane, and an offset.
+template <class T>
+auto rowsOf(T* const* pointers, size_t offset) {
+  return [pointers, offset](size_t lane) {
+    return reinterpret_cast<std::conditional_t<std::is_const_v<T>, const float, float>*>(pointers[lane]) +
+           offset;
+  };
+}
+
+}  // namespace
+
+void MeshPoints::add(const Hit& hit, const Ray& ray, Vertex& vertex) {
+  const size_t i = m_count++;
+  const Mesh& mesh = *hit.shape->mesh();
+  const Mesh::Face& face = mesh.m_faces[hit.raw.primitive];
+  m_faces[i] = &face;
+  for (size_t corner = 0; corner < 3; ++corner) m_corners[corner][i] = &mesh.m_vertices[face.corners[corner]];
+  m_hits[i] = &hit;
+  m_rays[i] = &ray;
+  m_vertices[i] = &vertex;
+  m_columns.b1[i] = hit.raw.u;
+  m_columns.b2[i] = hit.raw.v;
+  m_columns.time[i] = ray.time;
+  m_columns.hasUvs[i] = mesh.m_hasUvs;
+}
+
+void MeshPoints::gather() {
+  Columns& c = m_columns;
+  Column ignored[3];
+  for (size_t first = 0; first < m_count; first += 4) {
+    toColumns(first, rowsOf(m_faces, 0), ignored[0].of, ignored[1].of, ignored[2].of, c.faceNormal.x.of);
+    toColumns(first, rowsOf(m_faces, 4), c.faceNormal.y.of, c.faceNormal.z.of, ignored[0].of, c.magnitude.of);
+    for (size_t k = 0; k < 3; ++k) {
+      Columns3 &position = c.position[k], &normal = c.normal[k];
+      toColumns(first, rowsOf(m_corners[k], 0), position.x.of, position.y.of, position.z.of, normal.x.of);
+      toColumns(first, rowsOf(m_corners[k], 4), normal.y.of, normal.z.of, c.u[k].of, c.v[k].of);
+    }
+    toColumns(first, rowsOf(m_rays, 3), c.direction.x.of, c.direction.y.of, c.direction.z.of, ignored[0].of);
+  }
+}
+
+ODIS_WIDE void MeshPoints::compute(size_t count, Columns& c) {
+  for (size_t i = 0, end = endOfLanes(count); i < end; ++i) {
+    const float b1 = c.b1[i], b2 = c.b2[i], b0 = 1 - b1 - b2;
+    const auto mix = [&](const Columns3(&of)[3]) { return of[0][i] * b0 + of[1][i] * b1 + of[2][i] * b2; };
+    c.p.set(i, mix(c.position));
+    const bool hasUvs = c.hasUvs[i];
+    c.uvX[i] = hasUvs ? c.u[0][i] * b0 + c.u[1][i] * b1 + c.u[2][i] * b2 : b1;
+    c.uvY[i] = hasUvs ? c.v[0][i] * b0 + c.v[1][i] * b1 + c.v[2][i] * b2 : b2;
+    c.pError[i] = positionError(c.magnitude[i]);
+
+    const Vec3 ng = c.faceNormal[i], sum = mix(c.normal);
+    const float squared = lengthSquared(sum);
+    const bool usable = (squared > 1e-20f) & (squared < 1e20f);
+    const Vec3 unit = sum * (1 / std::sqrt(squared));
+    const Vec3 n(usable ? unit.x : ng.x, usable ? unit.y : ng.y, usable ? unit.z : ng.z);
+    c.isDegenerate[i] = !usable & !(squared == 0);
+    const bool flips = dot(n, ng) < 0;
+    c.ng.set(i, {flips ? -ng.x : ng.x, flips ? -ng.y : ng.y, flips ? -ng.z : ng.z});
+    const CoordinateFrame frame(n);
+    c.s.set(i, frame.s);
+    c.t.set(i, frame.t);
+    c.n.set(i, n);
+    c.wo.set(i, frame.toLocal(-c.direction[i]));
+  }
+}
+
+void MeshPoints::scatter() {
+  const Columns& c = m_columns;
+  constexpr size_t kLast = offsetof(Vertex, at.pError) / sizeof(float);
+  for (size_t first = 0; first < m_count; first += 4) {
+    fromColumns(first, rowsOf(m_vertices, 0), c.p.x.of, c.p.y.of, c.p.z.of, c.ng.x.of);
+    fromColumns(first, rowsOf(m_vertices, 4), c.ng.y.of, c.ng.z.of, c.s.x.of, c.s.y.of);
+    fromColumns(first, rowsOf(m_vertices, 8), c.s.z.of, c.t.x.of, c.t.y.of, c.t.z.of);
+    fromColumns(first, rowsOf(m_vertices, 12), c.n.x.of, c.n.y.of, c.n.z.of, c.uvX.of);
+    fromColumns(first, rowsOf(m_vertices, 16), c.uvY.of, c.time.of, c.b1.of, c.b2.of);
+    fromColumns(first, rowsOf(m_vertices, kLast), c.pError.of, c.wo.x.of, c.wo.y.of, c.wo.z.of);
+  }
+}
+
+void MeshPoints::find() {
+  Vertex spare;
+  for (size_t i = m_count; i % 4 != 0; ++i) {  // rows come in fours
+    m_faces[i] = m_faces[i - 1];
+    for (auto& corners : m_corners) corners[i] = corners[i - 1];
+    m_rays[i] = m_rays[i - 1];
+    m_vertices[i] = &spare;
+  }
+  gather();
+  compute(m_count, m_columns);
+  scatter();
+  for (size_t i = 0; i < m_count; ++i) {
+    auto& [at, wo] = *m_vertices[i];
+    const Hit& hit = *m_hits[i];
+    at.shape = hit.shape;
+    at.primitive = hit.raw.primitive;
+    at.texture = nullptr;
+    if (!hit.raw.instance && !hit.shape->tangents() && !m_columns.isDegenerate[i]) continue;
+    at = hit.surfacePoint(*m_rays[i]);
+    wo = at.shading.toLocal(-m_rays[i]->direction);
+  }
+  m_count = 0;
+}
+
+}  // namespace odis::render

@@ -1,0 +1,47 @@
+// Points on meshes that several rays met, side by side: what Hit::surfacePoint() finds of each.
+#pragma once
+
+#include "render/math/columns.h"
+#include "render/shape/mesh.h"
+
+namespace odis::render {
+
+class MeshPoints {
+ public:
+  // Whether find() can fill in what the ray met.
+  static bool knows(const Hit& hit) { return hit.shape->mesh() && !hit.motion; }
+  bool full() const { return m_count == kLanes; }
+  // `vertex` is to be filled in with the place where the ray met a mesh.
+  void add(const Hit& hit, const Ray& ray, Vertex& vertex);
+  // Fills in the vertices, and lets go of them.
+  void find();
+
+ private:
+  // What is computed, and of what.
+  struct Columns {
+    Columns3 position[3], normal[3];  // of the corners
+    Column u[3], v[3];
+    Columns3 faceNormal;
+    Column magnitude, b1, b2;
+    IntColumn hasUvs;
+    Columns3 direction;  // of the ray
+
+    Columns3 p, ng, s, t, n, wo;
+    Column uvX, uvY, time, pError;
+    IntColumn isDegenerate;  // whether interpolated normals need more precision
+  };
+
+  void gather();
+  static void compute(size_t count, Columns& columns);
+  void scatter();
+
+  size_t m_count = 0;
+  const Mesh::Face* m_faces[kLanes];
+  const Mesh::Vertex* m_corners[3][kLanes];
+  const Hit* m_hits[kLanes];
+  const Ray* m_rays[kLanes];
+  Vertex* m_vertices[kLanes];
+  Columns m_columns;
+};
+
+}  // namespace odis::render
