@@ -64,6 +64,8 @@ struct DiffuseReflection {
 struct DiffuseSide {
   const RgbParameter* reflectance = nullptr;  // null: some other BSDF
   float side = 0;
+
+  bool scatters(const Vec3& wo) const { return side != 0 && std::abs(wo.z) > 0; }
 };
 
 // Static properties, fixed at construction.
@@ -98,7 +100,8 @@ class Bsdf {
   // Whether all that the functions above say here is what they say of a Lambertian surface, and of which, so
   // that callers may work it out by themselves. Defined in parameter.h.
   bool isDiffuse(const SurfacePoint& at, const Vec3& wo, DiffuseReflection& reflection) const;
-  const DiffuseSide& diffuseSide(bool back) const { return m_diffuse[back]; }
+  // The side that a direction is on.
+  const DiffuseSide& diffuseSide(const Vec3& wo) const { return m_diffuse[!(wo.z >= 0)]; }
 
   const BsdfTraits& traits() const { return m_traits; }
 

@@ -38,9 +38,9 @@ class RgbParameter {
 };
 
 inline bool Bsdf::isDiffuse(const SurfacePoint& at, const Vec3& wo, DiffuseReflection& reflection) const {
-  const auto& [reflectance, side] = m_diffuse[!(wo.z >= 0)];
-  if (!reflectance) return false;
-  reflection = {(*reflectance)(at), std::abs(wo.z) > 0 ? side : 0.0f};
+  const DiffuseSide& side = diffuseSide(wo);
+  if (!side.reflectance) return false;
+  reflection = {(*side.reflectance)(at), side.scatters(wo) ? side.side : 0.0f};
   return true;
 }
 

@@ -11,8 +11,9 @@ class TwoSided final : public Bsdf {
  public:
   TwoSided(BsdfPtr front, BsdfPtr back) : m_sides{std::move(front), std::move(back)} {
     m_traits = m_sides[0]->traits() | m_sides[1]->traits();
-    m_diffuse[0] = m_sides[0]->diffuseSide(false);
-    m_diffuse[1] = m_sides[1]->diffuseSide(false);
+    const Vec3 outside(0, 0, 1);
+    m_diffuse[0] = m_sides[0]->diffuseSide(outside);
+    m_diffuse[1] = m_sides[1]->diffuseSide(outside);
     m_diffuse[1].side *= -1;
   }
 

@@ -3,6 +3,7 @@
 
 #include <array>
 
+#include "render/math/vertex_columns.h"
 #include "render/path/guided_bsdf.h"
 #include "render/sampler/sampler_block.h"
 
@@ -19,12 +20,8 @@ struct VertexNumbers {
 };
 
 // Where paths are scattered.
-struct Surfaces {
-  Columns3 p, ng;    // see SurfacePoint
-  Columns3 s, t, n;  // the shading frame
-  Columns3 wo;       // see Vertex
-  Columns3 facing;   // facingNormal()
-  Column pError;
+struct Surfaces : VertexColumns {
+  Columns3 facing;  // facingNormal()
   const Bsdf* bsdfs[kLanes];
   // Where the BSDF is that of a Lambertian surface, which costs no virtual calls: how it scatters.
   IntColumn isDiffuse;
@@ -145,6 +142,9 @@ struct Batch {
     met.resize(count);
     buckets.resize(count);
     survives.resize(count);
+    places.resize(count);
+    placed.resize(count);
+    found.resize(count);
     shadowRays.resize(count + 1);  // room for one that is not asked for
     shadowSegments.resize(count + 1);
     hidden.resize(count + 1);

@@ -247,7 +247,7 @@ void requestShadowRays(const PathSettings& settings, Batch& batch, Bounces& boun
     const bool asked = light.shadowRayProbability[i] > 0;
     batch.shadowRays[batch.shadowCount] = {arrival.index, Rgb(rays.radiance[i])};
     batch.shadowSegments[batch.shadowCount] = {rays.origin[i], rays.direction[i], rays.tMax[i],
-                                               arrival.vertex->at.time};
+                                               bounces.at.time[i]};
     batch.shadowCount += asked;
     arrival.path->counts.shadowRays += asked;
   }

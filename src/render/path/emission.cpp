@@ -107,7 +107,10 @@ void findGuidableLobes(const PathSettings& settings, Batch& batch, Bounces& boun
     arrival.guidable = 0;
     if (!asked || !arrival.scatters) continue;
     const Vertex& vertex = *arrival.vertex;
-    arrival.guidable = vertex.at.shape->bsdf().guidableProbability(vertex.at, vertex.wo);
+    const Bsdf& bsdf = vertex.at.shape->bsdf();
+    const DiffuseSide& side = bsdf.diffuseSide(vertex.wo);
+    arrival.guidable = !side.reflectance ? bsdf.guidableProbability(vertex.at, vertex.wo)
+                                         : (side.scatters(vertex.wo) ? 1.0f : 0.0f);
   }
 }
 

@@ -31,23 +31,7 @@ void readSurfaces(Bounces& bounces) {
   Surfaces& at = bounces.at;
   const Vertex* vertices[kLanes];
   for (size_t i = 0; i < kLanes; ++i) vertices[i] = bounces.arrivals[std::min(i, bounces.count - 1)].vertex;
-  static_assert(offsetof(Vertex, wo) == offsetof(SurfacePoint, pError) + sizeof(float));
-  for (size_t first = 0; first < bounces.count; first += 4) {
-    const auto row = [&](size_t offset) {
-      return [&vertices, offset](size_t lane) {
-        return reinterpret_cast<const float*>(vertices[lane]) + offset;
-      };
-    };
-    static_assert(offsetof(SurfacePoint, p) == 0 && offsetof(SurfacePoint, ng) == 12 &&
-                  offsetof(SurfacePoint, shading) == 24);
-    Column uv;  // not asked for
-    toColumns(first, row(0), at.p.x.of, at.p.y.of, at.p.z.of, at.ng.x.of);
-    toColumns(first, row(4), at.ng.y.of, at.ng.z.of, at.s.x.of, at.s.y.of);
-    toColumns(first, row(8), at.s.z.of, at.t.x.of, at.t.y.of, at.t.z.of);
-    toColumns(first, row(12), at.n.x.of, at.n.y.of, at.n.z.of, uv.of);
-    toColumns(first, row(offsetof(SurfacePoint, pError) / sizeof(float)), at.pError.of, at.wo.x.of,
-              at.wo.y.of, at.wo.z.of);
-  }
+  at.read(vertices, bounces.count);
   findFacingNormals(bounces);
   for (size_t i = 0; i < bounces.count; ++i) {
     const Arrival& arrival = bounces.arrivals[i];
@@ -150,7 +134,7 @@ void departRays(Bounces& bounces) {
     path.bySampling = !isDiscrete(lobe);
     path.directionPdf = bounces.next.pdf[i];
     path.previous = bounces.references[i];
-    path.ray = {origins[i], directions[i], kInfinity, arrival.vertex->at.time};
+    path.ray = {origins[i], directions[i], kInfinity, bounces.at.time[i]};
   }
 }
 

@@ -1,4 +1,5 @@
 #include <array>
+#include <cstring>
 #include <new>
 #include <numeric>
 
@@ -36,11 +37,16 @@ void sortByBsdf(Batch& batch) {
   for (size_t k = 0; k < batch.metCount; ++k) batch.order[ends[batch.buckets[k]]++] = batch.met[k];
 }
 
+// In two vectors: that of its numbers one by one is how Imath copies.
+void copyRay(const Ray& ray, Ray& to) {
+  std::memcpy(static_cast<void*>(&to), &ray, sizeof(Ray));
+}
+
 // Traces the paths' rays and turns what they hit into vertices.
 void findVertices(const PathSettings& settings, std::span<const Path> paths, Batch& batch) {
   const size_t count = batch.active.size();
   batch.reserve(count);
-  for (size_t i = 0; i < count; ++i) batch.rays[i] = paths[batch.active[i]].ray;
+  for (size_t i = 0; i < count; ++i) copyRay(paths[batch.active[i]].ray, batch.rays[i]);
   settings.scene->intersect({batch.rays.data(), count}, batch.hits);
   for (size_t i = 0; i < count; ++i) batch.vertices[i].at.shape = batch.hits[i].shape;
   sortByBsdf(batch);
@@ -65,19 +71,17 @@ void findVertices(const PathSettings& settings, std::span<const Path> paths, Bat
 void findGuidingCells(const PathSettings& settings, std::span<const Path> paths, Batch& batch) {
   batch.cells.assign(batch.active.size(), kNoCell);
   if (!settings.guide) return;
-  batch.places.clear();
-  batch.placed.clear();
+  size_t count = 0;
   for (const uint32_t i : batch.surfaces()) {
     const auto& [at, wo] = batch.vertices[i];
     const Path& path = paths[batch.active[i]];
-    if (!at.shape->bsdf().traits().evaluable || !guidesAt(settings, path)) continue;
-    batch.places.push_back({toOdis(at.p), toOdis(facingNormal(at, wo)), path.identity.pixel,
-                            path.identity.sample, path.guidable == 0});
-    batch.placed.push_back(i);
+    batch.places[count] = {toOdis(at.p), toOdis(facingNormal(at, wo)), path.identity.pixel,
+                           path.identity.sample, path.guidable == 0};
+    batch.placed[count] = i;
+    count += at.shape->bsdf().traits().evaluable && guidesAt(settings, path);
   }
-  batch.found.resize(batch.places.size());
-  findCells(*settings.guide, batch.places.data(), batch.places.size(), batch.found.data());
-  for (size_t i = 0; i < batch.placed.size(); ++i) batch.cells[batch.placed[i]] = batch.found[i];
+  findCells(*settings.guide, batch.places.data(), count, batch.found.data());
+  for (size_t i = 0; i < count; ++i) batch.cells[batch.placed[i]] = batch.found[i];
 }
 
 // Takes some paths through all steps of a bounce; those that are scattered remain.
@@ -134,6 +138,17 @@ void activateAll(std::span<const Path> paths, Batch& batch) {
   std::iota(batch.active.begin(), batch.active.end(), 0u);
 }
 
+// Not inline, so that the compiler need not look for a thread's batch again and again.
+[[gnu::noinline]] void traceBatch(const PathSettings& settings, std::span<Path> paths, Batch& batch) {
+  activateAll(paths, batch);
+  for (int depth = 1; !batch.active.empty(); ++depth) {
+    findVertices(settings, paths, batch);
+    findGuidingCells(settings, paths, batch);
+    bounceAll(settings, paths, depth, batch);
+    traceShadowRays(*settings.scene, paths, batch);
+  }
+}
+
 // Whether what the camera sees at a vertex is what a sampled direction leads to, as in a mirror. A coat that
 // reflects less than what it covers is no mirror.
 bool leadsOn(const Bsdf& bsdf, const Vertex& vertex, Lobe lobe) {
@@ -168,13 +183,7 @@ void tracePaths(const PathSettings& settings, std::span<Path> paths, std::vector
   batch.recording = vertices != nullptr;
   if (batch.recording)
     for (Path& path : paths) path.handle = batch.recorder.begin(path.identity);
-  activateAll(paths, batch);
-  for (int depth = 1; !batch.active.empty(); ++depth) {
-    findVertices(settings, paths, batch);
-    findGuidingCells(settings, paths, batch);
-    bounceAll(settings, paths, depth, batch);
-    traceShadowRays(*settings.scene, paths, batch);
-  }
+  traceBatch(settings, paths, batch);
   if (!vertices) return;
   const ArrayView<const PathVertex> met = batch.recorder.finish();
   vertices->insert(vertices->end(), met.begin(), met.end());

@@ -10,11 +10,8 @@ namespace {
 
 // Rows of four numbers begin at pointers, one of each lane, and an offset.
 template <class T>
-auto rowsOf(T* const* pointers, size_t offset) {
-  return [pointers, offset](size_t lane) {
-    return reinterpret_cast<std::conditional_t<std::is_const_v<T>, const float, float>*>(pointers[lane]) +
-           offset;
-  };
+auto rowsOf(const T* const* pointers, size_t offset) {
+  return [=](size_t lane) { return reinterpret_cast<const float*>(pointers[lane]) + offset; };
 }
 
 }  // namespace
@@ -75,19 +72,6 @@ ODIS_WIDE void MeshPoints::compute(size_t count, Columns& c) {
   }
 }
 
-void MeshPoints::scatter() {
-  const Columns& c = m_columns;
-  constexpr size_t kLast = offsetof(Vertex, at.pError) / sizeof(float);
-  for (size_t first = 0; first < m_count; first += 4) {
-    fromColumns(first, rowsOf(m_vertices, 0), c.p.x.of, c.p.y.of, c.p.z.of, c.ng.x.of);
-    fromColumns(first, rowsOf(m_vertices, 4), c.ng.y.of, c.ng.z.of, c.s.x.of, c.s.y.of);
-    fromColumns(first, rowsOf(m_vertices, 8), c.s.z.of, c.t.x.of, c.t.y.of, c.t.z.of);
-    fromColumns(first, rowsOf(m_vertices, 12), c.n.x.of, c.n.y.of, c.n.z.of, c.uvX.of);
-    fromColumns(first, rowsOf(m_vertices, 16), c.uvY.of, c.time.of, c.b1.of, c.b2.of);
-    fromColumns(first, rowsOf(m_vertices, kLast), c.pError.of, c.wo.x.of, c.wo.y.of, c.wo.z.of);
-  }
-}
-
 void MeshPoints::find() {
   Vertex spare;
   for (size_t i = m_count; i % 4 != 0; ++i) {  // rows come in fours
@@ -98,7 +82,7 @@ void MeshPoints::find() {
   }
   gather();
   compute(m_count, m_columns);
-  scatter();
+  m_columns.write(m_vertices, m_count);
   for (size_t i = 0; i < m_count; ++i) {
     auto& [at, wo] = *m_vertices[i];
     const Hit& hit = *m_hits[i];

@@ -1,7 +1,7 @@
 // Points on meshes that several rays met, side by side: what Hit::surfacePoint() finds of each.
 #pragma once
 
-#include "render/math/columns.h"
+#include "render/math/vertex_columns.h"
 #include "render/shape/mesh.h"
 
 namespace odis::render {
@@ -18,22 +18,18 @@ class MeshPoints {
 
  private:
   // What is computed, and of what.
-  struct Columns {
+  struct Columns : VertexColumns {
     Columns3 position[3], normal[3];  // of the corners
     Column u[3], v[3];
     Columns3 faceNormal;
-    Column magnitude, b1, b2;
+    Column magnitude;
     IntColumn hasUvs;
-    Columns3 direction;  // of the ray
-
-    Columns3 p, ng, s, t, n, wo;
-    Column uvX, uvY, time, pError;
+    Columns3 direction;      // of the ray
     IntColumn isDegenerate;  // whether interpolated normals need more precision
   };
 
   void gather();
   static void compute(size_t count, Columns& columns);
-  void scatter();
 
   size_t m_count = 0;
   const Mesh::Face* m_faces[kLanes];
