@@ -65,7 +65,8 @@ struct Columns3 {
 // Four numbers that lie side by side, of each of the lanes `first` to `first` + 3, go to four columns, which
 // are aligned to 16 bytes. row(lane) says where a lane has its four.
 template <class Row>
-void toColumns(size_t first, const Row& row, float* a, float* b, float* c, float* d) {
+[[gnu::always_inline]] inline void toColumns(size_t first, const Row& row, float* a, float* b, float* c,
+                                             float* d) {
   __m128 r0 = _mm_loadu_ps(row(first)), r1 = _mm_loadu_ps(row(first + 1)), r2 = _mm_loadu_ps(row(first + 2)),
          r3 = _mm_loadu_ps(row(first + 3));
   _MM_TRANSPOSE4_PS(r0, r1, r2, r3);
@@ -77,8 +78,8 @@ void toColumns(size_t first, const Row& row, float* a, float* b, float* c, float
 
 // The way back: row(lane) says where the four numbers go.
 template <class Row>
-void fromColumns(size_t first, const Row& row, const float* a, const float* b, const float* c,
-                 const float* d) {
+[[gnu::always_inline]] inline void fromColumns(size_t first, const Row& row, const float* a, const float* b,
+                                               const float* c, const float* d) {
   __m128 r0 = _mm_load_ps(a + first), r1 = _mm_load_ps(b + first), r2 = _mm_load_ps(c + first),
          r3 = _mm_load_ps(d + first);
   _MM_TRANSPOSE4_PS(r0, r1, r2, r3);

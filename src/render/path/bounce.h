@@ -3,6 +3,7 @@
 
 #include <array>
 
+#include "render/emitter/light_triangles.h"
 #include "render/math/vertex_columns.h"
 #include "render/path/guided_bsdf.h"
 #include "render/sampler/sampler_block.h"
@@ -27,6 +28,13 @@ struct Surfaces : VertexColumns {
   IntColumn isDiffuse;
   Columns3 reflectance;
   Column side;
+};
+
+// The lights that are chosen, and the points on them.
+struct ChosenLights {
+  std::array<LightSampler::Choice, kLanes> choices;
+  Column probability;  // of the choice
+  LightSamples samples;
 };
 
 // Next-event estimation, before it is known whether something hides the light.
@@ -86,6 +94,7 @@ struct Bounces {
   Surfaces at;
   GuidedBsdfs bsdfs;                              // that directions are sampled from
   std::array<LightReference, kLanes> references;  // that the choices of lights depend on
+  ChosenLights chosen;
   LightEstimates light;
   DirectionDraws draws;
   NextDirections next;

@@ -1,7 +1,6 @@
 // Next-event estimation: the choice of a light, its MIS weight, shadow rays.
 #include <odis/instruction_sets.h>
 
-#include "render/emitter/light_triangles.h"
 #include "render/emitter/moving_light.h"
 #include "render/math/warp.h"
 #include "render/path/bounce.h"
@@ -15,15 +14,9 @@ LightReference lightReference(const SurfacePoint& at, const Vec3& wo) {
 
 namespace {
 
-// What lanes choose, and the points of lights that they sample.
-struct ChosenLights {
-  std::array<LightSampler::Choice, kLanes> choices;
-  Column probability;  // of the choice
-  LightSamples samples;
-};
-
 // Chooses lights for all that may be lit; false if none of them may.
-bool chooseLights(const PathSettings& settings, Bounces& bounces, ChosenLights& lights) {
+bool chooseLights(const PathSettings& settings, Bounces& bounces) {
+  ChosenLights& lights = bounces.chosen;
   const VertexNumbers& numbers = bounces.numbers;
   const Surfaces& at = bounces.at;
   std::array<LightSampler::Request, kLanes> requests;
@@ -49,8 +42,8 @@ EmitterSample sampleChosen(const Bounces& bounces, size_t lane, const LightSampl
 }
 
 // Samples one of the environments in the lanes that chose it.
-void sampleEnvironment(const Emitter& environment, const Bounces& bounces, std::span<const uint8_t> lanes,
-                       ChosenLights& lights) {
+void sampleEnvironment(const Emitter& environment, std::span<const uint8_t> lanes, Bounces& bounces) {
+  ChosenLights& lights = bounces.chosen;
   std::array<LightDraw, kLanes> draws;
   std::array<EmitterSample, kLanes> samples;
   for (size_t k = 0; k < lanes.size(); ++k) {
@@ -63,7 +56,8 @@ void sampleEnvironment(const Emitter& environment, const Bounces& bounces, std::
 }
 
 // Samples points or directions of the lights that were chosen.
-void samplePoints(Bounces& bounces, ChosenLights& lights) {
+void samplePoints(Bounces& bounces) {
+  ChosenLights& lights = bounces.chosen;
   LightTriangles triangles;
   LaneList environments, others, dark;
   for (size_t i = 0; i < bounces.count; ++i) {
@@ -87,14 +81,15 @@ void samplePoints(Bounces& bounces, ChosenLights& lights) {
     const Emitter* environment = lights.choices[rest.front()].emitter;
     const auto end = std::partition(rest.begin(), rest.end(),
                                     [&](size_t i) { return lights.choices[i].emitter == environment; });
-    sampleEnvironment(*environment, bounces, {rest.begin(), end}, lights);
+    sampleEnvironment(*environment, {rest.begin(), end}, bounces);
     rest = {end, rest.end()};
   }
 }
 
 // What Lambertian surfaces scatter of the samples. `arrives` is whether a sample brings light at all.
-ODIS_WIDE void estimateAtDiffuse(const LightSamples& samples, Bounces& bounces, IntColumn& arrives) {
+ODIS_WIDE void estimateAtDiffuse(Bounces& bounces, IntColumn& arrives) {
   LightEstimates& light = bounces.light;
+  const LightSamples& samples = bounces.chosen.samples;
   const Surfaces& at = bounces.at;
   for (size_t i = 0, end = endOfLanes(bounces.count); i < end; ++i) {
     const Vec3 wi = samples.wi[i];
@@ -119,12 +114,12 @@ void estimateElsewhere(const LaneList& lanes, Bounces& bounces) {
 }
 
 // From values of BSDFs to radiance; lanes that are lit remain in `lit`.
-ODIS_WIDE void estimateRadiance(const ChosenLights& lights, Bounces& bounces, IntColumn& lit) {
+ODIS_WIDE void estimateRadiance(Bounces& bounces, IntColumn& lit) {
   LightEstimates& light = bounces.light;
-  const LightSamples& samples = lights.samples;
+  const LightSamples& samples = bounces.chosen.samples;
   for (size_t i = 0, end = endOfLanes(bounces.count); i < end; ++i) {
     const Rgb value(light.radiance[i]);
-    const float pdf = samples.pdf[i] * lights.probability[i];
+    const float pdf = samples.pdf[i] * bounces.chosen.probability[i];
     light.radiance.set(i, value * Rgb(samples.radiance[i]) / pdf);
     light.pdf[i] = samples.delta[i] ? 0.0f : pdf;
     lit[i] = lit[i] & !isBlack(value);
@@ -150,15 +145,14 @@ void fetchTexels(const LaneList& lit, Bounces& bounces) {
 }  // namespace
 
 LaneList sampleLights(const PathSettings& settings, Bounces& bounces) {
-  ChosenLights lights;
-  if (!chooseLights(settings, bounces, lights)) return {};
-  samplePoints(bounces, lights);
+  if (!chooseLights(settings, bounces)) return {};
+  samplePoints(bounces);
   IntColumn arrives;
-  estimateAtDiffuse(lights.samples, bounces, arrives);
+  estimateAtDiffuse(bounces, arrives);
   LaneList elsewhere, lit;
   for (size_t i = 0; i < bounces.count; ++i) elsewhere.addIf(arrives[i] & !bounces.at.isDiffuse[i], i);
   estimateElsewhere(elsewhere, bounces);
-  estimateRadiance(lights, bounces, arrives);
+  estimateRadiance(bounces, arrives);
   for (size_t i = 0; i < bounces.count; ++i) lit.addIf(arrives[i], i);
   fetchTexels(lit, bounces);
   return lit;

@@ -24,6 +24,7 @@ int tilesX(const Crop& crop) {
 // The samples of a pixel that are still to be traced.
 struct PixelSamples {
   uint32_t pixel;
+  Vec2i at;  // on the film
   SampleRange samples;
 };
 
@@ -41,7 +42,7 @@ std::vector<PixelSamples> samplesOfTile(const Pass& pass, uint32_t tile) {
     if (x >= crop.width || y >= crop.height) continue;
     const uint32_t pixel = uint32_t(y) * uint32_t(crop.width) + uint32_t(x);
     if (const SampleRange samples = pass.samples(pixel); samples.count > 0)
-      pixels.push_back({pixel, samples});
+      pixels.push_back({pixel, Vec2i(crop.x + x, crop.y + y), samples});
   }
   return pixels;
 }
@@ -49,6 +50,7 @@ std::vector<PixelSamples> samplesOfTile(const Pass& pass, uint32_t tile) {
 // The paths that are being traced and what a tile's samples brought; kept from tile to tile for its memory.
 struct TileResult {
   std::vector<Path> paths;
+  std::vector<Vec2i> places;  // of their pixels on the film
   std::vector<FrameSample> samples;
   std::vector<PathVertex> vertices;
   RayCounts counts;
@@ -99,10 +101,9 @@ Vec2i pixelAt(const FilmSettings& film, uint32_t index) {
   return {film.crop.x + int(index) % film.crop.width, film.crop.y + int(index) / film.crop.width};
 }
 
-// The path of a sample of a pixel; addCameraRays() gives it its ray.
-Path pathWithoutRay(const Pass& pass, uint32_t pixel, uint32_t sample) {
+// The path of a sample of a pixel, which lies at `at` on the film; addCameraRays() gives it its ray.
+Path pathWithoutRay(const Pass& pass, uint32_t pixel, Vec2i at, uint32_t sample) {
   const Scene& scene = *pass.path.scene;
-  const Vec2i at = pixelAt(scene.film(), pixel);
   const uint32_t place = uint32_t(at.y) * uint32_t(scene.film().width) + uint32_t(at.x);
   Path path({Vec3(0, 0, 0), Vec3(0, 0, 1)}, {pass.sampler, pass.seed, place, sample, pass.redrawn});
   path.hidesEnvironment = scene.integrator().hideEmitters;
@@ -112,18 +113,17 @@ Path pathWithoutRay(const Pass& pass, uint32_t pixel, uint32_t sample) {
   return path;
 }
 
-// Gives paths their camera rays, drawing the numbers of several at once.
-void addCameraRays(const Scene& scene, std::span<Path> paths) {
+// Gives paths, whose pixels lie at these places on the film, their camera rays, drawing the numbers of several
+// at once.
+void addCameraRays(const Scene& scene, std::span<Path> paths, std::span<const Vec2i> places) {
   for (size_t begin = 0; begin < paths.size(); begin += SamplerBlock::kSize) {
     const auto some = paths.subspan(begin, std::min(SamplerBlock::kSize, paths.size() - begin));
     SamplerBlock samplers;
     for (const Path& path : some) samplers.add(path.sampler);
     NumbersBlock numbers;
     drawCameraNumbers(scene, samplers, numbers);
-    for (size_t i = 0; i < some.size(); ++i) {
-      auto& [pixel, sample, filterWeight] = some[i].identity;
-      some[i].ray = cameraRay(scene, pixelAt(scene.film(), pixel), numbers[i], filterWeight);
-    }
+    for (size_t i = 0; i < some.size(); ++i)
+      some[i].ray = cameraRay(scene, places[begin + i], numbers[i], some[i].identity.sampleWeight);
   }
 }
 
@@ -132,19 +132,21 @@ void renderTile(const Pass& pass, uint32_t tile, TileResult& result) {
   std::vector<PixelSamples> left = samplesOfTile(pass, tile);
   std::vector<Path>& paths = result.paths;
   while (!left.empty()) {
-    for (auto& [pixel, samples] : left) {
-      paths.push_back(pathWithoutRay(pass, pixel, samples.first++));
+    for (auto& [pixel, at, samples] : left) {
+      paths.push_back(pathWithoutRay(pass, pixel, at, samples.first++));
+      result.places.push_back(at);
       --samples.count;
     }
     std::erase_if(left, [](const PixelSamples& p) { return p.samples.count == 0; });
     if (!left.empty() && paths.size() < kLeastPaths) continue;
-    addCameraRays(*pass.path.scene, paths);
+    addCameraRays(*pass.path.scene, paths, result.places);
     if (pass.firstHitsOnly)
       traceFirstHits(pass.path, paths);
     else
       tracePaths(pass.path, paths, pass.wantsVertices ? &result.vertices : nullptr);
     collect(pass, paths, result);
     paths.clear();
+    result.places.clear();
   }
 }
 
@@ -171,8 +173,9 @@ Ray cameraRay(const Scene& scene, Vec2i pixel, const CameraNumbers& numbers, flo
 }
 
 Path cameraPath(const Pass& pass, uint32_t pixel, uint32_t sample) {
-  Path path = pathWithoutRay(pass, pixel, sample);
-  addCameraRays(*pass.path.scene, std::span(&path, 1));
+  const Vec2i at = pixelAt(pass.path.scene->film(), pixel);
+  Path path = pathWithoutRay(pass, pixel, at, sample);
+  addCameraRays(*pass.path.scene, {&path, 1}, {&at, 1});
   return path;
 }
 
@@ -187,6 +190,7 @@ RayCounts runPass(const Pass& pass, Progress& progress, const std::function<bool
           if (stop()) return;
           thread_local TileResult result;
           result.paths.clear();
+          result.places.clear();
           result.samples.clear();
           result.vertices.clear();
           result.counts = {};
