@@ -98,7 +98,7 @@ ODIS_WIDE void estimateAtDiffuse(Bounces& bounces, IntColumn& arrives) {
     light.distance[i] = samples.distance[i];
     light.radiance.set(i, at.reflectance[i] * pdf);  // the value of the BSDF, for the moment
     light.bsdfPdf[i] = light.guidablePdf[i] = pdf;
-    arrives[i] = (samples.pdf[i] > 0) & !isBlack(Rgb(samples.radiance[i]));
+    arrives[i] = samples.pdf[i] > 0 && !isBlack(Rgb(samples.radiance[i]));
   }
 }
 
@@ -122,7 +122,7 @@ ODIS_WIDE void estimateRadiance(Bounces& bounces, IntColumn& lit) {
     const float pdf = samples.pdf[i] * bounces.chosen.probability[i];
     light.radiance.set(i, value * Rgb(samples.radiance[i]) / pdf);
     light.pdf[i] = samples.delta[i] ? 0.0f : pdf;
-    lit[i] = lit[i] & !isBlack(value);
+    lit[i] = lit[i] && !isBlack(value);
   }
 }
 

@@ -156,7 +156,7 @@ ODIS_WIDE void mix(const IntColumn& sources, const Column& mapPdf, Bounces& boun
                         fromMap    ? ofMap.z
                         : fromBsdf ? ofBsdf.z
                                    : weight.z});
-    next.pdf[i] = fromMap | fromBsdf ? mixed : next.pdf[i];
+    next.pdf[i] = (fromMap | fromBsdf) ? mixed : next.pdf[i];
     next.eta[i] = fromMap ? 1.0f : next.eta[i];
     next.lobe[i] = fromMap ? lobe : next.lobe[i];
   }

@@ -113,7 +113,7 @@ Path pathWithoutRay(const Pass& pass, uint32_t pixel, Vec2i at, uint32_t sample)
   return path;
 }
 
-// Gives paths, whose pixels lie at these places on the film, their camera rays, drawing the numbers of several
+// Gives paths, whose pixels lie at these places on the film, their camera rays; draws the numbers of several
 // at once.
 void addCameraRays(const Scene& scene, std::span<Path> paths, std::span<const Vec2i> places) {
   for (size_t begin = 0; begin < paths.size(); begin += SamplerBlock::kSize) {

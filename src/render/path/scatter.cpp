@@ -74,7 +74,7 @@ ODIS_WIDE void keepWeights(Bounces& bounces) {
   for (size_t i = 0, end = endOfLanes(bounces.count); i < end; ++i) {
     const Vec3 weight = next.weight[i];
     bounces.survival[i] = 1;
-    bounces.survives[i] = (next.lobe[i] != int32_t(Lobe::none)) & !isBlack(Rgb(weight));
+    bounces.survives[i] = next.lobe[i] != int32_t(Lobe::none) && !isBlack(Rgb(weight));
     bounces.weight.set(i, bounces.survives[i] ? weight : Vec3(0, 0, 0));
   }
 }

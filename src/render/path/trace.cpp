@@ -1,5 +1,6 @@
+#include <xmmintrin.h>
+
 #include <array>
-#include <cstring>
 #include <new>
 #include <numeric>
 
@@ -37,9 +38,11 @@ void sortByBsdf(Batch& batch) {
   for (size_t k = 0; k < batch.metCount; ++k) batch.order[ends[batch.buckets[k]]++] = batch.met[k];
 }
 
-// In two vectors: that of its numbers one by one is how Imath copies.
+// In two vectors: Imath copies number by number.
 void copyRay(const Ray& ray, Ray& to) {
-  std::memcpy(static_cast<void*>(&to), &ray, sizeof(Ray));
+  static_assert(sizeof(Ray) == 8 * sizeof(float));
+  _mm_storeu_ps(&to.origin.x, _mm_loadu_ps(&ray.origin.x));
+  _mm_storeu_ps(&to.origin.x + 4, _mm_loadu_ps(&ray.origin.x + 4));
 }
 
 // Traces the paths' rays and turns what they hit into vertices.
