@@ -89,7 +89,7 @@ bool same(const BsdfSample& a, const BsdfSample& b) {
          a.eta == b.eta && a.lobe == b.lobe;
 }
 
-// Paths that arrive at one surface in [-1, 1]^2, from in front of it.
+// Paths that arrive at one surface in [-1, 1]^2, from both sides of it.
 class Arrivals {
  public:
   explicit Arrivals(const Scene& scene) : m_scene(scene) {}
@@ -100,7 +100,8 @@ class Arrivals {
     bounces.depth = 1;
     bounces.count = kCount;
     for (size_t i = 0; i < kCount; ++i) {
-      const Vec3 target(2 * random() - 1, 2 * random() - 1, 0), origin = random.inCube(1) + Vec3(0, 0, 3);
+      const Vec3 target(2 * random() - 1, 2 * random() - 1, 0);
+      const Vec3 origin = random.inCube(1) + Vec3(0, 0, random() < 0.5f ? 3 : -3);
       const Ray ray{origin, normalize(target - origin)};
       Hit hit;
       m_scene.intersect({&ray, 1}, {&hit, 1});

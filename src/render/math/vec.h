@@ -72,6 +72,10 @@ inline float signOfSide(bool back) {
 inline bool isBlack(const Rgb& c) {
   return c.x == 0.0f && c.y == 0.0f && c.z == 0.0f;
 }
+// One of two vectors; without a branch where both are computed.
+inline Vec3 select(bool first, const Vec3& a, const Vec3& b) {
+  return {first ? a.x : b.x, first ? a.y : b.y, first ? a.z : b.z};
+}
 inline bool isFinite(const Rgb& c) {
   return std::isfinite(c.x) && std::isfinite(c.y) && std::isfinite(c.z);
 }

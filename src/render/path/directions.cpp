@@ -101,7 +101,8 @@ Source sampleOther(Bounces& bounces, size_t lane) {
 
 // At a Lambertian surface.
 Source sourceAtDiffuse(Bounces& bounces, size_t lane, bool drawn) {
-  bounces.next.lobe[lane] = int32_t(drawn ? Lobe::smooth : Lobe::none);
+  bounces.next.lobe[lane] = int32_t(Lobe::smooth);
+  if (!drawn) bounces.next.set(lane, {});
   if (bounces.draws.fromMap[lane]) return Source::map;
   return drawn && bounces.bsdfs.hasMap[lane] ? Source::bsdf : Source::plain;
 }
@@ -121,10 +122,9 @@ ODIS_WIDE void evaluateDiffuse(const IntColumn& sources, const Columns3& world, 
     const bool fromMap = sources[i] == int32_t(Source::map);
     const Vec3 local = CoordinateFrame(at.s[i], at.t[i], at.n[i]).toLocal(world[i]), old = next.wi[i];
     const float pdf = cosineHemispherePdf(at.side[i] * local.z);
-    next.wi.set(i, {fromMap ? local.x : old.x, fromMap ? local.y : old.y, fromMap ? local.z : old.z});
     const Vec3 value = at.reflectance[i] * pdf, weight = next.weight[i];
-    next.weight.set(
-        i, {fromMap ? value.x : weight.x, fromMap ? value.y : weight.y, fromMap ? value.z : weight.z});
+    next.wi.set(i, select(fromMap, local, old));
+    next.weight.set(i, select(fromMap, value, weight));
     next.pdf[i] = fromMap ? pdf : next.pdf[i];
     next.guidablePdf[i] = fromMap ? pdf : next.guidablePdf[i];
   }
@@ -147,15 +147,7 @@ ODIS_WIDE void mix(const IntColumn& sources, const Column& mapPdf, Bounces& boun
     const Rgb weight(next.weight[i]);
     const Rgb ofMap = weight / mixed, ofBsdf = weight * (next.pdf[i] / mixed);
     const int32_t lobe = isBlack(weight) ? int32_t(Lobe::none) : int32_t(Lobe::smooth);
-    next.weight.set(i, {fromMap    ? ofMap.x
-                        : fromBsdf ? ofBsdf.x
-                                   : weight.x,
-                        fromMap    ? ofMap.y
-                        : fromBsdf ? ofBsdf.y
-                                   : weight.y,
-                        fromMap    ? ofMap.z
-                        : fromBsdf ? ofBsdf.z
-                                   : weight.z});
+    next.weight.set(i, select(fromMap, ofMap, select(fromBsdf, ofBsdf, weight)));
     next.pdf[i] = (fromMap | fromBsdf) ? mixed : next.pdf[i];
     next.eta[i] = fromMap ? 1.0f : next.eta[i];
     next.lobe[i] = fromMap ? lobe : next.lobe[i];

@@ -19,12 +19,8 @@ inline Ray spawnRay(const Vec3& p, const Vec3& ng, float pError, const Vec3& dir
   const float remaining = length(toTarget);
   const float margin = std::max(remaining * 1e-4f, 2 * (error + positionError(maxAbs(target))));
   const bool aims = remaining > margin, ends = distance < kInfinity;
-  const Vec3 aimed = toTarget * (1 / remaining);
-  const bool turns = ends & aims;
-  return {origin,
-          {turns ? aimed.x : direction.x, turns ? aimed.y : direction.y, turns ? aimed.z : direction.z},
-          ends ? (aims ? remaining - margin : 0.0f) : kInfinity,
-          time};
+  return {origin, select(ends & aims, toTarget * (1 / remaining), direction),
+          ends ? (aims ? remaining - margin : 0.0f) : kInfinity, time};
 }
 
 }  // namespace odis::render

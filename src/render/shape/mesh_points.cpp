@@ -59,11 +59,9 @@ ODIS_WIDE void MeshPoints::compute(size_t count, Columns& c) {
     const Vec3 ng = c.faceNormal[i], sum = mix(c.normal);
     const float squared = lengthSquared(sum);
     const bool usable = (squared > 1e-20f) & (squared < 1e20f);
-    const Vec3 unit = sum * (1 / std::sqrt(squared));
-    const Vec3 n(usable ? unit.x : ng.x, usable ? unit.y : ng.y, usable ? unit.z : ng.z);
+    const Vec3 n = select(usable, sum * (1 / std::sqrt(squared)), ng);
     c.isDegenerate[i] = !usable & !(squared == 0);
-    const bool flips = dot(n, ng) < 0;
-    c.ng.set(i, {flips ? -ng.x : ng.x, flips ? -ng.y : ng.y, flips ? -ng.z : ng.z});
+    c.ng.set(i, select(dot(n, ng) < 0, -ng, ng));
     const CoordinateFrame frame(n);
     c.s.set(i, frame.s);
     c.t.set(i, frame.t);
