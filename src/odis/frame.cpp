@@ -24,7 +24,8 @@ constexpr uint32_t kOracleFractionPasses = 2;
 constexpr size_t kFewPixels = 16384;
 constexpr uint64_t kGuideSeed = 0x9e3779b97f4a7c15ull;
 
-// The guide learns from one in so many pixels, so that it learns from at most `most` of a pass's samples.
+// How many pixels there are for each one that the guide learns from, so that it learns from at most `most` of
+// the samples of a pass.
 uint32_t pixelsPerLearnedIn(uint64_t samples, uint64_t most) {
   return uint32_t((samples + most - 1) / most);
 }

@@ -67,17 +67,10 @@ void expectSamePoints(const Scene& scene, Random& random) {
   }
 }
 
-// Asks for tangents.
-class WithTangents final : public Bsdf {
+// Scatters nothing, and may ask for tangents.
+class Black final : public Bsdf {
  public:
-  WithTangents() { m_traits.tangents = true; }
-  BsdfSample sample(const SurfacePoint&, const Vec3&, float, const Vec2&) const override { return {}; }
-  BsdfValue evaluate(const SurfacePoint&, const Vec3&, const Vec3&) const override { return {}; }
-  float guidableProbability(const SurfacePoint&, const Vec3&) const override { return 0; }
-  BsdfFeatures features(const SurfacePoint&, const Vec3&) const override { return {}; }
-};
-class WithoutTangents final : public Bsdf {
- public:
+  explicit Black(bool tangents) { m_traits.tangents = tangents; }
   BsdfSample sample(const SurfacePoint&, const Vec3&, float, const Vec2&) const override { return {}; }
   BsdfValue evaluate(const SurfacePoint&, const Vec3&, const Vec3&) const override { return {}; }
   float guidableProbability(const SurfacePoint&, const Vec3&) const override { return 0; }
@@ -95,10 +88,7 @@ TEST(MeshPoints, AreFoundAsOneByOne) {
         MeshOptions options;
         options.faceNormals = !normals;
         const auto mesh = meshOf(triangles(normals, uvs, random), options);
-        if (tangents)
-          mesh->setBsdf(std::make_shared<WithTangents>());
-        else
-          mesh->setBsdf(std::make_shared<WithoutTangents>());
+        mesh->setBsdf(std::make_shared<Black>(tangents));
         shapes.push_back(mesh);
       }
   expectSamePoints(*sceneOf(shapes), random);
@@ -111,14 +101,14 @@ TEST(MeshPoints, KnowNormalsWithoutDirection) {
   for (size_t i = 0; i < data.normals.size(); ++i)
     data.normals[i] = i % 3 == 0 ? Vec3(0, 0, 1) : i % 3 == 1 ? Vec3(0, 0, -1) : Vec3(0, 0, 0);
   const auto mesh = meshOf(std::move(data));
-  mesh->setBsdf(std::make_shared<WithoutTangents>());
+  mesh->setBsdf(std::make_shared<Black>(false));
   expectSamePoints(*sceneOf({mesh}), random);
 }
 
 TEST(MeshPoints, KnowInstances) {
   Random random(3);
   const auto mesh = meshOf(triangles(true, true, random));
-  mesh->setBsdf(std::make_shared<WithoutTangents>());
+  mesh->setBsdf(std::make_shared<Black>(false));
   Scene scene;
   Instance instance;
   instance.group = std::make_shared<std::vector<ShapePtr>>(1, mesh);

@@ -39,7 +39,7 @@ void chooseBlocks(Bounces& bounces) {
   DirectionDraws& draws = bounces.draws;
   draws.u = bounces.numbers.directionU;
   draws.fromMap = {};
-  if (!bounces.bsdfs.anyMap()) return;
+  if (!bounces.bsdfs.anyMap) return;
   chooseSources(bounces);
   MapSamples samples;
   LaneList drawing;

@@ -18,7 +18,7 @@ void GuidedBsdfs::clear() {
   guidable = {};
   hasMap = {};
   rivals.fill(nullptr);
-  mapCount = 0;
+  anyMap = false;
 }
 
 void GuidedBsdfs::begin(const PathSettings& settings, const Arrival& arrival, bool isDiffuse, size_t lane,
@@ -42,8 +42,7 @@ void GuidedBsdfs::begin(const PathSettings& settings, const Arrival& arrival, bo
   if (fraction >= 1) return;
   bsdfFraction[lane] = fraction;
   guidable[lane] = arrival.guidable;
-  hasMap[lane] = true;
-  ++mapCount;
+  hasMap[lane] = anyMap = true;
   preparations.add(maps[lane], int32_t(cell), normal, transmissive ? -1.0f : 0.0f);
 }
 

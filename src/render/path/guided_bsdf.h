@@ -16,10 +16,8 @@ struct GuidedBsdfs {
   IntColumn hasMap;     // whether a map guides
   std::array<VertexMap<float>, kLanes> maps;
   std::array<const DirectionSampler*, kLanes> rivals;  // null where none guides
+  bool anyMap;                                         // whether any map guides
 
-  size_t mapCount = 0;  // how many have a map
-
-  bool anyMap() const { return mapCount > 0; }
   Mixture<float> mixture(size_t lane) const { return {bsdfFraction[lane], guidable[lane]}; }
 
   // Nothing is guided.

@@ -1,7 +1,6 @@
 #include <xmmintrin.h>
 
 #include <array>
-#include <new>
 #include <numeric>
 
 #include "render/path/bounce.h"
@@ -55,16 +54,8 @@ void findVertices(const PathSettings& settings, std::span<const Path> paths, Bat
   sortByBsdf(batch);
   MeshPoints meshPoints;
   for (const uint32_t i : batch.surfaces()) {
-    const Hit& hit = batch.hits[i];
-    const Ray& ray = batch.rays[i];
-    Vertex& vertex = batch.vertices[i];
-    if (MeshPoints::knows(hit)) {
-      meshPoints.add(hit, ray, vertex);
-      if (meshPoints.full()) meshPoints.find();
-      continue;
-    }
-    new (&vertex.at) SurfacePoint(hit.surfacePoint(ray));  // without a copy
-    vertex.wo = vertex.at.shading.toLocal(-ray.direction);
+    meshPoints.add(batch.hits[i], batch.rays[i], batch.vertices[i]);
+    if (meshPoints.full()) meshPoints.find();
   }
   meshPoints.find();
 }
@@ -113,8 +104,8 @@ void takeSteps(const PathSettings& settings, Batch& batch, Bounces& bounces) {
 // Takes all active paths from their rays' ends to their next rays; those without one are active no more.
 void bounceAll(const PathSettings& settings, std::span<Path> paths, int depth, Batch& batch) {
   Bounces& bounces = batch.bounces;
+  bounces.depth = depth;
   for (size_t begin = 0; begin < batch.active.size(); begin += kLanes) {
-    bounces.depth = depth;
     bounces.count = std::min(kLanes, batch.active.size() - begin);
     for (size_t k = 0; k < bounces.count; ++k) {
       const uint32_t i = batch.order[begin + k];

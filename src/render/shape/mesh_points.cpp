@@ -2,6 +2,8 @@
 
 #include <odis/instruction_sets.h>
 
+#include <new>
+
 #include "render/shape/surface_math.h"
 
 namespace odis::render {
@@ -14,9 +16,18 @@ auto rowsOf(const T* const* pointers, size_t offset) {
   return [=](size_t lane) { return reinterpret_cast<const float*>(pointers[lane]) + offset; };
 }
 
+void findAlone(const Hit& hit, const Ray& ray, Vertex& vertex) {
+  new (&vertex.at) SurfacePoint(hit.surfacePoint(ray));  // without a copy
+  vertex.wo = vertex.at.shading.toLocal(-ray.direction);
+}
+
 }  // namespace
 
 void MeshPoints::add(const Hit& hit, const Ray& ray, Vertex& vertex) {
+  if (!knows(hit) || hit.raw.instance || hit.shape->tangents()) {
+    findAlone(hit, ray, vertex);
+    return;
+  }
   const size_t i = m_count++;
   const Mesh& mesh = *hit.shape->mesh();
   const Mesh::Face& face = mesh.m_faces[hit.raw.primitive];
@@ -82,14 +93,11 @@ void MeshPoints::find() {
   compute(m_count, m_columns);
   m_columns.write(m_vertices, m_count);
   for (size_t i = 0; i < m_count; ++i) {
-    auto& [at, wo] = *m_vertices[i];
-    const Hit& hit = *m_hits[i];
-    at.shape = hit.shape;
-    at.primitive = hit.raw.primitive;
+    SurfacePoint& at = m_vertices[i]->at;
+    at.shape = m_hits[i]->shape;
+    at.primitive = m_hits[i]->raw.primitive;
     at.texture = nullptr;
-    if (!hit.raw.instance && !hit.shape->tangents() && !m_columns.isDegenerate[i]) continue;
-    at = hit.surfacePoint(*m_rays[i]);
-    wo = at.shading.toLocal(-m_rays[i]->direction);
+    if (m_columns.isDegenerate[i]) findAlone(*m_hits[i], *m_rays[i], *m_vertices[i]);
   }
   m_count = 0;
 }

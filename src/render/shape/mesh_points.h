@@ -1,4 +1,4 @@
-// Points on meshes that several rays met, side by side: what Hit::surfacePoint() finds of each.
+// Where several rays met something: what Hit::surfacePoint() finds of each, on meshes side by side.
 #pragma once
 
 #include "render/math/vertex_columns.h"
@@ -8,10 +8,11 @@ namespace odis::render {
 
 class MeshPoints {
  public:
-  // Whether find() can fill in what the ray met.
+  // Whether the ray met a mesh that does not move.
   static bool knows(const Hit& hit) { return hit.shape->mesh() && !hit.motion; }
   bool full() const { return m_count == kLanes; }
-  // `vertex` is to be filled in with the place where the ray met a mesh.
+  // `vertex` is to be filled in with the place that the ray met: by find() or, if it can't be found side by
+  // side, at once.
   void add(const Hit& hit, const Ray& ray, Vertex& vertex);
   // Fills in the vertices, and lets go of them.
   void find();
