@@ -50,6 +50,19 @@ ODIS_HOST_DEVICE inline uint32_t findCell(const GuideView& view, const Place& pl
   return findAround(view, key, cellHash(key));
 }
 
+// Does so for many keys, whose slots should have been fetched with prefetchSlot(). Neighbours in the list are
+// often neighbours in the scene: those with the same key share all coarser cells, too.
+inline void findAround(const GuideView& view, const uint64_t* keys, const uint64_t* hashes, size_t count,
+                       uint32_t* cells) {
+  for (size_t i = 0; i < count; ++i)
+    cells[i] = i > 0 && keys[i] == keys[i - 1] ? cells[i - 1] : findAround(view, keys[i], hashes[i]);
+}
+
+// Fetches the slot at which the search for a key begins.
+inline void prefetchSlot(const GuideView& view, uint64_t hash) {
+  if (view.slots) __builtin_prefetch(&view.slots[hash & view.slotMask]);
+}
+
 // Finds the cells of many vertices, which is faster: cells lie all over memory, and here no look-up waits
 // for the memory of another one. `cells` has room for `count` indices.
 inline void findCells(const GuideView& view, const Place* places, size_t count, uint32_t* cells) {
@@ -57,23 +70,18 @@ inline void findCells(const GuideView& view, const Place* places, size_t count, 
   const CellGrid grid(view.grid);
   uint64_t keys[kChunk], hashes[kChunk];
   for (size_t begin = 0; begin < count; begin += kChunk) {
-    const size_t end = begin + kChunk < count ? begin + kChunk : count;
-    for (size_t i = begin; i < end; ++i) {
-      keys[i - begin] = grid.key(places[i].position, places[i].normal, 0);
-      hashes[i - begin] = cellHash(keys[i - begin]);
-      if (view.slots) __builtin_prefetch(&view.slots[hashes[i - begin] & view.slotMask]);
+    const size_t size = count - begin < kChunk ? count - begin : kChunk;
+    for (size_t i = 0; i < size; ++i) {
+      keys[i] = grid.key(places[begin + i].position, places[begin + i].normal, 0);
+      hashes[i] = cellHash(keys[i]);
+      prefetchSlot(view, hashes[i]);
     }
-    for (size_t i = begin; i < end; ++i) {
-      if (view.pixelCells && places[i].first) {
-        cells[i] = findCell(view, places[i]);
-        continue;
-      }
-      // Neighbours in the list are often neighbours in the scene; places with the same key share all
-      // coarser cells, too.
-      const bool same =
-          i > begin && keys[i - begin] == keys[i - begin - 1] && !(view.pixelCells && places[i - 1].first);
-      cells[i] = same ? cells[i - 1] : findAround(view, keys[i - begin], hashes[i - begin]);
-    }
+    findAround(view, keys, hashes, size, cells + begin);
+  }
+  if (!view.pixelCells) return;
+  for (size_t i = 0; i < count; ++i) {
+    const uint32_t own = pixelCell(view, places[i]);
+    cells[i] = own == kNoCell ? cells[i] : own;
   }
 }
 

@@ -24,6 +24,17 @@ struct VertexColumns {
         toColumns(first, row, a.of, b.of, c.of, d.of);
       });
   }
+  // Reads p, n and wo, and nothing that matters else.
+  void readPlaces(const Vertex* const* vertices, size_t count) {
+    for (size_t first = 0; first < count; first += 4) {
+      const auto from = [&](size_t offset) {
+        return [=](size_t lane) { return reinterpret_cast<const float*>(vertices[lane]) + offset; };
+      };
+      toColumns(first, from(kPlaceRow), p.x.of, p.y.of, p.z.of, ng.x.of);
+      toColumns(first, from(kNormalRow), n.x.of, n.y.of, n.z.of, uvX.of);
+      toColumns(first, from(kDirectionRow), pError.of, wo.x.of, wo.y.of, wo.z.of);
+    }
+  }
   void write(Vertex* const* vertices, size_t count) const {
     for (size_t first = 0; first < count; first += 4)
       forEachRow(
@@ -34,6 +45,10 @@ struct VertexColumns {
   }
 
  private:
+  // Where rows begin, in numbers from the vertex.
+  static constexpr size_t kPlaceRow = 0, kNormalRow = 12,
+                          kDirectionRow = offsetof(Vertex, at.pError) / sizeof(float);
+
   // Calls use(offset, a, b, c, d) for each four numbers that lie side by side in a vertex.
   template <class Self, class Use>
   static void forEachRow(Self& c, const Use& use) {
@@ -43,12 +58,12 @@ struct VertexColumns {
                   offsetof(Vertex, at.time) == 17 * kFloat &&
                   offsetof(Vertex, at.barycentric) == 18 * kFloat &&
                   offsetof(Vertex, wo) == offsetof(Vertex, at.pError) + kFloat);
-    use(0, c.p.x, c.p.y, c.p.z, c.ng.x);
+    use(kPlaceRow, c.p.x, c.p.y, c.p.z, c.ng.x);
     use(4, c.ng.y, c.ng.z, c.s.x, c.s.y);
     use(8, c.s.z, c.t.x, c.t.y, c.t.z);
-    use(12, c.n.x, c.n.y, c.n.z, c.uvX);
+    use(kNormalRow, c.n.x, c.n.y, c.n.z, c.uvX);
     use(16, c.uvY, c.time, c.b1, c.b2);
-    use(offsetof(Vertex, at.pError) / kFloat, c.pError, c.wo.x, c.wo.y, c.wo.z);
+    use(kDirectionRow, c.pError, c.wo.x, c.wo.y, c.wo.z);
   }
 };
 

@@ -28,6 +28,7 @@ struct Surfaces : VertexColumns {
   IntColumn isDiffuse;
   Columns3 reflectance;
   Column side;
+  Column guidable;  // Bsdf::guidableProbability(), where anybody asks
 };
 
 // The lights that are chosen, and the points on them.
@@ -113,7 +114,23 @@ struct ShadowRay {
   Rgb radiance;
 };
 
-// What the paths of a batch share while they are traced; kept from batch to batch for its memory. 294 bytes a
+// Vertices whose cells are looked for. 24 bytes each.
+struct CellLookUps {
+  size_t count = 0;
+  std::vector<uint64_t> keys, hashes;  // of cells of the finest level
+  std::vector<uint32_t> vertices;
+  std::vector<uint32_t> cells;  // that are found
+  VertexColumns at;             // of the vertices that are being added
+
+  void resize(size_t size) {
+    keys.resize(size);
+    hashes.resize(size);
+    vertices.resize(size);
+    cells.resize(size);
+  }
+};
+
+// What the paths of a batch share while they are traced; kept from batch to batch for its memory. 274 bytes a
 // path and 49 a shadow ray.
 struct Batch {
   std::vector<uint32_t> active;  // paths that have a ray to trace
@@ -128,9 +145,7 @@ struct Batch {
   std::vector<uint8_t> buckets;   // of each of these: what it is sorted by
   std::vector<uint8_t> survives;  // of each path of the batch: whether it goes on
   std::vector<uint32_t> cells;    // of the guide; kNoCell where there is none
-  std::vector<Place> places;      // of the vertices that may have one
-  std::vector<uint32_t> placed;   // which those are
-  std::vector<uint32_t> found;    // their cells
+  CellLookUps lookUps;            // of the vertices that may have one
   Bounces bounces;
   SamplerBlock samplers;   // those of the bounces' paths
   size_t shadowCount = 0;  // of the shadow rays that have been asked for
@@ -151,9 +166,7 @@ struct Batch {
     met.resize(count);
     buckets.resize(count);
     survives.resize(count);
-    places.resize(count);
-    placed.resize(count);
-    found.resize(count);
+    lookUps.resize(count);
     shadowRays.resize(count + 1);  // room for one that is not asked for
     shadowSegments.resize(count + 1);
     hidden.resize(count + 1);
@@ -164,8 +177,6 @@ struct Batch {
 // Adds the emission that rays met, weighted against next-event estimation where that could have found it
 // too. Paths go on where they met a surface and are not too deep.
 void meetEmission(const PathSettings& settings, Batch& batch, Bounces& bounces);
-// Finds out how often the BSDFs draw from lobes that may be guided.
-void findGuidableLobes(const PathSettings& settings, Batch& batch, Bounces& bounces);
 // Ends paths with the cached radiance of where they arrive, if the guide may (odis::cachedRadiance).
 void endInCache(const PathSettings& settings, Batch& batch, Bounces& bounces);
 // Lets paths go on by what is known to come back from here. Paths that end add the cell's mean outgoing
@@ -175,6 +186,8 @@ void playRouletteOnArrival(const PathSettings& settings, Batch& batch, Bounces& 
 void keepScattered(Bounces& bounces);
 // Brings the surfaces into columns.
 void readSurfaces(Bounces& bounces);
+// Finds out how often the BSDFs draw from lobes that may be guided.
+void findGuidableLobes(const PathSettings& settings, const Batch& batch, Bounces& bounces);
 // Draws the random numbers that the steps from here on need.
 void drawNumbers(const PathSettings& settings, Batch& batch, Bounces& bounces);
 // Finds out what directions are sampled from.

@@ -6,20 +6,70 @@
 
 namespace odis::render {
 
+void findGuidableLobes(const PathSettings& settings, const Batch& batch, Bounces& bounces) {
+  Surfaces& at = bounces.at;
+  at.guidable = {};
+  if (!settings.guide && !settings.rival && !batch.recording) return;
+  for (size_t i = 0; i < bounces.count; ++i) {
+    if (at.isDiffuse[i]) {
+      at.guidable[i] = at.side[i] != 0 ? 1.0f : 0.0f;
+    } else {
+      const Vertex& vertex = *bounces.arrivals[i].vertex;
+      at.guidable[i] = at.bsdfs[i]->guidableProbability(vertex.at, vertex.wo);
+    }
+  }
+}
+
+namespace {
+
+// The BSDF sampling fraction in a cell; 1 where nothing is guided.
+float fractionAt(const GuideView& guide, const Bounces& bounces, size_t lane) {
+  const uint32_t cell = bounces.arrivals[lane].cell;
+  if (cell == kNoCell) return 1;
+  if (bounces.at.isDiffuse[lane]) return bsdfFraction(guide, int32_t(cell), 1.0f);
+  if (!guidesDirections(guide.decisions[cell])) return 1;
+  const auto& [at, wo] = *bounces.arrivals[lane].vertex;
+  return bsdfFraction(guide, int32_t(cell), bounces.at.bsdfs[lane]->roughness(at, wo));
+}
+
+// Finds out what guides a vertex. A map that guides is added to `maps`.
+void beginGuided(const PathSettings& settings, Bounces& bounces, size_t lane, MapPreparations& maps) {
+  const Surfaces& at = bounces.at;
+  GuidedBsdfs& bsdfs = bounces.bsdfs;
+  if (!(at.guidable[lane] > 0) || !guidesAt(settings, *bounces.arrivals[lane].path)) return;
+  const bool transmissive = at.bsdfs[lane]->traits().transmissive;
+  float fraction = 1;
+  if (settings.rival) {
+    bsdfs.rivals[lane] = settings.rival->at(at.p[lane], at.facing[lane], transmissive);
+    if (!bsdfs.rivals[lane]) return;
+    fraction = bsdfs.rivals[lane]->bsdfFraction();
+  } else {
+    fraction = fractionAt(*settings.guide, bounces, lane);
+    if (fraction >= 1) return;
+    bsdfs.hasMap[lane] = bsdfs.anyMap = true;
+    maps.add(bsdfs.maps[lane], int32_t(bounces.arrivals[lane].cell), at.facing[lane],
+             transmissive ? -1.0f : 0.0f);
+  }
+  bsdfs.bsdfFraction[lane] = fraction;
+  bsdfs.guidable[lane] = at.guidable[lane];
+}
+
+}  // namespace
+
 void prepareDirections(const PathSettings& settings, Bounces& bounces) {
   GuidedBsdfs& bsdfs = bounces.bsdfs;
   bsdfs.clear();
   if (!settings.guide && !settings.rival) return;
   MapPreparations maps;
-  for (size_t i = 0; i < bounces.count; ++i)
-    bsdfs.begin(settings, bounces.arrivals[i], bounces.at.isDiffuse[i], i, maps);
+  for (size_t i = 0; i < bounces.count; ++i) beginGuided(settings, bounces, i, maps);
   if (maps.count == 0) return;
   prepareMaps(settings.guide->maps, maps);
   for (size_t i = 0; i < bounces.count; ++i) bsdfs.finish(i);
 }
 
 void countGuidable(Bounces& bounces) {
-  for (const Arrival& arrival : bounces.arriving()) arrival.path->guidable += arrival.guidable > 0;
+  for (size_t i = 0, count = bounces.count; i < count; ++i)
+    bounces.arrivals[i].path->guidable += bounces.at.guidable[i] > 0;
 }
 
 namespace {

@@ -94,25 +94,13 @@ constexpr float kLeastCachedRoughness = 0.3f, kLeastCachedGuidable = 0.5f;
 constexpr int kLeastCachedMaxDepth = 8;
 
 bool scattersEvenly(const Arrival& arrival) {
-  const Vertex& vertex = *arrival.vertex;
-  return arrival.guidable >= kLeastCachedGuidable &&
-         vertex.at.shape->bsdf().roughness(vertex.at, vertex.wo) >= kLeastCachedRoughness;
+  const auto& [at, wo] = *arrival.vertex;
+  const Bsdf& bsdf = at.shape->bsdf();
+  return bsdf.guidableProbability(at, wo) >= kLeastCachedGuidable &&
+         bsdf.roughness(at, wo) >= kLeastCachedRoughness;
 }
 
 }  // namespace
-
-void findGuidableLobes(const PathSettings& settings, Batch& batch, Bounces& bounces) {
-  const bool asked = settings.guide || settings.rival || batch.recording;
-  for (Arrival& arrival : bounces.arriving()) {
-    arrival.guidable = 0;
-    if (!asked || !arrival.scatters) continue;
-    const Vertex& vertex = *arrival.vertex;
-    const Bsdf& bsdf = vertex.at.shape->bsdf();
-    const DiffuseSide& side = bsdf.diffuseSide(vertex.wo);
-    arrival.guidable = !side.reflectance ? bsdf.guidableProbability(vertex.at, vertex.wo)
-                                         : (side.scatters(vertex.wo) ? 1.0f : 0.0f);
-  }
-}
 
 void endInCache(const PathSettings& settings, Batch& batch, Bounces& bounces) {
   if (!settings.guide || !settings.guide->cached) return;

@@ -21,31 +21,6 @@ void GuidedBsdfs::clear() {
   anyMap = false;
 }
 
-void GuidedBsdfs::begin(const PathSettings& settings, const Arrival& arrival, bool isDiffuse, size_t lane,
-                        MapPreparations& preparations) {
-  const auto& [at, wo] = *arrival.vertex;
-  const uint32_t cell = arrival.cell;
-  if (!(arrival.guidable > 0) || !guidesAt(settings, *arrival.path)) return;
-  if (!settings.rival && (cell == kNoCell || !guidesDirections(settings.guide->decisions[cell]))) return;
-  const Bsdf& bsdf = at.shape->bsdf();
-  const Vec3 normal = facingNormal(at, wo);
-  const bool transmissive = bsdf.traits().transmissive;
-  if (settings.rival) {
-    rivals[lane] = settings.rival->at(at.p, normal, transmissive);
-    if (!rivals[lane]) return;
-    bsdfFraction[lane] = rivals[lane]->bsdfFraction();
-    guidable[lane] = arrival.guidable;
-    return;
-  }
-  const float fraction =
-      odis::bsdfFraction(*settings.guide, int32_t(cell), isDiffuse ? 1.0f : bsdf.roughness(at, wo));
-  if (fraction >= 1) return;
-  bsdfFraction[lane] = fraction;
-  guidable[lane] = arrival.guidable;
-  hasMap[lane] = anyMap = true;
-  preparations.add(maps[lane], int32_t(cell), normal, transmissive ? -1.0f : 0.0f);
-}
-
 void GuidedBsdfs::finish(size_t lane) {
   if (!hasMap[lane] || maps[lane].sampleable()) return;
   hasMap[lane] = false;

@@ -22,10 +22,7 @@ struct GuidedBsdfs {
 
   // Nothing is guided.
   void clear();
-  // Finds out what guides the vertex where a path arrives. A map that guides is added to `preparations`; once
-  // those are prepared, finish() leaves out what can't be sampled.
-  void begin(const PathSettings& settings, const Arrival& arrival, bool isDiffuse, size_t lane,
-             MapPreparations& preparations);
+  // Leaves out a map that can't be sampled, once it is prepared.
   void finish(size_t lane);
 };
 

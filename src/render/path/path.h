@@ -82,7 +82,6 @@ struct Arrival {
   uint32_t index;        // of the path in the batch
   const Vertex* vertex;  // without a shape where the ray left the scene
   uint32_t cell;         // of the guide, or kNoCell
-  float guidable;        // Bsdf::guidableProbability() of the vertex, where anybody asks
   bool scatters;         // whether the path goes on to be scattered here
 };
 

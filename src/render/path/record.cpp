@@ -51,7 +51,7 @@ void recordBounces(Batch& batch, const Bounces& bounces) {
     event.weight = toOdis(bounces.weight[i]);
     event.pdf = next.pdf;
     event.guidablePdf = next.guidablePdf;
-    event.guidableProbability = arrival.guidable;
+    event.guidableProbability = bounces.at.guidable[i];
     event.survival = bounces.survival[i];
     event.cosine = std::abs(next.wi.z);
     event.roughness = bounces.at.isDiffuse[i] ? 1.0f : bsdf.roughness(at, wo);

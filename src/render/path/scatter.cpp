@@ -9,10 +9,10 @@ namespace odis::render {
 
 void keepScattered(Bounces& bounces) {
   size_t left = 0;
-  for (size_t i = 0; i < bounces.count; ++i) {  // without a branch, which would often be mispredicted
-    const Arrival arrival = bounces.arrivals[i];
-    bounces.arrivals[left] = arrival;
-    left += arrival.scatters;
+  for (size_t i = 0, count = bounces.count; i < count; ++i) {  // without a branch: it would be mispredicted
+    const bool scatters = bounces.arrivals[i].scatters;
+    bounces.arrivals[left] = bounces.arrivals[i];
+    left += scatters;
   }
   bounces.count = left;
 }

@@ -1,3 +1,4 @@
+#include <odis/instruction_sets.h>
 #include <xmmintrin.h>
 
 #include <array>
@@ -60,33 +61,74 @@ void findVertices(const PathSettings& settings, std::span<const Path> paths, Bat
   meshPoints.find();
 }
 
+// The keys of the cells of the finest level that vertices lie in, and where the search for them begins.
+ODIS_WIDE void findKeys(const CellGrid& grid, const VertexColumns& at, size_t count, uint64_t* keys,
+                        uint64_t* hashes) {
+  for (size_t i = 0, end = endOfLanes(count); i < end; ++i) {
+    const float side = at.wo.z[i] < 0 ? -1.0f : 1.0f;  // as facingNormal()
+    const Float3 normal{at.n.x[i] * side, at.n.y[i] * side, at.n.z[i] * side};
+    keys[i] = grid.key({at.p.x[i], at.p.y[i], at.p.z[i]}, normal, 0);
+    hashes[i] = cellHash(keys[i]);
+  }
+}
+
+// Adds vertices that may have cells, kLanes at most, to those whose cells are looked for.
+void addLookUps(const PathSettings& settings, std::span<const Path> paths,
+                std::span<const uint32_t> surfaces, Batch& batch) {
+  const Vertex* vertices[kLanes];
+  for (size_t k = 0; k < kLanes; ++k)
+    vertices[k] = &batch.vertices[surfaces[std::min(k, surfaces.size() - 1)]];
+  VertexColumns& at = batch.lookUps.at;
+  at.readPlaces(vertices, surfaces.size());
+  uint64_t keys[kLanes], hashes[kLanes];
+  findKeys(CellGrid(settings.guide->grid), at, surfaces.size(), keys, hashes);
+  for (size_t k = 0; k < surfaces.size(); ++k) prefetchSlot(*settings.guide, hashes[k]);
+  CellLookUps& lookUps = batch.lookUps;
+  const std::span<uint64_t> keysTo(lookUps.keys), hashesTo(lookUps.hashes);
+  const std::span<uint32_t> verticesTo(lookUps.vertices);
+  size_t count = lookUps.count;
+  for (size_t k = 0; k < surfaces.size(); ++k) {  // without a branch, which would often be mispredicted
+    keysTo[count] = keys[k];
+    hashesTo[count] = hashes[k];
+    verticesTo[count] = surfaces[k];
+    count += vertices[k]->at.shape->bsdf().traits().evaluable &
+             guidesAt(settings, paths[batch.active[surfaces[k]]]);
+  }
+  lookUps.count = count;
+}
+
 // Finds the cells that guide the vertices. Those with delta lobes only, on mirrors and glass, have none: what
 // they return depends on the one direction that the path came from, of which a cell knows nothing.
 void findGuidingCells(const PathSettings& settings, std::span<const Path> paths, Batch& batch) {
   batch.cells.assign(batch.active.size(), kNoCell);
   if (!settings.guide) return;
-  size_t count = 0;
-  for (const uint32_t i : batch.surfaces()) {
-    const auto& [at, wo] = batch.vertices[i];
+  const std::span<const uint32_t> surfaces = batch.surfaces();
+  CellLookUps& lookUps = batch.lookUps;
+  lookUps.count = 0;
+  for (size_t begin = 0; begin < surfaces.size(); begin += kLanes)
+    addLookUps(settings, paths, surfaces.subspan(begin, std::min(kLanes, surfaces.size() - begin)), batch);
+  findAround(*settings.guide, lookUps.keys.data(), lookUps.hashes.data(), lookUps.count,
+             lookUps.cells.data());
+  for (size_t k = 0; k < lookUps.count; ++k) batch.cells[lookUps.vertices[k]] = lookUps.cells[k];
+  if (!settings.guide->pixelCells) return;
+  for (size_t k = 0; k < lookUps.count; ++k) {
+    const uint32_t i = lookUps.vertices[k];
     const Path& path = paths[batch.active[i]];
-    batch.places[count] = {toOdis(at.p), toOdis(facingNormal(at, wo)), path.identity.pixel,
-                           path.identity.sample, path.guidable == 0};
-    batch.placed[count] = i;
-    count += at.shape->bsdf().traits().evaluable && guidesAt(settings, path);
+    const uint32_t own =
+        pixelCell(*settings.guide, {{}, {}, path.identity.pixel, path.identity.sample, path.guidable == 0});
+    if (own != kNoCell) batch.cells[i] = own;
   }
-  findCells(*settings.guide, batch.places.data(), count, batch.found.data());
-  for (size_t i = 0; i < count; ++i) batch.cells[batch.placed[i]] = batch.found[i];
 }
 
 // Takes some paths through all steps of a bounce; those that are scattered remain.
 void takeSteps(const PathSettings& settings, Batch& batch, Bounces& bounces) {
   meetEmission(settings, batch, bounces);
-  findGuidableLobes(settings, batch, bounces);
   endInCache(settings, batch, bounces);
   playRouletteOnArrival(settings, batch, bounces);
   keepScattered(bounces);
   if (bounces.count == 0) return;
   readSurfaces(bounces);
+  findGuidableLobes(settings, batch, bounces);
   drawNumbers(settings, batch, bounces);
   prepareDirections(settings, bounces);
   countGuidable(bounces);
@@ -105,24 +147,25 @@ void takeSteps(const PathSettings& settings, Batch& batch, Bounces& bounces) {
 void bounceAll(const PathSettings& settings, std::span<Path> paths, int depth, Batch& batch) {
   Bounces& bounces = batch.bounces;
   bounces.depth = depth;
-  for (size_t begin = 0; begin < batch.active.size(); begin += kLanes) {
-    bounces.count = std::min(kLanes, batch.active.size() - begin);
-    for (size_t k = 0; k < bounces.count; ++k) {
-      const uint32_t i = batch.order[begin + k];
-      const uint32_t index = batch.active[i];
-      batch.survives[index] = false;
-      bounces.arrivals[k] = {&paths[index], index, &batch.vertices[i], batch.cells[i], 0, false};
-      if (batch.cells[i] != kNoCell)
-        prefetchCell(*settings.guide, batch.cells[i]);  // needed some steps later
+  const std::span<uint32_t> active(batch.active);
+  const std::span<uint8_t> survives(batch.survives);
+  std::fill_n(survives.begin(), paths.size(), 0);
+  for (size_t begin = 0; begin < active.size(); begin += kLanes) {
+    const auto some = std::span(batch.order).subspan(begin, std::min(kLanes, active.size() - begin));
+    bounces.count = some.size();
+    for (size_t k = 0; k < some.size(); ++k) {
+      const uint32_t i = some[k], index = active[i], cell = batch.cells[i];
+      bounces.arrivals[k] = {&paths[index], index, &batch.vertices[i], cell, false};
+      if (cell != kNoCell) prefetchCell(*settings.guide, cell);  // needed some steps later
     }
     takeSteps(settings, batch, bounces);
-    for (size_t i = 0; i < bounces.count; ++i)
-      batch.survives[bounces.arrivals[i].index] = bounces.survives[i] != 0;
+    const size_t left = bounces.count;
+    for (size_t i = 0; i < left; ++i) survives[bounces.arrivals[i].index] = uint8_t(bounces.survives[i] != 0);
   }
   size_t left = 0;
-  for (size_t i = 0; i < batch.active.size(); ++i) {
-    batch.active[left] = batch.active[i];
-    left += batch.survives[batch.active[left]];
+  for (const uint32_t index : active) {
+    active[left] = index;
+    left += survives[index];
   }
   batch.active.resize(left);
 }
@@ -132,8 +175,8 @@ void activateAll(std::span<const Path> paths, Batch& batch) {
   std::iota(batch.active.begin(), batch.active.end(), 0u);
 }
 
-// Not inline, so that the compiler need not look for a thread's batch again and again.
-[[gnu::noinline]] void traceBatch(const PathSettings& settings, std::span<Path> paths, Batch& batch) {
+// Kept apart, so that the compiler need not look for a thread's batch again and again.
+[[gnu::noipa]] void traceBatch(const PathSettings& settings, std::span<Path> paths, Batch& batch) {
   activateAll(paths, batch);
   for (int depth = 1; !batch.active.empty(); ++depth) {
     findVertices(settings, paths, batch);
