@@ -19,11 +19,14 @@
 // 0.98 in teapot-full (docs/lights.md).
 #include "render/emitter/environment_map.h"
 
+#include <odis/instruction_sets.h>
+
 #include <array>
 #include <numeric>
 
 #include "render/emitter/factories.h"
 #include "render/image/image.h"
+#include "render/math/angles.h"
 
 namespace odis::render {
 
@@ -103,75 +106,120 @@ std::vector<float> EnvironmentMap::patchWeights() {
   return weights;
 }
 
-EnvironmentMap::Place EnvironmentMap::placeOf(const Vec3& wi) const {
+inline EnvironmentMap::Place EnvironmentMap::placeOf(const Vec3& wi) const {
   const Vec3 local = transformVector(m_toLocal, wi);
   const float stretch = length(local);
   const Vec3 d = local * (1 / stretch);
-  const float sinTheta = std::sqrt(d.x * d.x + d.z * d.z);
-  float u = std::atan2(d.x, -d.z) * (0.5f * kInvPi);
-  u -= std::floor(u);
+  const float sinTheta = std::sqrt(d.x * d.x + d.z * d.z), turns = angleInTurns(d.x, -d.z);
   // The arc tangent keeps its precision at the poles, where the arc cosine of d.y has lost it.
-  return {{u, std::atan2(sinTheta, d.y) * kInvPi}, sinTheta, stretch};
+  return {{turns < 0 ? turns + 1 : turns, 2 * angleInTurns(sinTheta, d.y)}, sinTheta, stretch};
 }
 
-EnvironmentMap::Patch EnvironmentMap::patchAt(const Vec2& uv) const {
+ODIS_WIDE void EnvironmentMap::findPlaces(const EnvironmentMap& map, size_t count, const Columns3& wi,
+                                          Places& places) {
+  for (size_t i = 0, end = endOfLanes(count); i < end; ++i) {
+    const Place place = map.placeOf(wi[i]);
+    places.u[i] = place.uv.x;
+    places.v[i] = place.uv.y;
+    places.sinTheta[i] = place.sinTheta;
+    places.stretch[i] = place.stretch;
+  }
+}
+
+inline EnvironmentMap::Patch EnvironmentMap::patchAt(const Vec2& uv) const {
   const float s = uv.x * float(m_width) - 0.5f, t = uv.y * float(m_height - 1);
-  const int column = int(std::floor(s));
+  const int column = int(s) - int(s < 0);  // rounded down
   const int left = column < 0 ? m_width - 1 : std::min(column, m_width - 1);
-  const int top = std::clamp(int(t), 0, m_height - 2);
+  const int top = std::min(std::max(int(t), 0), m_height - 2);
   return {left, left + 1 < m_width ? left + 1 : 0, top, {s - float(column), t - float(top)}};
 }
 
-void EnvironmentMap::prefetchPixels(const Vec2& uv) const {
-  const Patch patch = patchAt(uv);
-  __builtin_prefetch(&pixel(patch.left, patch.top));
-  __builtin_prefetch(&pixel(patch.left, patch.top + 1));
+ODIS_WIDE void EnvironmentMap::findPatchesInLanes(const EnvironmentMap& map, size_t count,
+                                                  const ImagePlaces& places, Patches& patches) {
+  for (size_t i = 0, end = endOfLanes(count); i < end; ++i) {
+    const Patch patch = map.patchAt({places.u[i], places.v[i]});
+    patches.left[i] = patch.left;
+    patches.right[i] = patch.right;
+    patches.top[i] = patch.top;
+    patches.withinX[i] = patch.within.x;
+    patches.withinY[i] = patch.within.y;
+  }
 }
 
-Rgb EnvironmentMap::lookUp(const Vec2& uv) const {
-  if (uv.y > m_horizon) return {0, 0, 0};
-  const auto [left, right, top, within] = patchAt(uv);
+void EnvironmentMap::findPatches(size_t count, const ImagePlaces& places, Patches& patches) const {
+  findPatchesInLanes(*this, count, places, patches);
+  for (size_t i = 0; i < count; ++i) {
+    __builtin_prefetch(&pixel(patches.left[i], patches.top[i]));
+    __builtin_prefetch(&pixel(patches.left[i], patches.top[i] + 1));
+  }
+}
+
+Rgb EnvironmentMap::lookUp(const Patch& patch, float v) const {
+  if (v > m_horizon) return {0, 0, 0};
+  const auto [left, right, top, within] = patch;
   return lerp(within.y, lerp(within.x, pixel(left, top), pixel(right, top)),
               lerp(within.x, pixel(left, top + 1), pixel(right, top + 1)));
 }
 
 Rgb EnvironmentMap::radiance(const Vec3& wi) const {
-  return lookUp(placeOf(wi).uv);
+  const Vec2 uv = placeOf(wi).uv;
+  return lookUp(patchAt(uv), uv.y);
 }
 
-EmitterSample EnvironmentMap::sampleDirection(const Vec2& u, Vec2& uv) const {
-  const PiecewiseConstant2D::Sample s = m_table.sample(u);
-  // Cell 0 of the table begins at the centre of column 0.
-  float x = s.x.x + 0.5f / float(m_width);
-  if (x >= 1) x -= 1;
-  uv = {x, s.x.y};
-  const float theta = kPi * s.x.y, phi = 2 * kPi * x, sinTheta = std::sin(theta);
-  if (!(sinTheta > 0)) return {};
-  const Vec3 local(std::sin(phi) * sinTheta, std::cos(theta), -std::cos(phi) * sinTheta);
-  const Vec3 world = transformVector(m_toWorld, local);
-  const float scale = length(world);
-  // The solid angle of an element of uv is 2 pi^2 sin(theta); a transform that is not a rotation stretches it
-  // further.
-  const float pdf = s.pdf / (2 * kPi * kPi * sinTheta) * (scale * scale * scale) / m_determinant;
-  return {.wi = world / scale, .distance = kInfinity, .pdf = pdf};
+// `places` are those of the table before, and those of the image after.
+ODIS_WIDE void EnvironmentMap::findDirections(const EnvironmentMap& map, size_t count, const Column& tablePdf,
+                                              ImagePlaces& places, Directions& directions) {
+  for (size_t i = 0, end = endOfLanes(count); i < end; ++i) {
+    // Cell 0 of the table begins at the centre of column 0.
+    const float right = places.u[i] + 0.5f / float(map.m_width), u = right >= 1 ? right - 1 : right;
+    places.u[i] = u;
+    const auto [sinPhi, cosPhi] = sinCosOfTurns(u);
+    const auto [sinTheta, cosTheta] = sinCosOfTurns(0.5f * places.v[i]);
+    const Vec3 world = transformVector(map.m_toWorld, {sinPhi * sinTheta, cosTheta, -cosPhi * sinTheta});
+    const float scale = length(world);
+    directions.wi.set(i, world * (1 / scale));
+    // The solid angle of an element of uv is 2 pi^2 sin(theta); a transform that is not a rotation stretches it
+    // further.
+    const float pdf =
+        tablePdf[i] * (scale * scale * scale) / (2 * kPi * kPi * sinTheta * map.m_determinant);
+    directions.pdf[i] = sinTheta > 0 ? pdf : 0.0f;
+  }
 }
 
-EmitterSample EnvironmentMap::sample(uint32_t, const Vec3&, const Vec2& u) const {
-  Vec2 uv;
-  EmitterSample result = sampleDirection(u, uv);
-  if (result.pdf > 0) result.radiance = lookUp(uv);
-  return result;
+void EnvironmentMap::sampleDirections(std::span<const LightDraw> draws, std::span<EmitterSample> samples,
+                                      ImagePlaces& at) const {
+  std::array<PiecewiseConstant2D::Row, kLanes> rows;
+  for (size_t i = 0; i < draws.size(); ++i) {
+    rows[i] = m_table.chooseRow(draws[i].u.y);
+    m_table.prefetchRow(rows[i], draws[i].u.x);
+  }
+  Column tablePdf{};
+  for (size_t i = 0; i < draws.size(); ++i) {
+    const PiecewiseConstant2D::Sample s = m_table.sampleRow(rows[i], draws[i].u.x);
+    at.u[i] = s.x.x;
+    at.v[i] = s.x.y;
+    tablePdf[i] = s.pdf;
+  }
+  Directions directions;
+  findDirections(*this, draws.size(), tablePdf, at, directions);
+  for (size_t i = 0; i < draws.size(); ++i)
+    samples[i] = {.wi = directions.wi[i], .distance = kInfinity, .pdf = directions.pdf[i]};
 }
 
 void EnvironmentMap::sampleEach(std::span<const LightDraw> draws, std::span<EmitterSample> samples) const {
-  std::array<Vec2, kLanes> uv;
-  for (const LightDraw& draw : draws) prefetchTable(draw.u);
-  for (size_t i = 0; i < draws.size(); ++i) {
-    samples[i] = sampleDirection(draws[i].u, uv[i]);
-    prefetchPixels(uv[i]);
-  }
+  ImagePlaces places{};
+  sampleDirections(draws, samples, places);
+  Patches patches;
+  findPatches(draws.size(), places, patches);
   for (size_t i = 0; i < draws.size(); ++i)
-    if (samples[i].pdf > 0) samples[i].radiance = lookUp(uv[i]);
+    if (samples[i].pdf > 0) samples[i].radiance = lookUp(patches[i], places.v[i]);
+}
+
+EmitterSample EnvironmentMap::sample(uint32_t part, const Vec3& ref, const Vec2& u) const {
+  const LightDraw draw{part, ref, u};
+  EmitterSample result;
+  sampleEach({&draw, 1}, {&result, 1});
+  return result;
 }
 
 Vec2 EnvironmentMap::inTable(const Vec2& uv) const {
@@ -195,14 +243,16 @@ float EnvironmentMap::pdf(const Vec3& wi) const {
 }
 
 void EnvironmentMap::view(std::span<EnvironmentView> views) const {
-  std::array<Place, kLanes> places;
-  for (size_t i = 0; i < views.size(); ++i) {
-    places[i] = placeOf(views[i].wi);
-    prefetchPixels(places[i].uv);
+  Columns3 wi{};
+  for (size_t i = 0; i < views.size(); ++i) wi.set(i, views[i].wi);
+  Places places;
+  findPlaces(*this, views.size(), wi, places);
+  Patches patches;
+  findPatches(views.size(), places, patches);
+  for (size_t i = 0; i < views.size(); ++i)
     if (views[i].asksPdf) m_table.prefetchPdf(inTable(places[i].uv));
-  }
   for (size_t i = 0; i < views.size(); ++i) {
-    views[i].radiance = lookUp(places[i].uv);
+    views[i].radiance = lookUp(patches[i], places.v[i]);
     if (views[i].asksPdf) views[i].pdf = pdfAt(places[i]);
     if (views[i].asksNumbers) views[i].u = m_table.invert(inTable(places[i].uv));
   }

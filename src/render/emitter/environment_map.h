@@ -23,10 +23,13 @@ class EnvironmentMap final : public EnvironmentEmitter {
   void view(std::span<EnvironmentView> views) const override;
   bool invertible() const override { return true; }
   Vec2 invert(const Vec3& wi) const override;
-  // A sample without its radiance, and where the image has that.
-  EmitterSample sampleDirection(const Vec2& u, Vec2& uv) const;
-  // Fetches what sampleDirection() reads from memory.
-  void prefetchTable(const Vec2& u) const { m_table.prefetch(u); }
+  // Places of the image, side by side.
+  struct ImagePlaces {
+    Column u, v;
+  };
+  // sampleEach() without radiances, and where the image has those.
+  void sampleDirections(std::span<const LightDraw> draws, std::span<EmitterSample> samples,
+                        ImagePlaces& at) const;
   uint64_t bytes() const { return m_pixels.size() * sizeof(Rgb) + m_table.bytes(); }
 
  private:
@@ -38,6 +41,19 @@ class EnvironmentMap final : public EnvironmentEmitter {
     float stretch;   // the length that it has in the image's space
   };
   Place placeOf(const Vec3& wi) const;
+  struct Places : ImagePlaces {
+    Column sinTheta, stretch;
+
+    Place operator[](size_t lane) const { return {{u[lane], v[lane]}, sinTheta[lane], stretch[lane]}; }
+  };
+  static void findPlaces(const EnvironmentMap& map, size_t count, const Columns3& wi, Places& places);
+  // The way back, for samples of the table.
+  struct Directions {
+    Columns3 wi;
+    Column pdf;
+  };
+  static void findDirections(const EnvironmentMap& map, size_t count, const Column& tablePdf,
+                             ImagePlaces& places, Directions& directions);
   // Where the table has a place of the image.
   Vec2 inTable(const Vec2& uv) const;
   // The pixels around a place of the image: the two columns and the upper of the two rows.
@@ -46,8 +62,19 @@ class EnvironmentMap final : public EnvironmentEmitter {
     Vec2 within;  // of the way from the first pixel to the last
   };
   Patch patchAt(const Vec2& uv) const;
-  void prefetchPixels(const Vec2& uv) const;
-  Rgb lookUp(const Vec2& uv) const;
+  struct Patches {
+    IntColumn left, right, top;
+    Column withinX, withinY;
+
+    Patch operator[](size_t lane) const {
+      return {left[lane], right[lane], top[lane], {withinX[lane], withinY[lane]}};
+    }
+  };
+  // Finds those of several places, and fetches the pixels.
+  void findPatches(size_t count, const ImagePlaces& places, Patches& patches) const;
+  static void findPatchesInLanes(const EnvironmentMap& map, size_t count, const ImagePlaces& places,
+                                 Patches& patches);
+  Rgb lookUp(const Patch& patch, float v) const;
   float pdfAt(const Place& place) const;
   std::vector<float> patchWeights();
 

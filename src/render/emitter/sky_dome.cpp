@@ -50,16 +50,18 @@ Rgb SkyDome::radiance(const Vec3& wi) const {
   return unstretchedRadiance(local);
 }
 
-EmitterSample SkyDome::sample(uint32_t, const Vec3&, const Vec2& u) const {
-  Vec2 uv;
-  EmitterSample result = m_table.sampleDirection(u, uv);
-  if (result.pdf > 0) result.radiance = radiance(result.wi);
+EmitterSample SkyDome::sample(uint32_t part, const Vec3& ref, const Vec2& u) const {
+  const LightDraw draw{part, ref, u};
+  EmitterSample result;
+  sampleEach({&draw, 1}, {&result, 1});
   return result;
 }
 
 void SkyDome::sampleEach(std::span<const LightDraw> draws, std::span<EmitterSample> samples) const {
-  for (const LightDraw& draw : draws) m_table.prefetchTable(draw.u);
-  EnvironmentEmitter::sampleEach(draws, samples);
+  EnvironmentMap::ImagePlaces places{};
+  m_table.sampleDirections(draws, samples, places);
+  for (EmitterSample& sample : samples.first(draws.size()))
+    if (sample.pdf > 0) sample.radiance = radiance(sample.wi);
 }
 
 }  // namespace odis::render

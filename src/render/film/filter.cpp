@@ -1,6 +1,7 @@
 #include "render/film/filter.h"
 
 #include <fmt/format.h>
+#include <odis/instruction_sets.h>
 
 #include <array>
 #include <stdexcept>
@@ -43,10 +44,21 @@ class TentFilter final : public Filter {
   }
   FilterSample sample(const Vec2& u) const override { return {{invert(u.x), invert(u.y)}, 1.0f}; }
   float value(const Vec2& offset) const override { return profile(offset.x) * profile(offset.y); }
+  void sampleEach(size_t count, const Column& u, const Column& v, FilterSamples& samples) const override {
+    sampleLanes(*this, count, u, v, samples);
+  }
   float radius() const override { return m_radius; }
   std::string name() const override { return "tent"; }
 
  private:
+  ODIS_WIDE static void sampleLanes(const TentFilter& filter, size_t count, const Column& u, const Column& v,
+                                    FilterSamples& samples) {
+    for (size_t i = 0, end = endOfLanes(count); i < end; ++i) {
+      samples.x[i] = filter.invert(u[i]);
+      samples.y[i] = filter.invert(v[i]);
+      samples.weight[i] = 1;
+    }
+  }
   float profile(float x) const { return std::max(0.0f, 1 - std::abs(x) / m_radius) / m_radius; }
   float invert(float u) const {
     // The halves are symmetric. A branch between them would be mispredicted half of the time.

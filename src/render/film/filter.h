@@ -7,20 +7,37 @@
 #include <memory>
 #include <string>
 
+#include "render/math/columns.h"
 #include "render/math/interval.h"
-#include "render/math/vec.h"
 
 namespace odis::render {
 
+// What `u` in [0, 1)^2 draws.
 struct FilterSample {
   Vec2 offset;       // from the pixel's centre, in pixels
   float weight = 1;  // filter / density; its expectation is 1, negative for negative lobes
+};
+
+// Those of several numbers.
+struct FilterSamples {
+  Column x, y;  // offsets
+  Column weight;
+
+  void set(size_t lane, const FilterSample& sample) {
+    x[lane] = sample.offset.x;
+    y[lane] = sample.offset.y;
+    weight[lane] = sample.weight;
+  }
 };
 
 class Filter {
  public:
   virtual ~Filter() = default;
   virtual FilterSample sample(const Vec2& u) const = 0;
+  // The same in the first `count` lanes.
+  virtual void sampleEach(size_t count, const Column& u, const Column& v, FilterSamples& samples) const {
+    for (size_t i = 0; i < count; ++i) samples.set(i, sample({u[i], v[i]}));
+  }
   // The normalised filter (its integral is 1) at an offset from the pixel's centre.
   virtual float value(const Vec2& offset) const = 0;
   virtual float radius() const = 0;  // in pixels

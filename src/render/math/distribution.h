@@ -128,22 +128,19 @@ class PiecewiseConstant2D {
         m_index(size_t(m_pieces + 1) * height),
         m_marginal(rowSums(weights)) {}
 
-  Sample sample(const Vec2& u) const {
-    const PiecewiseConstant1D::Sample y = m_marginal.sample(u.y);
+  Sample sample(const Vec2& u) const { return sampleRow(chooseRow(u.y), u.x); }
+  // The same in two steps: chooses a row, and samples within it.
+  using Row = PiecewiseConstant1D::Sample;
+  Row chooseRow(float u) const { return m_marginal.sample(u); }
+  Sample sampleRow(const Row& y, float u) const {
     const std::span<const float> cdf = row(y.cell);
-    const uint32_t cell = findCell(cdf, index(y.cell), u.x);
-    return {{invertCell(cdf, cell, u.x), y.x}, cellPdf(cdf, cell) * y.pdf};
+    const uint32_t cell = findCell(cdf, index(y.cell), u);
+    return {{invertCell(cdf, cell, u), y.x}, cellPdf(cdf, cell) * y.pdf};
   }
-  // The row that sample() takes u to and, by the index alone, about the cell of it; fetches what the search
-  // for that reads from memory.
-  struct Cell {
-    uint32_t x, y;
-  };
-  Cell prefetch(const Vec2& u) const {
-    const uint32_t y = m_marginal.sample(u.y).cell;
-    const uint32_t x = index(y)[std::min(uint32_t(u.x * float(m_pieces)), m_pieces - 1)];
-    __builtin_prefetch(&row(y)[x]);
-    return {x, y};
+  // Fetches what the second step reads from memory.
+  void prefetchRow(const Row& y, float u) const {
+    const uint32_t piece = std::min(uint32_t(u * float(m_pieces)), m_pieces - 1);
+    __builtin_prefetch(&row(y.cell)[index(y.cell)[piece]]);
   }
   // Fetches what pdf() and invert() read from memory.
   void prefetchPdf(const Vec2& x) const {

@@ -2,19 +2,9 @@
 // named.
 #pragma once
 
-#include <bit>
-
-#include "render/math/vec.h"
+#include "render/math/angles.h"
 
 namespace odis::render {
-
-// Without a branch, which random numbers would have mispredicted half of the time.
-inline void swapIf(bool condition, float& a, float& b) {
-  const uint32_t difference =
-      (std::bit_cast<uint32_t>(a) ^ std::bit_cast<uint32_t>(b)) & (0u - uint32_t(condition));
-  a = std::bit_cast<float>(std::bit_cast<uint32_t>(a) ^ difference);
-  b = std::bit_cast<float>(std::bit_cast<uint32_t>(b) ^ difference);
-}
 
 // Uniform on the unit disk, concentric (Shirley and Chiu 1997); area density 1/pi.
 inline Vec2 squareToDisk(const Vec2& u) {

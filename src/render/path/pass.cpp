@@ -83,18 +83,16 @@ Ray beyondEmitters(const Scene& scene, Ray ray) {
   return ray;
 }
 
-using NumbersBlock = std::array<CameraNumbers, SamplerBlock::kSize>;
-
-// The numbers of several samples at once.
-void drawCameraNumbers(const Scene& scene, const SamplerBlock& samplers, NumbersBlock& numbers) {
-  Column x, y;
-  samplers.draw2D(kPixelNumber, x, y);
-  for (size_t i = 0; i < numbers.size(); ++i) numbers[i].pixel = Vec2(x[i], y[i]);
-  samplers.draw2D(kLensNumber, x, y);
-  for (size_t i = 0; i < numbers.size(); ++i) numbers[i].lens = Vec2(x[i], y[i]);
-  if (!scene.moves()) return;
-  samplers.draw1D(kTimeNumber, x);
-  for (size_t i = 0; i < numbers.size(); ++i) numbers[i].time = x[i];
+// Draws the numbers of the camera rays of several samples: those of the pixel go to u and v, those of the lens
+// and the time to `places`.
+void drawCameraNumbers(const Scene& scene, const SamplerBlock& samplers, Column& u, Column& v,
+                       CameraPlaces& places) {
+  samplers.draw2D(kPixelNumber, u, v);
+  if (scene.sensor().readsLens()) samplers.draw2D(kLensNumber, places.lensU, places.lensV);
+  if (scene.moves())
+    samplers.draw1D(kTimeNumber, places.time);
+  else
+    places.time = {};
 }
 
 Vec2i pixelAt(const FilmSettings& film, uint32_t index) {
@@ -113,17 +111,42 @@ Path pathWithoutRay(const Pass& pass, uint32_t pixel, Vec2i at, uint32_t sample)
   return path;
 }
 
-// Gives paths, whose pixels lie at these places on the film, their camera rays; draws the numbers of several
-// at once.
-void addCameraRays(const Scene& scene, std::span<Path> paths, std::span<const Vec2i> places) {
+// The camera rays of several samples whose pixels lie at `pixels` on the film, drawn by their numbers; the
+// weights of the reconstruction filter go to `weights`.
+void findCameraRays(const Scene& scene, std::span<const Vec2i> pixels, const Column& u, const Column& v,
+                    CameraPlaces& places, CameraRays& rays, Column& weights) {
+  const Sensor& sensor = scene.sensor();
+  FilterSamples samples;
+  scene.film().filter->sampleEach(pixels.size(), u, v, samples);
+  for (size_t i = 0; i < pixels.size(); ++i) {
+    places.filmX[i] = float(pixels[i].x) + 0.5f + samples.x[i];
+    places.filmY[i] = float(pixels[i].y) + 0.5f + samples.y[i];
+    weights[i] = samples.weight[i] * sensor.weight(places.film(i));
+  }
+  sensor.rays(pixels.size(), places, rays);
+}
+
+// One of them, behind the lights that the integrator hides.
+Ray rayAt(const Scene& scene, const CameraPlaces& places, const CameraRays& rays, size_t lane) {
+  const Ray ray{rays.origin[lane], rays.direction[lane], rays.tMax[lane], places.time[lane]};
+  return scene.integrator().hideEmitters ? beyondEmitters(scene, ray) : ray;
+}
+
+// Gives paths, whose pixels lie at `pixels` on the film, their camera rays, several at once.
+void addCameraRays(const Scene& scene, std::span<Path> paths, std::span<const Vec2i> pixels) {
   for (size_t begin = 0; begin < paths.size(); begin += SamplerBlock::kSize) {
     const auto some = paths.subspan(begin, std::min(SamplerBlock::kSize, paths.size() - begin));
     SamplerBlock samplers;
     for (const Path& path : some) samplers.add(path.sampler);
-    NumbersBlock numbers;
-    drawCameraNumbers(scene, samplers, numbers);
-    for (size_t i = 0; i < some.size(); ++i)
-      some[i].ray = cameraRay(scene, places[begin + i], numbers[i], some[i].identity.sampleWeight);
+    Column u, v, weights;
+    CameraPlaces places;
+    CameraRays rays;
+    drawCameraNumbers(scene, samplers, u, v, places);
+    findCameraRays(scene, pixels.subspan(begin, some.size()), u, v, places, rays, weights);
+    for (size_t i = 0; i < some.size(); ++i) {
+      some[i].ray = rayAt(scene, places, rays, i);
+      some[i].identity.sampleWeight = weights[i];
+    }
   }
 }
 
@@ -159,17 +182,22 @@ uint32_t tileCount(const Crop& crop) {
 CameraNumbers cameraNumbers(const Scene& scene, const Sampler& sampler) {
   SamplerBlock block;
   block.add(sampler);
-  NumbersBlock numbers;
-  drawCameraNumbers(scene, block, numbers);
-  return numbers[0];
+  Column u, v;
+  CameraPlaces places;
+  drawCameraNumbers(scene, block, u, v, places);
+  return {{u[0], v[0]}, places.lens(0), places.time[0]};
 }
 
 Ray cameraRay(const Scene& scene, Vec2i pixel, const CameraNumbers& numbers, float& filterWeight) {
-  const FilterSample offset = scene.film().filter->sample(numbers.pixel);
-  const Vec2 film = Vec2(pixel.x + 0.5f, pixel.y + 0.5f) + offset.offset;
-  filterWeight = offset.weight * scene.sensor().weight(film);
-  const Ray ray = scene.sensor().ray(film, numbers.lens, numbers.time);
-  return scene.integrator().hideEmitters ? beyondEmitters(scene, ray) : ray;
+  Column weights;
+  CameraPlaces places{};
+  places.lensU[0] = numbers.lens.x;
+  places.lensV[0] = numbers.lens.y;
+  places.time[0] = numbers.time;
+  CameraRays rays;
+  findCameraRays(scene, {&pixel, 1}, {numbers.pixel.x}, {numbers.pixel.y}, places, rays, weights);
+  filterWeight = weights[0];
+  return rayAt(scene, places, rays, 0);
 }
 
 Path cameraPath(const Pass& pass, uint32_t pixel, uint32_t sample) {

@@ -15,6 +15,7 @@ class Orthographic final : public Sensor {
  public:
   Orthographic(const Matrix4& toWorld, const Vec2i& resolution, const ClipRange& clip);
   Ray ray(const Vec2& film, const Vec2& lens) const override;
+  bool readsLens() const override { return false; }
 
  private:
   Matrix4 m_toWorld;

@@ -1,5 +1,7 @@
 #include "render/sensor/perspective.h"
 
+#include <odis/instruction_sets.h>
+
 namespace odis::render {
 
 Projection::Projection(double fov, const Vec2i& resolution, const Vec2& principalPointOffset) {
@@ -9,10 +11,13 @@ Projection::Projection(double fov, const Vec2i& resolution, const Vec2& principa
               float(pixel * resolution.y * (0.5 - principalPointOffset.y))};
 }
 
-Ray Perspective::ray(const Vec2& film, const Vec2&) const {
-  const Vec3 direction = m_projection.direction(film);
-  const Ray ray{transformPoint(m_toWorld, Vec3(0)), normalize(transformVector(m_toWorld, direction))};
-  return m_clip.clip(ray, 1 / length(direction));
+ODIS_WIDE void Perspective::findRays(const Perspective& camera, size_t count, const CameraPlaces& places,
+                                     CameraRays& rays) {
+  for (size_t i = 0, end = endOfLanes(count); i < end; ++i) rays.set(i, camera.through(places.film(i)));
+}
+
+void Perspective::raysAtRest(size_t count, const CameraPlaces& places, CameraRays& rays) const {
+  findRays(*this, count, places, rays);
 }
 
 }  // namespace odis::render

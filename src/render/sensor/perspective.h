@@ -33,11 +33,26 @@ class Perspective final : public Sensor {
  public:
   // `toWorld` keeps lengths.
   Perspective(const Matrix4& toWorld, const Projection& projection, const ClipRange& clip = {})
-      : m_toWorld(toWorld), m_projection(projection), m_clip(clip) {}
-  Ray ray(const Vec2& film, const Vec2& lens) const override;
+      : m_toWorld(toWorld),
+        m_position(transformPoint(toWorld, Vec3(0))),
+        m_projection(projection),
+        m_clip(clip) {}
+  Ray ray(const Vec2& film, const Vec2&) const override { return through(film); }
+  bool readsLens() const override { return false; }
 
  private:
+  void raysAtRest(size_t count, const CameraPlaces& places, CameraRays& rays) const override;
+  static void findRays(const Perspective& camera, size_t count, const CameraPlaces& places,
+                       CameraRays& rays);
+  // The ray through a place on the film.
+  Ray through(const Vec2& film) const {
+    const Vec3 direction = m_projection.direction(film);
+    const Ray ray{m_position, normalize(transformVector(m_toWorld, direction))};
+    return m_clip.clip(ray, 1 / length(direction));
+  }
+
   Matrix4 m_toWorld;
+  Vec3 m_position;
   Projection m_projection;
   ClipRange m_clip;
 };

@@ -13,6 +13,7 @@ class RadianceMeter final : public Sensor {
  public:
   explicit RadianceMeter(const Ray& ray) : m_ray(ray) {}
   Ray ray(const Vec2&, const Vec2&) const override { return m_ray; }
+  bool readsLens() const override { return false; }
 
  private:
   Ray m_ray;
