@@ -16,23 +16,20 @@ struct DielectricFresnel {
 
 // `cosTheta` is the cosine at which the interface is met, negative from the inside; `eta` is inside over
 // outside.
-inline DielectricFresnel fresnelDielectric(float cosTheta, float eta) {
+[[gnu::always_inline]] inline DielectricFresnel fresnelDielectric(float cosTheta, float eta) {
   DielectricFresnel result;
   const bool outside = cosTheta >= 0;
-  result.etaIn = outside ? eta : 1 / eta;
-  result.etaOut = outside ? 1 / eta : eta;
+  const float reciprocal = 1 / eta;
+  result.etaIn = outside ? eta : reciprocal;
+  result.etaOut = outside ? reciprocal : eta;
   const float c = std::abs(cosTheta);
   const float t = safeSqrt(1 - result.etaOut * result.etaOut * (1 - c * c));
   result.cosTheta = outside ? -t : t;
-  if (eta == 1) {
-    result.reflectance = 0;
-  } else if (c == 0) {
-    result.reflectance = 1;
-  } else {
-    const float s = (c - result.etaIn * t) / (c + result.etaIn * t);
-    const float p = (t - result.etaIn * c) / (t + result.etaIn * c);
-    result.reflectance = 0.5f * (s * s + p * p);
-  }
+  // Without branches, which would often be mispredicted.
+  const float s = (c - result.etaIn * t) / (c + result.etaIn * t);
+  const float p = (t - result.etaIn * c) / (t + result.etaIn * c);
+  const float grazing = eta == 1 ? 0.0f : 1.0f;
+  result.reflectance = (c == 0) | (eta == 1) ? grazing : 0.5f * (s * s + p * p);
   return result;
 }
 

@@ -74,10 +74,16 @@ LightSampler::LightSampler(const std::vector<const Emitter*>& emitters)
   for (size_t i = 0; i < m_infinite.size(); ++i) m_probability[m_infinite[i]] = m_cdf[i + 1] - m_cdf[i];
 }
 
-float LightSampler::treeBesideInfinite(const LightReference& ref) const {
-  const float irradiance = m_tree.irradiance(ref);
+float LightSampler::treeBesideInfinite(float irradiance) const {
   if (irradiance == 0) return 0;
   return lerp(kUniformShare, irradiance / (irradiance + m_infiniteIrradiance), 0.5f);
+}
+
+void LightSampler::prepare(std::span<LightReference> refs) const {
+  if (m_infinite.empty()) return;
+  Column irradiances;
+  m_tree.irradiances(refs, irradiances);
+  for (size_t i = 0; i < refs.size(); ++i) refs[i].treeProbability = treeBesideInfinite(irradiances[i]);
 }
 
 void LightSampler::divide(uint32_t lights) {

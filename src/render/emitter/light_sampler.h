@@ -44,6 +44,9 @@ class LightSampler {
   // Chooses with uChoice in [0, 1). The point u of [0, 1)^2 comes back as it is, or moved into the region
   // of an environment that was chosen by what was learned.
   Choice sample(const LightReference& ref, float uChoice, const Vec2& u) const;
+  // Finds for up to kLanes references what both sample() and probability() need to know, so that they need not
+  // find it themselves.
+  void prepare(std::span<LightReference> refs) const;
   // The same for up to kLanes references at once.
   struct Request {
     const LightReference* ref;
@@ -78,9 +81,11 @@ class LightSampler {
   uint32_t regions() const { return m_side * m_side; }
   // The probability of choosing from the tree.
   float treeProbability(const LightReference& ref) const {
-    return m_infinite.empty() ? 1.0f : treeBesideInfinite(ref);
+    if (m_infinite.empty()) return 1;
+    return ref.treeProbability >= 0 ? ref.treeProbability : treeBesideInfinite(m_tree.irradiance(ref));
   }
-  float treeBesideInfinite(const LightReference& ref) const;
+  // The same where the lights of the tree may give so much.
+  float treeBesideInfinite(float irradiance) const;
   // What a choice needs to know until it is made.
   struct Beginning {
     float treeProbability;

@@ -1,5 +1,7 @@
 #include "render/emitter/light_tree.h"
 
+#include <odis/instruction_sets.h>
+
 #include <array>
 #include <bit>
 #include <limits>
@@ -44,11 +46,37 @@ const Angle& LightTree::angle(uint8_t steps) {
   return kAngles[steps];
 }
 
+SubtreeBounds LightTree::unpack(const Node& node) {
+  return {node.center,
+          node.radiusSquared,
+          node.intensity,
+          Vec3(node.axis[0], node.axis[1], node.axis[2]),
+          angle(node.thetaO),
+          angle(node.thetaE).cos};
+}
+
 float LightTree::importance(const Node& node, const LightReference& ref) {
-  return render::importance(
-      {node.center, node.radiusSquared, node.intensity, Vec3(node.axis[0], node.axis[1], node.axis[2]),
-       angle(node.thetaO), angle(node.thetaE).cos},
-      ref.p, ref.n, ref.both);
+  return render::importance(unpack(node), ref.p, ref.n, ref.both);
+}
+
+// What the lights of a subtree may give several references.
+ODIS_WIDE static void findImportances(const SubtreeBounds& bounds, size_t count, const Columns3& p,
+                                      const Columns3& n, const IntColumn& both, Column& result) {
+  for (size_t i = 0, end = endOfLanes(count); i < end; ++i)
+    result[i] = importance(bounds, p[i], n[i], both[i] != 0);
+}
+
+void LightTree::irradiances(std::span<const LightReference> refs, Column& result) const {
+  result = {};
+  if (empty()) return;
+  Columns3 p{}, n{};
+  IntColumn both{};
+  for (size_t i = 0; i < refs.size(); ++i) {
+    p.set(i, refs[i].p);
+    n.set(i, refs[i].n);
+    both[i] = refs[i].both;
+  }
+  findImportances(unpack(m_rootNode), refs.size(), p, n, both, result);
 }
 
 float LightTree::firstProbability(const Pair& pair, const LightReference& ref) {

@@ -11,6 +11,7 @@
 
 #include "render/emitter/light_bounds.h"
 #include "render/emitter/light_importance.h"
+#include "render/math/columns.h"
 
 namespace odis::render {
 
@@ -20,6 +21,7 @@ struct LightReference {
   Vec3 n;                   // unit shading normal on the side that light is scattered to
   bool both = false;        // whether light of the other side is scattered too
   LearnedLights learned{};  // what is known of the groups of lights there; LightSampler only
+  float treeProbability = -1;  // LightSampler::prepare() only: negative before
 };
 
 class LightTree {
@@ -45,6 +47,8 @@ class LightTree {
 
   // An estimate of what all lights together give the reference, in W/m^2; zero only if nothing.
   float irradiance(const LightReference& ref) const { return empty() ? 0 : importance(m_rootNode, ref); }
+  // The same for up to kLanes references.
+  void irradiances(std::span<const LightReference> refs, Column& result) const;
 
   // The tree is cut into groups of lights: the brightest node is divided until there are as many as asked
   // for.
@@ -111,6 +115,7 @@ class LightTree {
   static Node pack(const LightBounds& bounds, uint32_t link);
   // What the lights below the node may give the reference, in W/m^2; zero only if nothing.
   static float importance(const Node& node, const LightReference& ref);
+  static SubtreeBounds unpack(const Node& node);
   // A packed angle.
   static const Angle& angle(uint8_t steps);
   // The probability of the first child; negative if neither gives anything.

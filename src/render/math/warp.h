@@ -32,19 +32,21 @@ inline float cosineHemispherePdf(float cosTheta) {
 
 // Uniform on the unit sphere; solid-angle density 1/(4 pi).
 inline Vec3 squareToSphere(const Vec2& u) {
-  const float z = 1.0f - 2.0f * u.x, r = safeSqrt(1.0f - z * z), phi = 2.0f * kPi * u.y;
-  return {r * std::cos(phi), r * std::sin(phi), z};
+  const float z = 1.0f - 2.0f * u.x, r = safeSqrt(1.0f - z * z);
+  const auto [sinPhi, cosPhi] = sinCosOfTurns(u.y);
+  return {r * cosPhi, r * sinPhi, z};
 }
 // The point of the square that squareToSphere takes to `d`, unit, but for rounding; in [0, 1)^2.
 inline Vec2 sphereToSquare(const Vec3& d) {
-  const float turns = std::atan2(d.y, d.x) * (0.5f * kInvPi), z = 0.5f - 0.5f * d.z;
+  const float turns = angleInTurns(d.y, d.x), z = 0.5f - 0.5f * d.z;
   return {std::clamp(z, 0.0f, kOneMinusEpsilon), std::min(turns < 0 ? turns + 1 : turns, kOneMinusEpsilon)};
 }
 
 // Uniform in the cone of directions about +z with cosine > cosMax; solid-angle density 1/(2 pi (1 - cosMax)).
 inline Vec3 squareToCone(const Vec2& u, float cosMax) {
-  const float z = 1.0f - u.x * (1.0f - cosMax), r = safeSqrt(1.0f - z * z), phi = 2.0f * kPi * u.y;
-  return {r * std::cos(phi), r * std::sin(phi), z};
+  const float z = 1.0f - u.x * (1.0f - cosMax), r = safeSqrt(1.0f - z * z);
+  const auto [sinPhi, cosPhi] = sinCosOfTurns(u.y);
+  return {r * cosPhi, r * sinPhi, z};
 }
 
 // Uniform barycentric coordinates (b1, b2) of a triangle; b0 = 1 - b1 - b2.

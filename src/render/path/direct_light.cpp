@@ -31,6 +31,7 @@ bool chooseLights(const PathSettings& settings, Bounces& bounces) {
     unlit.addIf(!traits.evaluable, i);
   }
   if (unlit.count == bounces.count) return false;
+  settings.lights->prepare({bounces.references.data(), bounces.count});
   settings.lights->sample({requests.data(), bounces.count}, lights.choices);
   for (const size_t i : unlit) lights.choices[i].emitter = nullptr;
   return true;

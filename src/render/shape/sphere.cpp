@@ -83,7 +83,7 @@ SurfacePoint Sphere::surfacePoint(const Ray& ray, const RawHit& hit) const {
   const Ray local = toObject(ray, hit);
   // t is rounded, so the point is moved onto the sphere.
   const Vec3d fromCenter = Vec3d(local.origin) + Vec3d(local.direction) * double(hit.t) - m_center;
-  SurfacePoint at = pointToward(fromCenter / std::sqrt(fromCenter.dot(fromCenter)));
+  SurfacePoint at = pointToward(fromCenter * (1 / std::sqrt(fromCenter.dot(fromCenter))));
   toWorld(at, hit);
   return at;
 }
@@ -92,45 +92,45 @@ float Sphere::area() const {
   return float(4 * M_PI * m_radius * m_radius);
 }
 
-double Sphere::coneHeight(const Vec3& ref) const {
-  const Vec3d toCenter = m_center - Vec3d(ref);
+double Sphere::coneHeight(const Vec3& ref, double squaredDistance) const {
   // A point of the sphere itself, rounded to either side, must see all of the inside.
   const double outside = m_radius + positionError(maxAbs(ref));
-  if (!(toCenter.dot(toCenter) > outside * outside)) return -1;
-  const double sinSquared = m_radius * m_radius / toCenter.dot(toCenter);
+  if (!(squaredDistance > outside * outside)) return -1;
+  const double sinSquared = m_radius * m_radius / squaredDistance;
   return sinSquared / (1 + std::sqrt(1 - sinSquared));  // 1 - cos, without its cancellation
 }
 
 ShapeSample Sphere::sample(const Vec3& ref, const Vec2& u) const {
-  const double height = coneHeight(ref);
+  const Vec3d toCenter = m_center - Vec3d(ref);
+  const double squaredDistance = toCenter.dot(toCenter), height = coneHeight(ref, squaredDistance);
   if (height < 0)
     return uniformAreaSample(
         ref, [&] { return placeToward(Vec3d(squareToSphere(u))); }, area());
 
   // Draw a direction in the cone, and find where it enters the sphere: the angle at the centre follows from
   // the two sides of the triangle and the angle at the reference point.
-  const Vec3d toCenter = m_center - Vec3d(ref);
-  const double distance = std::sqrt(toCenter.dot(toCenter));
+  const double distance = std::sqrt(squaredDistance), perDistance = 1 / distance;
   const double oneMinusCos = u.x * height, cosTheta = 1 - oneMinusCos;
   const double sinSquared = oneMinusCos * (2 - oneMinusCos);
   const double toSurface =
-      distance * cosTheta - std::sqrt(std::max(0.0, m_radius * m_radius - distance * distance * sinSquared));
-  const CoordinateFrame frame(Vec3(toCenter / distance));
-  const float phi = 2 * kPi * u.y;
-  const Vec3d around(frame.s * std::cos(phi) + frame.t * std::sin(phi));
-  const Vec3d direction = around * std::sqrt(sinSquared) + toCenter * (cosTheta / distance);
+      distance * cosTheta - std::sqrt(std::max(0.0, m_radius * m_radius - squaredDistance * sinSquared));
+  const CoordinateFrame frame(Vec3(toCenter * perDistance));
+  const auto [sinPhi, cosPhi] = sinCosOfTurns(u.y);
+  const Vec3d around(frame.s * cosPhi + frame.t * sinPhi);
+  const Vec3d direction = around * std::sqrt(sinSquared) + toCenter * (cosTheta * perDistance);
   const Vec3d fromCenter = direction * toSurface - toCenter;
 
   ShapeSample sample;
-  sample.at = placeToward(fromCenter / std::sqrt(fromCenter.dot(fromCenter)));
-  sample.wi = Vec3(direction / std::sqrt(direction.dot(direction)));
+  sample.at = placeToward(fromCenter * (1 / std::sqrt(fromCenter.dot(fromCenter))));
+  sample.wi = Vec3(direction * (1 / std::sqrt(direction.dot(direction))));
   sample.distance = float(toSurface);
   sample.pdf = float(1 / (2 * M_PI * height));
   return sample;
 }
 
 float Sphere::pdf(const Vec3& ref, const SurfacePoint& at) const {
-  const double height = coneHeight(ref);
+  const Vec3d toCenter = m_center - Vec3d(ref);
+  const double height = coneHeight(ref, toCenter.dot(toCenter));
   return height < 0 ? uniformAreaPdf(ref, at, area()) : float(1 / (2 * M_PI * height));
 }
 

@@ -32,8 +32,8 @@ class Sphere final : public Shape {
   bool hit(const PreciseRay& ray, double& t) const;
 
  private:
-  // 1 - cos of half the cone's angle; negative inside the sphere.
-  double coneHeight(const Vec3& ref) const;
+  // 1 - cos of half the cone's angle, seen from so far from the center; negative inside the sphere.
+  double coneHeight(const Vec3& ref, double squaredDistance) const;
   // Coordinates along the axes, and uv from these.
   Vec3d toLocal(const Vec3d& unit) const;
   static Vec2 uvToward(const Vec3d& local);
