@@ -52,6 +52,7 @@ struct BsdfFeatures {
 };
 
 class RgbParameter;
+class FacetedBsdf;
 
 // How a Lambertian surface scatters: `reflectance` / pi on one side.
 struct DiffuseReflection {
@@ -59,10 +60,11 @@ struct DiffuseReflection {
   float side = 0;  // of the shading normal: 1 or -1; 0 if nothing is scattered
 };
 
-// One side of a surface. If it is a Lambertian one it scatters to `side` of the shading normal: 1 the front,
-// -1 the back, 0 nowhere.
-struct DiffuseSide {
-  const RgbParameter* reflectance = nullptr;  // null: some other BSDF
+// One side of a surface, if it is of a kind that is computed with in lanes. It scatters to `side` of the shading
+// normal: 1 the front, -1 the back, 0 nowhere.
+struct BsdfSide {
+  const RgbParameter* reflectance = nullptr;  // of a Lambertian side
+  const FacetedBsdf* faceted = nullptr;       // of one with facets: what it is, seen from the front
   float side = 0;
 
   bool scatters(const Vec3& wo) const { return side != 0 && std::abs(wo.z) > 0; }
@@ -101,13 +103,13 @@ class Bsdf {
   // that callers may work it out by themselves. Defined in parameter.h.
   bool isDiffuse(const SurfacePoint& at, const Vec3& wo, DiffuseReflection& reflection) const;
   // The side that a direction is on.
-  const DiffuseSide& diffuseSide(const Vec3& wo) const { return m_diffuse[!(wo.z >= 0)]; }
+  const BsdfSide& side(const Vec3& wo) const { return m_sides[!(wo.z >= 0)]; }
 
   const BsdfTraits& traits() const { return m_traits; }
 
  protected:
   BsdfTraits m_traits;
-  DiffuseSide m_diffuse[2];  // front and back
+  BsdfSide m_sides[2];  // front and back
 };
 
 using BsdfPtr = std::shared_ptr<const Bsdf>;

@@ -14,8 +14,8 @@ class Diffuse final : public Bsdf {
  public:
   explicit Diffuse(RgbParameter reflectance) : m_reflectance(std::move(reflectance)) {
     m_traits.choosesLobes = false;
-    m_diffuse[0] = {&m_reflectance, 1};
-    m_diffuse[1] = {&m_reflectance, 0};
+    m_sides[0] = {.reflectance = &m_reflectance, .side = 1};
+    m_sides[1] = {.reflectance = &m_reflectance, .side = 0};
   }
 
   BsdfSample sample(const SurfacePoint& at, const Vec3& wo, float, const Vec2& u) const override {

@@ -63,10 +63,14 @@ class Microfacet {
 
   // Smith's masking of direction v; zero if v sees the facet's back.
   float g1(const Vec3& v, const Vec3& m) const {
-    if (dot(v, m) * v.z <= 0) return 0;
+    const bool hidden = dot(v, m) * v.z <= 0;
     const float projected = sqr(m_alphaU * v.x) + sqr(m_alphaV * v.y);
+    if (m_type == Type::ggx) {
+      const float seen = projected == 0 ? 1 : 2 / (1 + std::sqrt(1 + projected / (v.z * v.z)));
+      return hidden ? 0 : seen;
+    }
+    if (hidden) return 0;
     if (projected == 0) return 1;
-    if (m_type == Type::ggx) return 2 / (1 + std::sqrt(1 + projected / (v.z * v.z)));
     const float a = std::abs(v.z) / std::sqrt(projected);
     // The exact form, not the usual rational fit: densities must integrate to one.
     return a > 4 ? 1 : 2 / (1 + std::erf(a) + std::exp(-a * a) / (a * 1.77245385f));
@@ -93,7 +97,8 @@ class Microfacet {
     const Vec3 v = normalize(Vec3(m_alphaU * w.x, m_alphaV * w.y, w.z));
     const float planar = v.x * v.x + v.y * v.y;
     const float r = std::sqrt(planar);
-    const Vec2 axis = planar > 1e-12f ? Vec2(v.x / r, v.y / r) : Vec2(1, 0);
+    const bool tilted = planar > 1e-12f;
+    const Vec2 axis(tilted ? v.x / r : 1.0f, tilted ? v.y / r : 0.0f);
     if (m_type == Type::ggx) {
       const Vec3 t1(-axis.y, axis.x, 0), t2 = cross(v, t1);
       const Vec2 disk = squareToDisk(u);

@@ -38,7 +38,7 @@ class RgbParameter {
 };
 
 inline bool Bsdf::isDiffuse(const SurfacePoint& at, const Vec3& wo, DiffuseReflection& reflection) const {
-  const DiffuseSide& side = diffuseSide(wo);
+  const BsdfSide& side = this->side(wo);
   if (!side.reflectance) return false;
   reflection = {(*side.reflectance)(at), side.scatters(wo) ? side.side : 0.0f};
   return true;

@@ -6,54 +6,40 @@
 //   alpha_u, alpha_v   the same along the tangent and the bitangent, instead of alpha
 //   sample_visible     whether to sample only facets that are visible; true
 #include "render/bsdf/factories.h"
-#include "render/bsdf/fresnel.h"
+#include "render/bsdf/faceted.h"
 #include "render/bsdf/parameter.h"
 
 namespace odis::render {
 namespace {
 
-class RoughConductor final : public Bsdf {
+class RoughConductor final : public FacetedBsdf {
  public:
   RoughConductor(ComplexIor ior, RgbParameter specular, RoughnessParameters roughness)
-      : m_ior(std::move(ior)), m_specular(std::move(specular)), m_roughness(std::move(roughness)) {
+      : FacetedBsdf(roughness.type, roughness.sampleVisible),
+        m_ior(std::move(ior)),
+        m_specular(std::move(specular)),
+        m_roughness(std::move(roughness)) {
     m_traits.tangents = m_roughness.anisotropic;
     m_traits.choosesLobes = false;
   }
 
-  BsdfSample sample(const SurfacePoint& at, const Vec3& wo, float, const Vec2& u) const override {
-    if (!(wo.z > 0)) return {};
-    const Microfacet facets = m_roughness(at);
-    const Vec3 wi = reflect(wo, facets.sample(wo, u));
-    return finishSample(wi, evaluate(at, facets, wo, wi), facets.lobe());
+  FacetedSurface surface(const SurfacePoint& at, float) const override {
+    const float alpha = m_roughness.alphaU(at);
+    return {.alphaU = alpha,
+            .alphaV = m_roughness.anisotropic ? m_roughness.alphaV(at) : alpha,
+            .specular = m_specular(at),
+            .isMetal = 1,
+            .metalEta = m_ior.eta(at) * m_ior.scale,
+            .metalK = m_ior.k(at) * m_ior.scale};
   }
-
-  BsdfValue evaluate(const SurfacePoint& at, const Vec3& wo, const Vec3& wi) const override {
-    if (!(wo.z > 0) || !(wi.z > 0)) return {};
-    return evaluate(at, m_roughness(at), wo, wi);
-  }
-
-  float guidableProbability(const SurfacePoint& at, const Vec3& wo) const override {
-    return wo.z > 0 && m_roughness(at).lobe() == Lobe::smooth ? 1.0f : 0.0f;
-  }
-
   BsdfFeatures features(const SurfacePoint& at, const Vec3& wo) const override {
-    return {clampUnit(m_ior.reflectance(at, std::abs(wo.z)) * m_specular(at)),
-            std::min(m_roughness(at).alphaMax(), 1.0f)};
+    return {clampUnit(m_ior.reflectance(at, std::abs(wo.z)) * m_specular(at)), roughness(at, wo)};
+  }
+  float roughness(const SurfacePoint& at, const Vec3&) const override {
+    return std::min(m_roughness(at).alphaMax(), 1.0f);
   }
 
  private:
-  BsdfValue evaluate(const SurfacePoint& at, const Microfacet& facets, const Vec3& wo, const Vec3& wi) const {
-    if (!(wi.z > 0)) return {};
-    const Vec3 m = normalize(wo + wi);
-    const auto [d, g, facetPdf] = facets.terms(wo, wi, m);
-    BsdfValue result;
-    result.pdf = facetPdf / (4 * dot(wi, m));
-    if (!(result.pdf > 0)) return {};
-    if (facets.lobe() == Lobe::smooth) result.guidablePdf = result.pdf;
-    result.value = m_ior.reflectance(at, dot(wo, m)) * m_specular(at) * (d * g / (4 * wo.z));
-    return result;
-  }
-
   ComplexIor m_ior;
   RgbParameter m_specular;
   RoughnessParameters m_roughness;

@@ -9,12 +9,12 @@ namespace {
 
 class TwoSided final : public Bsdf {
  public:
-  TwoSided(BsdfPtr front, BsdfPtr back) : m_sides{std::move(front), std::move(back)} {
-    m_traits = m_sides[0]->traits() | m_sides[1]->traits();
+  TwoSided(BsdfPtr front, BsdfPtr back) : m_nested{std::move(front), std::move(back)} {
+    m_traits = m_nested[0]->traits() | m_nested[1]->traits();
     const Vec3 outside(0, 0, 1);
-    m_diffuse[0] = m_sides[0]->diffuseSide(outside);
-    m_diffuse[1] = m_sides[1]->diffuseSide(outside);
-    m_diffuse[1].side *= -1;
+    m_sides[0] = m_nested[0]->side(outside);
+    m_sides[1] = m_nested[1]->side(outside);
+    m_sides[1].side *= -1;
   }
 
   BsdfSample sample(const SurfacePoint& at, const Vec3& wo, float uLobe, const Vec2& u) const override {
@@ -52,9 +52,9 @@ class TwoSided final : public Bsdf {
     bool back;
     float sign;
   };
-  const Bsdf& of(const Side& side) const { return *m_sides[side.back]; }
+  const Bsdf& of(const Side& side) const { return *m_nested[side.back]; }
 
-  BsdfPtr m_sides[2];  // front and back
+  BsdfPtr m_nested[2];  // front and back
 };
 
 }  // namespace

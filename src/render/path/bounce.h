@@ -3,6 +3,7 @@
 
 #include <array>
 
+#include "render/bsdf/faceted.h"
 #include "render/emitter/light_triangles.h"
 #include "render/math/vertex_columns.h"
 #include "render/path/guided_bsdf.h"
@@ -24,10 +25,14 @@ struct VertexNumbers {
 struct Surfaces : VertexColumns {
   Columns3 facing;  // facingNormal()
   const Bsdf* bsdfs[kLanes];
-  // Where the BSDF is that of a Lambertian surface, which costs no virtual calls: how it scatters.
+  // Of surfaces that scatter without virtual calls: the side that they scatter to (BsdfSide), and how. Such a
+  // surface is Lambertian or has facets.
+  Column side;
   IntColumn isDiffuse;
   Columns3 reflectance;
-  Column side;
+  IntColumn isFaceted;
+  FacetedColumns faceted;
+  LaneList facetedLanes;  // which those are
   Column guidable;  // Bsdf::guidableProbability(), where anybody asks
 };
 

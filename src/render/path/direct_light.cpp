@@ -103,6 +103,36 @@ ODIS_WIDE void estimateAtDiffuse(Bounces& bounces, IntColumn& arrives) {
   }
 }
 
+ODIS_WIDE void turnToShadingFrames(const Bounces& bounces, Columns3& local) {
+  const Surfaces& at = bounces.at;
+  for (size_t i = 0, end = endOfLanes(bounces.count); i < end; ++i)
+    local.set(i, CoordinateFrame(at.s[i], at.t[i], at.n[i]).toLocal(bounces.light.wi[i]));
+}
+
+ODIS_WIDE void keepFaceted(const BsdfValues& values, Bounces& bounces) {
+  LightEstimates& light = bounces.light;
+  for (size_t i = 0, end = endOfLanes(bounces.count); i < end; ++i) {
+    const bool is = bounces.at.isFaceted[i];
+    const Vec3 value = values.value[i], ofDiffuse = light.radiance[i];
+    light.radiance.set(i, select(is, value, ofDiffuse));
+    light.bsdfPdf[i] = is ? values.pdf[i] : light.bsdfPdf[i];
+    light.guidablePdf[i] = is ? values.guidablePdf[i] : light.guidablePdf[i];
+  }
+}
+
+// What surfaces with facets scatter of the samples.
+void estimateAtFaceted(const IntColumn& arrives, Bounces& bounces) {
+  const Surfaces& at = bounces.at;
+  LaneList lanes;
+  for (const size_t i : at.facetedLanes) lanes.addIf(arrives[i], i);
+  if (lanes.empty()) return;
+  FacetedDirections directions{at.wo, at.side};
+  turnToShadingFrames(bounces, directions.wi);
+  BsdfValues values;
+  evaluateFaceted(at.faceted, lanes, directions, values);
+  keepFaceted(values, bounces);
+}
+
 void estimateElsewhere(const LaneList& lanes, Bounces& bounces) {
   LightEstimates& light = bounces.light;
   for (const size_t i : lanes) {
@@ -150,8 +180,11 @@ LaneList sampleLights(const PathSettings& settings, Bounces& bounces) {
   samplePoints(bounces);
   IntColumn arrives;
   estimateAtDiffuse(bounces, arrives);
+  estimateAtFaceted(arrives, bounces);
   LaneList elsewhere, lit;
-  for (size_t i = 0; i < bounces.count; ++i) elsewhere.addIf(arrives[i] & !bounces.at.isDiffuse[i], i);
+  const Surfaces& at = bounces.at;
+  for (size_t i = 0; i < bounces.count; ++i)
+    elsewhere.addIf(arrives[i] & !at.isDiffuse[i] & !at.isFaceted[i], i);
   estimateElsewhere(elsewhere, bounces);
   estimateRadiance(bounces, arrives);
   for (size_t i = 0; i < bounces.count; ++i) lit.addIf(arrives[i], i);

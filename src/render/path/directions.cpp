@@ -13,6 +13,10 @@ void findGuidableLobes(const PathSettings& settings, const Batch& batch, Bounces
   for (size_t i = 0; i < bounces.count; ++i) {
     if (at.isDiffuse[i]) {
       at.guidable[i] = at.side[i] != 0 ? 1.0f : 0.0f;
+    } else if (at.isFaceted[i]) {
+      const bool isSmooth = at.faceted.facets(i).lobe() == Lobe::smooth;
+      const float guidable = isSmooth ? 1.0f : 1 - at.faceted.specularProbability[i];
+      at.guidable[i] = at.side[i] * at.wo.z[i] > 0 ? guidable : 0.0f;
     } else {
       const Vertex& vertex = *bounces.arrivals[i].vertex;
       at.guidable[i] = at.bsdfs[i]->guidableProbability(vertex.at, vertex.wo);
@@ -125,8 +129,42 @@ ODIS_WIDE void sampleDiffuse(Bounces& bounces, IntColumn& drawn) {
     next.pdf[i] = pdf;
     next.guidablePdf[i] = pdf;
     next.eta[i] = 1;
+    next.lobe[i] = int32_t(Lobe::smooth);
     drawn[i] = pdf > 0;
   }
+}
+
+// Keeps what surfaces with facets have sampled.
+ODIS_WIDE void keepFaceted(const Columns3& wi, const BsdfValues& values, const IntColumn& fromFacets,
+                           Bounces& bounces, IntColumn& drawn) {
+  NextDirections& next = bounces.next;
+  const Surfaces& at = bounces.at;
+  for (size_t i = 0, end = endOfLanes(bounces.count); i < end; ++i) {
+    const bool is = at.isFaceted[i], isSharp = at.faceted.facets(i).lobe() == Lobe::nearDelta;
+    const Vec3 value = values.value[i], ofDiffuse = next.weight[i], wiOfDiffuse = next.wi[i];
+    const float pdf = values.pdf[i];
+    const int32_t lobe = fromFacets[i] && isSharp ? int32_t(Lobe::nearDelta) : int32_t(Lobe::smooth);
+    const bool isDrawn = (pdf > 0) & isFinite(value);
+    next.wi.set(i, select(is, wi[i], wiOfDiffuse));
+    next.weight.set(i, select(is, value / pdf, ofDiffuse));
+    next.pdf[i] = is ? pdf : next.pdf[i];
+    next.guidablePdf[i] = is ? values.guidablePdf[i] : next.guidablePdf[i];
+    next.lobe[i] = is ? lobe : next.lobe[i];
+    drawn[i] = is ? int32_t(isDrawn) : drawn[i];
+  }
+}
+
+// Samples what surfaces with facets scatter.
+void sampleFaceted(Bounces& bounces, IntColumn& drawn) {
+  const Surfaces& at = bounces.at;
+  if (at.facetedLanes.empty()) return;
+  FacetedDirections directions{at.wo, at.side};
+  IntColumn fromFacets;
+  BsdfValues values;
+  sampleFaceted(at.faceted, bounces.count, bounces.numbers.lobe, bounces.draws.u, bounces.numbers.directionV,
+                directions, fromFacets);
+  evaluateFaceted(at.faceted, at.facetedLanes, directions, values);
+  keepFaceted(directions.wi, values, fromFacets, bounces, drawn);
 }
 
 // The same for other BSDFs, one by one.
@@ -149,11 +187,11 @@ Source sampleOther(Bounces& bounces, size_t lane) {
   return host.failed(drawn) ? Source::plain : Source::bsdf;
 }
 
-// At a Lambertian surface.
-Source sourceAtDiffuse(Bounces& bounces, size_t lane, bool drawn) {
-  bounces.next.lobe[lane] = int32_t(Lobe::smooth);
+// At a surface that has been sampled in lanes.
+Source sourceInLane(Bounces& bounces, size_t lane, bool drawn) {
   if (!drawn) bounces.next.set(lane, {});
-  if (bounces.draws.fromMap[lane]) return Source::map;
+  const bool isSharp = bounces.next.lobeAt(lane) == Lobe::nearDelta;
+  if (bounces.draws.fromMap[lane] && (bounces.bsdfs.guidable[lane] >= 1 || !isSharp)) return Source::map;
   return drawn && bounces.bsdfs.hasMap[lane] ? Source::bsdf : Source::plain;
 }
 
@@ -178,6 +216,29 @@ ODIS_WIDE void evaluateDiffuse(const IntColumn& sources, const Columns3& world, 
     next.pdf[i] = fromMap ? pdf : next.pdf[i];
     next.guidablePdf[i] = fromMap ? pdf : next.guidablePdf[i];
   }
+}
+
+// Keeps the values of surfaces with facets.
+ODIS_WIDE void keepFaceted(const IntColumn& sources, const BsdfValues& values, Bounces& bounces) {
+  NextDirections& next = bounces.next;
+  for (size_t i = 0, end = endOfLanes(bounces.count); i < end; ++i) {
+    const bool is = bounces.at.isFaceted[i] && sources[i] == int32_t(Source::map);
+    const Vec3 value = values.value[i], weight = next.weight[i];
+    next.weight.set(i, select(is, value, weight));
+    next.pdf[i] = is ? values.pdf[i] : next.pdf[i];
+    next.guidablePdf[i] = is ? values.guidablePdf[i] : next.guidablePdf[i];
+  }
+}
+
+// The same at surfaces with facets.
+void evaluateFaceted(const IntColumn& sources, Bounces& bounces) {
+  const Surfaces& at = bounces.at;
+  LaneList lanes;
+  for (const size_t i : at.facetedLanes) lanes.addIf(sources[i] == int32_t(Source::map), i);
+  if (lanes.empty()) return;
+  BsdfValues values;
+  evaluateFaceted(at.faceted, lanes, {at.wo, at.side, bounces.next.wi}, values);
+  keepFaceted(sources, values, bounces);
 }
 
 void evaluateOther(Bounces& bounces, size_t lane) {
@@ -230,8 +291,9 @@ void mixWithMaps(const IntColumn& sources, Bounces& bounces) {
   }
   for (size_t k = 0; k < lookUps.count; ++k) mapPdf[fromBsdfs.lanes[k]] = lookUps.pdf[k];
   evaluateDiffuse(sources, world, bounces);
+  evaluateFaceted(sources, bounces);
   for (const size_t i : fromMaps)
-    if (!bounces.at.isDiffuse[i]) evaluateOther(bounces, i);
+    if (!bounces.at.isDiffuse[i] && !bounces.at.isFaceted[i]) evaluateOther(bounces, i);
   mix(sources, mapPdf, bounces);
 }
 
@@ -240,11 +302,12 @@ void mixWithMaps(const IntColumn& sources, Bounces& bounces) {
 void sampleDirections(Bounces& bounces) {
   IntColumn drawn, sources;
   sampleDiffuse(bounces, drawn);
+  sampleFaceted(bounces, drawn);
   bool anyMap = false;
   for (size_t i = 0; i < bounces.count; ++i) {
-    // What rivals guide is mixed as if it were no Lambertian surface.
-    const bool isDiffuse = bounces.at.isDiffuse[i] && !bounces.bsdfs.rivals[i];
-    const Source source = isDiffuse ? sourceAtDiffuse(bounces, i, drawn[i]) : sampleOther(bounces, i);
+    // What rivals guide is sampled one by one.
+    const bool inLane = (bounces.at.isDiffuse[i] || bounces.at.isFaceted[i]) && !bounces.bsdfs.rivals[i];
+    const Source source = inLane ? sourceInLane(bounces, i, drawn[i]) : sampleOther(bounces, i);
     sources[i] = int32_t(source);
     anyMap |= source != Source::plain;
   }

@@ -33,16 +33,24 @@ void readSurfaces(Bounces& bounces) {
   for (size_t i = 0; i < kLanes; ++i) vertices[i] = bounces.arrivals[std::min(i, bounces.count - 1)].vertex;
   at.read(vertices, bounces.count);
   findFacingNormals(bounces);
+  at.facetedLanes.count = 0;
   for (size_t i = 0; i < bounces.count; ++i) {
     const Arrival& arrival = bounces.arrivals[i];
     const Vertex& vertex = *arrival.vertex;
     bounces.throughput.set(i, arrival.path->throughput);
     const Bsdf& bsdf = vertex.at.shape->bsdf();
     at.bsdfs[i] = &bsdf;
-    DiffuseReflection reflection;
-    at.isDiffuse[i] = bsdf.isDiffuse(vertex.at, vertex.wo, reflection);
-    at.reflectance.set(i, reflection.reflectance);
-    at.side[i] = reflection.side;
+    const BsdfSide& side = bsdf.side(vertex.wo);
+    at.isDiffuse[i] = side.reflectance != nullptr;
+    at.isFaceted[i] = side.faceted != nullptr;
+    at.side[i] = side.side;
+    if (side.reflectance) {
+      at.reflectance.set(i, (*side.reflectance)(vertex.at));
+      at.side[i] = side.scatters(vertex.wo) ? side.side : 0.0f;
+    } else if (side.faceted) {
+      at.faceted.set(i, side.faceted->surface(vertex.at, side.side * vertex.wo.z));
+      at.facetedLanes.addIf(true, i);
+    }
   }
 }
 
