@@ -54,12 +54,6 @@ struct BsdfFeatures {
 class RgbParameter;
 class FacetedBsdf;
 
-// How a Lambertian surface scatters: `reflectance` / pi on one side.
-struct DiffuseReflection {
-  Rgb reflectance{0, 0, 0};
-  float side = 0;  // of the shading normal: 1 or -1; 0 if nothing is scattered
-};
-
 // One side of a surface, if it is of a kind that is computed with in lanes. It scatters to `side` of the shading
 // normal: 1 the front, -1 the back, 0 nowhere.
 struct BsdfSide {
@@ -99,10 +93,8 @@ class Bsdf {
   // That of features() alone, for those that know it without looking at textures.
   virtual float roughness(const SurfacePoint& at, const Vec3& wo) const { return features(at, wo).roughness; }
 
-  // Whether all that the functions above say here is what they say of a Lambertian surface, and of which, so
-  // that callers may work it out by themselves. Defined in parameter.h.
-  bool isDiffuse(const SurfacePoint& at, const Vec3& wo, DiffuseReflection& reflection) const;
-  // The side that a direction is on.
+  // What the side that a direction is on is, so that callers may work out by themselves what the functions
+  // above say there.
   const BsdfSide& side(const Vec3& wo) const { return m_sides[!(wo.z >= 0)]; }
 
   const BsdfTraits& traits() const { return m_traits; }

@@ -60,7 +60,7 @@ ODIS_WIDE void sampleLanes(const FacetedColumns& surfaces, size_t count, const C
   for (size_t i = 0, end = endOfLanes(count); i < end; ++i) {
     const Vec3 wo = flipped(directions.wo[i], directions.side[i]);
     const Vec2 point(u[i], v[i]);
-    const Vec3 ofFacets = reflect(wo, surfaces.facets(i).sample(wo, point)),
+    const Vec3 ofFacets = reflect(wo, surfaces.facets(i).sampleGgx(wo, point)),
                ofBase = squareToCosineHemisphere(point);
     fromFacets[i] = surfaces[i].drawsFacets(lobe[i]);
     directions.wi.set(i, flipped(select(fromFacets[i] != 0, ofFacets, ofBase), directions.side[i]));

@@ -105,6 +105,9 @@ struct BsdfValues {
 };
 // Several directions in the shading frames of surfaces that scatter to these sides of their normals.
 struct FacetedDirections {
+  FacetedDirections(const Columns3& w, const Column& sides) : wo(w), side(sides) {}
+  FacetedDirections(const Columns3& w, const Column& sides, const Columns3& to) : wo(w), side(sides), wi(to) {}
+
   const Columns3& wo;
   const Column& side;
   Columns3 wi;

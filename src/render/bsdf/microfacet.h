@@ -93,27 +93,40 @@ class Microfacet {
   // A facet normal: one that is visible from w (w.z > 0), unless told otherwise at construction.
   Vec3 sample(const Vec3& w, const Vec2& u) const {
     if (!m_sampleVisible) return sampleAll(u);
-    // Stretched by the roughness, the surface has unit roughness.
-    const Vec3 v = normalize(Vec3(m_alphaU * w.x, m_alphaV * w.y, w.z));
-    const float planar = v.x * v.x + v.y * v.y;
-    const float r = std::sqrt(planar);
-    const bool tilted = planar > 1e-12f;
-    const Vec2 axis(tilted ? v.x / r : 1.0f, tilted ? v.y / r : 0.0f);
-    if (m_type == Type::ggx) {
-      const Vec3 t1(-axis.y, axis.x, 0), t2 = cross(v, t1);
-      const Vec2 disk = squareToDisk(u);
-      const float s = 0.5f * (1 + v.z);
-      const float y = lerp(s, safeSqrt(1 - disk.x * disk.x), disk.y);
-      const Vec3 n = t1 * disk.x + t2 * y + v * safeSqrt(1 - disk.x * disk.x - y * y);
-      return normalize(Vec3(m_alphaU * n.x, m_alphaV * n.y, std::max(n.z, 1e-7f)));
-    }
-    const float along = sampleBeckmannSlope(v.z, r, u.x);
+    if (m_type == Type::ggx) return sampleGgx(w, u);
+    const Stretched view = stretched(w);
+    const float along = sampleBeckmannSlope(view.v.z, view.sinTheta, u.x);
     const float across = inverseErf(std::clamp(2 * u.y - 1, -0.999999f, 0.999999f));
-    return normalize(Vec3(-m_alphaU * (axis.x * along - axis.y * across),
-                          -m_alphaV * (axis.y * along + axis.x * across), 1));
+    return normalize(Vec3(-m_alphaU * (view.axis.x * along - view.axis.y * across),
+                          -m_alphaV * (view.axis.y * along + view.axis.x * across), 1));
+  }
+  // The same for visible facets of the GGX distribution; without branches, so that loops over lanes become
+  // vectors.
+  [[gnu::always_inline]] Vec3 sampleGgx(const Vec3& w, const Vec2& u) const {
+    const auto [v, axis, sinTheta] = stretched(w);
+    const Vec3 t1(-axis.y, axis.x, 0), t2 = cross(v, t1);
+    const Vec2 disk = squareToDisk(u);
+    const float s = 0.5f * (1 + v.z);
+    const float y = lerp(s, safeSqrt(1 - disk.x * disk.x), disk.y);
+    const Vec3 n = t1 * disk.x + t2 * y + v * safeSqrt(1 - disk.x * disk.x - y * y);
+    return normalize(Vec3(m_alphaU * n.x, m_alphaV * n.y, std::max(n.z, 1e-7f)));
   }
 
  private:
+  // A direction stretched by the roughness, so that the surface has unit roughness, and the axis that it is
+  // tilted along.
+  struct Stretched {
+    Vec3 v;
+    Vec2 axis;
+    float sinTheta;
+  };
+  Stretched stretched(const Vec3& w) const {
+    const Vec3 v = normalize(Vec3(m_alphaU * w.x, m_alphaV * w.y, w.z));
+    const float planar = v.x * v.x + v.y * v.y, r = std::sqrt(planar);
+    const bool tilted = planar > 1e-12f;
+    return {v, {tilted ? v.x / r : 1.0f, tilted ? v.y / r : 0.0f}, r};
+  }
+
   float pdf(const Vec3& w, const Vec3& m, float d, float g1) const {
     return m_sampleVisible ? d * g1 * absDot(w, m) / std::abs(w.z) : d * m.z;
   }

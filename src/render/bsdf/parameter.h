@@ -37,13 +37,6 @@ class RgbParameter {
   bool m_clamped = false;  // to [0, 1]
 };
 
-inline bool Bsdf::isDiffuse(const SurfacePoint& at, const Vec3& wo, DiffuseReflection& reflection) const {
-  const BsdfSide& side = this->side(wo);
-  if (!side.reflectance) return false;
-  reflection = {(*side.reflectance)(at), side.scatters(wo) ? side.side : 0.0f};
-  return true;
-}
-
 class ScalarParameter {
  public:
   ScalarParameter(float constant = 0) : m_mean(constant) {}

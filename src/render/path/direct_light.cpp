@@ -126,7 +126,7 @@ void estimateAtFaceted(const IntColumn& arrives, Bounces& bounces) {
   LaneList lanes;
   for (const size_t i : at.facetedLanes) lanes.addIf(arrives[i], i);
   if (lanes.empty()) return;
-  FacetedDirections directions{at.wo, at.side};
+  FacetedDirections directions(at.wo, at.side);
   turnToShadingFrames(bounces, directions.wi);
   BsdfValues values;
   evaluateFaceted(at.faceted, lanes, directions, values);

@@ -158,7 +158,7 @@ ODIS_WIDE void keepFaceted(const Columns3& wi, const BsdfValues& values, const I
 void sampleFaceted(Bounces& bounces, IntColumn& drawn) {
   const Surfaces& at = bounces.at;
   if (at.facetedLanes.empty()) return;
-  FacetedDirections directions{at.wo, at.side};
+  FacetedDirections directions(at.wo, at.side);
   IntColumn fromFacets;
   BsdfValues values;
   sampleFaceted(at.faceted, bounces.count, bounces.numbers.lobe, bounces.draws.u, bounces.numbers.directionV,
