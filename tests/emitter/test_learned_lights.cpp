@@ -147,6 +147,34 @@ TEST_F(LearnedLightsTest, AreDrawnAsStated) {
     }
 }
 
+TEST_F(LearnedLightsTest, PreparedReferencesSayTheSame) {
+  constexpr size_t kCount = 13;  // leaves lanes unused
+  const std::vector<float> cdf = table();
+  std::array<LightReference, kCount> prepared, references;
+  for (size_t i = 0; i < kCount; ++i) {
+    references[i] = someReference(int(i), m_random);
+    if (i % 2) references[i].learned = {cdf.data(), 0.4f};
+    prepared[i] = references[i];
+  }
+  m_sampler.prepare(prepared);
+  int drawn = 0;
+  for (size_t i = 0; i < kCount; ++i) {
+    EXPECT_GE(prepared[i].treeProbability, 0);
+    for (const Emitter* emitter : m_emitters)
+      EXPECT_EQ(m_sampler.probability(prepared[i], *emitter, 0, kMiddle),
+                m_sampler.probability(references[i], *emitter, 0, kMiddle));
+    for (int d = 0; d < 100; ++d) {
+      const float u = m_random();
+      const LightSampler::Choice expected = m_sampler.sample(references[i], u, kMiddle);
+      const LightSampler::Choice found = m_sampler.sample(prepared[i], u, kMiddle);
+      EXPECT_EQ(found.emitter, expected.emitter);
+      EXPECT_EQ(found.probability, expected.probability);
+      drawn += expected.emitter != nullptr;
+    }
+  }
+  EXPECT_GT(drawn, 500);
+}
+
 TEST_F(LearnedLightsTest, GroupsAddUpToTheirLights) {
   for (int i = 0; i < 10; ++i) {
     const std::vector<float> cdf = table();

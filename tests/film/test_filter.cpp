@@ -41,6 +41,27 @@ double integrate(const Filter& filter, G&& g, int n = 800) {
   return sum * h * h;
 }
 
+TEST(Filter, SamplesManyAsItSamplesEach) {
+  constexpr size_t kCount = 13;  // leaves lanes unused
+  std::mt19937 engine(3);
+  std::uniform_real_distribution<float> uniform(0, 1);
+  for (const Case& c : cases()) {
+    const auto filter = c.make();
+    Column u{}, v{};
+    for (size_t i = 0; i < kCount; ++i) {
+      u[i] = uniform(engine);
+      v[i] = uniform(engine);
+    }
+    FilterSamples samples;
+    filter->sampleEach(kCount, u, v, samples);
+    for (size_t i = 0; i < kCount; ++i) {
+      const FilterSample expected = filter->sample({u[i], v[i]});
+      EXPECT_EQ(Vec2(samples.x[i], samples.y[i]), expected.offset) << c.name;
+      EXPECT_EQ(samples.weight[i], expected.weight) << c.name;
+    }
+  }
+}
+
 TEST(Filter, NamesAndRadii) {
   for (const Case& c : cases()) EXPECT_EQ(c.make()->name(), c.name);
   EXPECT_FLOAT_EQ(makeBoxFilter()->radius(), 0.5f);

@@ -84,9 +84,10 @@ struct OneMap {
   float pdf(const Float3& wi) const { return map.pdf(wi); }
 };
 
+// The direction of a sample that failed means nothing.
 bool same(const BsdfSample& a, const BsdfSample& b) {
-  return a.wi == b.wi && a.weight == b.weight && a.pdf == b.pdf && a.guidablePdf == b.guidablePdf &&
-         a.eta == b.eta && a.lobe == b.lobe;
+  return (a.wi == b.wi || a.lobe == Lobe::none) && a.weight == b.weight && a.pdf == b.pdf &&
+         a.guidablePdf == b.guidablePdf && a.eta == b.eta && a.lobe == b.lobe;
 }
 
 // Paths that arrive at one surface in [-1, 1]^2, from both sides of it.
@@ -110,8 +111,7 @@ class Arrivals {
       vertex.at = hit.surfacePoint(ray);
       vertex.wo = vertex.at.shading.toLocal(-ray.direction);
       Path& path = m_paths.emplace_back(ray, Sampler(SamplerKind::independent, 1, uint32_t(i), 0));
-      const float guidable = vertex.at.shape->bsdf().guidableProbability(vertex.at, vertex.wo);
-      bounces.arrivals[i] = {&path, uint32_t(i), &vertex, kNoCell, guidable, true};
+      bounces.arrivals[i] = {&path, uint32_t(i), &vertex, kNoCell, true};
       VertexNumbers& numbers = bounces.numbers;
       for (Column* column : {&numbers.lightChoice, &numbers.lightU, &numbers.lightV, &numbers.lobe,
                              &numbers.directionU, &numbers.directionV})
@@ -130,8 +130,20 @@ constexpr const char* kSurfaces[] = {
     "<bsdf type=\"twosided\"><bsdf type=\"diffuse\"><rgb name=\"reflectance\" "
     "value=\"0.1,0.5,0.9\"/></bsdf></bsdf>",
     "<bsdf type=\"roughplastic\"><float name=\"alpha\" value=\"0.3\"/></bsdf>",
+    "<bsdf type=\"roughplastic\"><float name=\"alpha\" value=\"0.3\"/><string name=\"distribution\" "
+    "value=\"ggx\"/><boolean name=\"nonlinear\" value=\"true\"/></bsdf>",
+    "<bsdf type=\"twosided\"><bsdf type=\"roughconductor\"><string name=\"distribution\" "
+    "value=\"ggx\"/><float "
+    "name=\"alpha_u\" value=\"0.5\"/><float name=\"alpha_v\" value=\"0.2\"/></bsdf></bsdf>",
+    // Metal on one side, plastic on the other.
+    "<bsdf type=\"twosided\"><bsdf type=\"roughplastic\"><string name=\"distribution\" value=\"ggx\"/></bsdf>"
+    "<bsdf type=\"roughconductor\"><string name=\"material\" value=\"Cu\"/><string name=\"distribution\" "
+    "value=\"ggx\"/></bsdf></bsdf>",
     // Lobes that are too sharp to be guided, and delta lobes, beside one that may be.
-    "<bsdf type=\"roughplastic\"><float name=\"alpha\" value=\"0.01\"/></bsdf>", "<bsdf type=\"plastic\"/>",
+    "<bsdf type=\"roughplastic\"><float name=\"alpha\" value=\"0.01\"/></bsdf>",
+    "<bsdf type=\"roughplastic\"><float name=\"alpha\" value=\"0.01\"/><string name=\"distribution\" "
+    "value=\"ggx\"/></bsdf>",
+    "<bsdf type=\"plastic\"/>",
     "<bsdf type=\"roughdielectric\"><float name=\"alpha\" value=\"0.4\"/></bsdf>"};
 
 std::string rectangle(const std::string& bsdf) {
@@ -156,12 +168,18 @@ void expectDirectionsOfTheMixture(const std::string& bsdf, Random& random) {
   settings.guide = &view;
   int guided = 0, fromMaps = 0;
   Arrivals arrivals(*scene);
+  const auto batch = std::make_unique<Batch>();
   const auto bounces = std::make_unique<Bounces>();
   for (int round = 0; round < 300; ++round) {
     arrivals.fill(*bounces, random);
     for (Arrival& arrival : bounces->arriving())
       arrival.cell = random() < 0.2f ? kNoCell : uint32_t(random() * Maps::kCells);
     readSurfaces(*bounces);
+    findGuidableLobes(settings, *batch, *bounces);
+    for (size_t i = 0; i < kCount; ++i) {
+      const auto& [at, wo] = *bounces->arrivals[i].vertex;
+      EXPECT_EQ(bounces->at.guidable[i], at.shape->bsdf().guidableProbability(at, wo)) << bsdf;
+    }
     prepareDirections(settings, *bounces);
     chooseBlocks(*bounces);
     sampleDirections(*bounces);

@@ -4,6 +4,7 @@
 #include "render/scene/builder.h"
 #include "render/sensor/field_of_view.h"
 #include "render/sensor/registry.h"
+#include "support/random.h"
 
 namespace odis::test {
 namespace {
@@ -182,6 +183,36 @@ TEST(ThinLens, FocusesOnAPlane) {
   EXPECT_GT(widest, 0.45f);
   // The middle of the lens is a pinhole.
   expectNear(atDepthOne(sensor->ray({0, 0}, {0.5f, 0.5f})), {1, 0.5f, 1}, "pinhole");
+}
+
+// Standing still and moving; a sensor that says that it does not read the lens gives the same ray everywhere.
+TEST(Sensor, GivesManyRaysAsItGivesEach) {
+  constexpr size_t kCount = 13;  // leaves lanes unused
+  Random random(5);
+  Matrix4 aside;
+  aside[3][0] = 2;
+  for (const char* type : {"perspective", "thinlens", "orthographic", "radiancemeter"})
+    for (const bool moves : {false, true}) {
+      Properties node = camera(type);
+      if (node.type == "thinlens") set(node, "aperture_radius", 0.5);
+      Warnings warnings;
+      const auto sensor = sensorOf(node, kWide, warnings);
+      if (moves)
+        sensor->setMotion(std::make_shared<Motion>(Animation{{0, Matrix4()}, {1, aside}}, Shutter{0, 1}));
+      CameraPlaces places{};
+      for (size_t i = 0; i < kCount; ++i)
+        for (Column* column : {&places.filmX, &places.filmY, &places.lensU, &places.lensV, &places.time})
+          (*column)[i] = random();
+      CameraRays rays;
+      sensor->rays(kCount, places, rays);
+      for (size_t i = 0; i < kCount; ++i) {
+        const Vec2 lens = sensor->readsLens() ? places.lens(i) : Vec2(0.1f, 0.2f);
+        const Ray expected = sensor->ray(places.film(i), lens, places.time[i]);
+        EXPECT_EQ(rays.origin[i], expected.origin) << type;
+        EXPECT_EQ(rays.direction[i], expected.direction) << type;
+        EXPECT_EQ(rays.tMax[i], expected.tMax) << type;
+      }
+    }
 }
 
 TEST(Sensor, RejectsWhatCannotSee) {

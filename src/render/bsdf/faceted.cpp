@@ -43,8 +43,7 @@ Vec3 flipped(const Vec3& w, float side) {
 }
 
 ODIS_WIDE void evaluateLanes(const FacetedColumns& surfaces, size_t count,
-                             const FacetedDirections& directions, const Column& leaving,
-                             BsdfValues& values) {
+                             const FacetedDirections& directions, const Column& leaving, BsdfValues& values) {
   for (size_t i = 0, end = endOfLanes(count); i < end; ++i) {
     const Vec3 wo = flipped(directions.wo[i], directions.side[i]),
                wi = flipped(directions.wi[i], directions.side[i]);

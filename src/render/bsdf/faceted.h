@@ -90,9 +90,9 @@ struct FacetedColumns {
   }
   // All but the transmittance.
   FacetedSurface operator[](size_t lane) const {
-    return {alphaU[lane],        alphaV[lane],        specularProbability[lane],
-            Rgb(specular[lane]), Rgb(base[lane]),     entering[lane],
-            eta[lane],           isMetal[lane],       Rgb(metalEta[lane]),
+    return {alphaU[lane],        alphaV[lane],    specularProbability[lane],
+            Rgb(specular[lane]), Rgb(base[lane]), entering[lane],
+            eta[lane],           isMetal[lane],   Rgb(metalEta[lane]),
             Rgb(metalK[lane])};
   }
   Microfacet facets(size_t lane) const { return {Microfacet::Type::ggx, alphaU[lane], alphaV[lane]}; }
@@ -106,7 +106,8 @@ struct BsdfValues {
 // Several directions in the shading frames of surfaces that scatter to these sides of their normals.
 struct FacetedDirections {
   FacetedDirections(const Columns3& w, const Column& sides) : wo(w), side(sides) {}
-  FacetedDirections(const Columns3& w, const Column& sides, const Columns3& to) : wo(w), side(sides), wi(to) {}
+  FacetedDirections(const Columns3& w, const Column& sides, const Columns3& to)
+      : wo(w), side(sides), wi(to) {}
 
   const Columns3& wo;
   const Column& side;

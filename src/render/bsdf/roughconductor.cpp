@@ -5,8 +5,8 @@
 //   alpha              number or texture, root mean square slope of the facets; 0.1
 //   alpha_u, alpha_v   the same along the tangent and the bitangent, instead of alpha
 //   sample_visible     whether to sample only facets that are visible; true
-#include "render/bsdf/factories.h"
 #include "render/bsdf/faceted.h"
+#include "render/bsdf/factories.h"
 #include "render/bsdf/parameter.h"
 
 namespace odis::render {

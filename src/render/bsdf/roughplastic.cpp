@@ -9,8 +9,8 @@
 //   distribution           "beckmann" (default) or "ggx"
 //   alpha                  number, roughness of the coat; 0.1
 //   sample_visible         whether to sample only facets that are visible; true
-#include "render/bsdf/factories.h"
 #include "render/bsdf/faceted.h"
+#include "render/bsdf/factories.h"
 #include "render/bsdf/plastic_base.h"
 
 namespace odis::render {
@@ -63,8 +63,7 @@ BsdfPtr makeRoughPlastic(const Properties& properties, Builder& builder) {
 
   const RoughnessParameters roughness = readConstantRoughness(properties, builder);
   const float alpha = roughness.alphaU.mean();
-  return std::make_shared<RoughPlastic>(std::move(base),
-                                        roughness.type, alpha, roughness.sampleVisible,
+  return std::make_shared<RoughPlastic>(std::move(base), roughness.type, alpha, roughness.sampleVisible,
                                         builder.roughTransmittance(roughness.type, alpha, base.eta));
 }
 

@@ -180,8 +180,7 @@ ODIS_WIDE void EnvironmentMap::findDirections(const EnvironmentMap& map, size_t 
     directions.wi.set(i, world * (1 / scale));
     // The solid angle of an element of uv is 2 pi^2 sin(theta); a transform that is not a rotation stretches it
     // further.
-    const float pdf =
-        tablePdf[i] * (scale * scale * scale) / (2 * kPi * kPi * sinTheta * map.m_determinant);
+    const float pdf = tablePdf[i] * (scale * scale * scale) / (2 * kPi * kPi * sinTheta * map.m_determinant);
     directions.pdf[i] = sinTheta > 0 ? pdf : 0.0f;
   }
 }

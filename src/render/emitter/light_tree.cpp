@@ -47,12 +47,9 @@ const Angle& LightTree::angle(uint8_t steps) {
 }
 
 SubtreeBounds LightTree::unpack(const Node& node) {
-  return {node.center,
-          node.radiusSquared,
-          node.intensity,
-          Vec3(node.axis[0], node.axis[1], node.axis[2]),
-          angle(node.thetaO),
-          angle(node.thetaE).cos};
+  return {node.center,        node.radiusSquared,
+          node.intensity,     Vec3(node.axis[0], node.axis[1], node.axis[2]),
+          angle(node.thetaO), angle(node.thetaE).cos};
 }
 
 float LightTree::importance(const Node& node, const LightReference& ref) {

@@ -33,7 +33,7 @@ struct Surfaces : VertexColumns {
   IntColumn isFaceted;
   FacetedColumns faceted;
   LaneList facetedLanes;  // which those are
-  Column guidable;  // Bsdf::guidableProbability(), where anybody asks
+  Column guidable;        // Bsdf::guidableProbability(), where anybody asks
 };
 
 // The lights that are chosen, and the points on them.

@@ -73,8 +73,8 @@ ODIS_WIDE void findKeys(const CellGrid& grid, const VertexColumns& at, size_t co
 }
 
 // Adds vertices that may have cells, kLanes at most, to those whose cells are looked for.
-void addLookUps(const PathSettings& settings, std::span<const Path> paths,
-                std::span<const uint32_t> surfaces, Batch& batch) {
+void addLookUps(const PathSettings& settings, std::span<const Path> paths, std::span<const uint32_t> surfaces,
+                Batch& batch) {
   const Vertex* vertices[kLanes];
   for (size_t k = 0; k < kLanes; ++k)
     vertices[k] = &batch.vertices[surfaces[std::min(k, surfaces.size() - 1)]];

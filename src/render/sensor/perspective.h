@@ -42,8 +42,7 @@ class Perspective final : public Sensor {
 
  private:
   void raysAtRest(size_t count, const CameraPlaces& places, CameraRays& rays) const override;
-  static void findRays(const Perspective& camera, size_t count, const CameraPlaces& places,
-                       CameraRays& rays);
+  static void findRays(const Perspective& camera, size_t count, const CameraPlaces& places, CameraRays& rays);
   // The ray through a place on the film.
   Ray through(const Vec2& film) const {
     const Vec3 direction = m_projection.direction(film);
