@@ -135,10 +135,11 @@ constexpr const char* kSurfaces[] = {
     "<bsdf type=\"twosided\"><bsdf type=\"roughconductor\"><string name=\"distribution\" "
     "value=\"ggx\"/><float "
     "name=\"alpha_u\" value=\"0.5\"/><float name=\"alpha_v\" value=\"0.2\"/></bsdf></bsdf>",
-    // Metal on one side, plastic on the other.
+    "<bsdf type=\"roughconductor\"><float name=\"alpha_u\" value=\"0.1\"/><float name=\"alpha_v\" "
+    "value=\"0.4\"/></bsdf>",
+    // Metal on one side, plastic on the other, with different distributions.
     "<bsdf type=\"twosided\"><bsdf type=\"roughplastic\"><string name=\"distribution\" value=\"ggx\"/></bsdf>"
-    "<bsdf type=\"roughconductor\"><string name=\"material\" value=\"Cu\"/><string name=\"distribution\" "
-    "value=\"ggx\"/></bsdf></bsdf>",
+    "<bsdf type=\"roughconductor\"><string name=\"material\" value=\"Cu\"/></bsdf></bsdf>",
     // Lobes that are too sharp to be guided, and delta lobes, beside one that may be.
     "<bsdf type=\"roughplastic\"><float name=\"alpha\" value=\"0.01\"/></bsdf>",
     "<bsdf type=\"roughplastic\"><float name=\"alpha\" value=\"0.01\"/><string name=\"distribution\" "

@@ -54,8 +54,8 @@ struct BsdfFeatures {
 class RgbParameter;
 class FacetedBsdf;
 
-// One side of a surface, if it is of a kind that is computed with in lanes. It scatters to `side` of the shading
-// normal: 1 the front, -1 the back, 0 nowhere.
+// One side of a surface, if it is of a kind that is computed with in lanes. It scatters to `side` of the
+// shading normal: 1 the front, -1 the back, 0 nowhere.
 struct BsdfSide {
   const RgbParameter* reflectance = nullptr;  // of a Lambertian side
   const FacetedBsdf* faceted = nullptr;       // of one with facets: what it is, seen from the front

@@ -1,5 +1,5 @@
-// Microfacets over a Lambertian base or over nothing: rough plastic and rough metal, as plain numbers that are
-// computed with alone or, for several vertices, in lanes.
+// Microfacets over a Lambertian base or over nothing: rough plastic and rough metal, as plain numbers that
+// are computed with alone or, for several vertices, in lanes.
 //
 // Walter et al. 2007, "Microfacet Models for Refraction through Rough Surfaces". Directions are those of
 // bsdf.h, the surface is seen from the front.
@@ -22,6 +22,7 @@ struct FacetedSurface {
   float isMetal = 0;              // 1: eta and k are these
   Rgb metalEta{0, 0, 0}, metalK{0, 0, 0};
   const RoughTransmittance* transmittance = nullptr;  // of the facets over a base
+  Microfacet::Type type = Microfacet::Type::ggx;
 
   // Whether a lobe is sampled from the facets; u is not read where there is no base.
   bool drawsFacets(float u) const { return (u < specularProbability) | (specularProbability >= 1); }
@@ -29,8 +30,8 @@ struct FacetedSurface {
   float leaving(float cosI) const { return transmittance ? transmittance->external(cosI) : 0.0f; }
 };
 
-// What BsdfValue is of such a surface; `leaving` is what leaving() says of wi. Without branches, so that loops
-// over lanes become vectors: `facets` are a constant type's then.
+// What BsdfValue is of such a surface; `leaving` is what leaving() says of wi. Without branches where the
+// type of the facets is a constant, so that loops over lanes become vectors.
 [[gnu::always_inline]] inline BsdfValue evaluateFaceted(const FacetedSurface& s, const Microfacet& facets,
                                                         const Vec3& wo, const Vec3& wi, float leaving) {
   const Vec3 m = normalize(wo + wi);
@@ -62,18 +63,21 @@ class FacetedBsdf : public Bsdf {
 
  protected:
   FacetedBsdf(Microfacet::Type type, bool sampleVisible);
-  Microfacet facets(const FacetedSurface& s) const { return {m_type, s.alphaU, s.alphaV, m_sampleVisible}; }
+  Microfacet::Type type() const { return m_type; }
 
  private:
+  Microfacet facets(const FacetedSurface& s) const { return {m_type, s.alphaU, s.alphaV, m_sampleVisible}; }
+
   Microfacet::Type m_type;
   bool m_sampleVisible;
 };
 
-// Surfaces of several vertices whose facets have the GGX distribution and of which the visible ones are sampled.
+// Surfaces of several vertices whose visible facets are sampled.
 struct FacetedColumns {
   Column alphaU, alphaV, specularProbability, entering, eta, isMetal;
   Columns3 specular, base, metalEta, metalK;
   const RoughTransmittance* transmittances[kLanes];
+  IntColumn types;  // Microfacet::Type
 
   void set(size_t lane, const FacetedSurface& s) {
     alphaU[lane] = s.alphaU;
@@ -87,21 +91,30 @@ struct FacetedColumns {
     metalEta.set(lane, s.metalEta);
     metalK.set(lane, s.metalK);
     transmittances[lane] = s.transmittance;
+    types[lane] = int32_t(s.type);
   }
-  // All but the transmittance.
+  // All but the transmittance and the type.
   FacetedSurface operator[](size_t lane) const {
     return {alphaU[lane],        alphaV[lane],    specularProbability[lane],
             Rgb(specular[lane]), Rgb(base[lane]), entering[lane],
             eta[lane],           isMetal[lane],   Rgb(metalEta[lane]),
             Rgb(metalK[lane])};
   }
-  Microfacet facets(size_t lane) const { return {Microfacet::Type::ggx, alphaU[lane], alphaV[lane]}; }
+  Microfacet facets(size_t lane, Microfacet::Type type) const { return {type, alphaU[lane], alphaV[lane]}; }
+  Lobe lobe(size_t lane) const { return facets(lane, Microfacet::Type::ggx).lobe(); }
 };
 
 // BsdfValue of several vertices.
 struct BsdfValues {
   Columns3 value;
   Column pdf, guidablePdf;
+
+  void set(size_t lane, const BsdfValue& of) {
+    value.set(lane, of.value);
+    pdf[lane] = of.pdf;
+    guidablePdf[lane] = of.guidablePdf;
+  }
+  BsdfValue operator[](size_t lane) const { return {Rgb(value[lane]), pdf[lane], guidablePdf[lane]}; }
 };
 // Several directions in the shading frames of surfaces that scatter to these sides of their normals.
 struct FacetedDirections {
@@ -113,12 +126,16 @@ struct FacetedDirections {
   const Column& side;
   Columns3 wi;
 };
+// Random numbers in [0, 1) that directions are sampled with: see Bsdf::sample().
+struct FacetedNumbers {
+  const Column &lobe, &u, &v;
+};
 // What Bsdf::evaluate() says of the listed lanes; other lanes hold anything afterwards.
 void evaluateFaceted(const FacetedColumns& surfaces, const LaneList& lanes,
                      const FacetedDirections& directions, BsdfValues& values);
-// The directions that Bsdf::sample() draws with these numbers, in the first `count` lanes; whether each is
-// drawn from the facets goes to `fromFacets`.
-void sampleFaceted(const FacetedColumns& surfaces, size_t count, const Column& lobe, const Column& u,
-                   const Column& v, FacetedDirections& directions, IntColumn& fromFacets);
+// The directions that Bsdf::sample() draws in the listed lanes; whether each is drawn from the facets goes to
+// `fromFacets`.
+void sampleFaceted(const FacetedColumns& surfaces, const LaneList& lanes, const FacetedNumbers& numbers,
+                   FacetedDirections& directions, IntColumn& fromFacets);
 
 }  // namespace odis::render

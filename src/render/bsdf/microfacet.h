@@ -7,28 +7,46 @@
 #pragma once
 
 #include "render/bsdf/bsdf.h"
+#include "render/math/elementary.h"
 #include "render/math/warp.h"
 
 namespace odis::render {
 
-// Inverse of the error function in single precision (Giles 2010, "Approximating the erfinv Function").
-inline float inverseErf(float x) {
-  float w = -std::log((1 - x) * (1 + x)), p;
-  if (w < 5) {
-    w -= 2.5f;
-    p = 2.81022636e-08f;
-    for (const float c : {3.43273939e-07f, -3.5233877e-06f, -4.39150654e-06f, 0.00021858087f, -0.00125372503f,
-                          -0.00417768164f, 0.246640727f, 1.50140941f})
-      p = c + p * w;
-  } else {
-    w = std::sqrt(w) - 3;
-    p = -0.000200214257f;
-    for (const float c : {0.000100950558f, 0.00134934322f, -0.00367342844f, 0.00573950773f, -0.0076224613f,
-                          0.00943887047f, 1.00167406f, 2.83297682f})
-      p = c + p * w;
+// Finds the slope along the direction of view of a facet with the Beckmann distribution, for unit roughness:
+// inverts the distribution function in the domain of erf(slope) with Newton's method, which is kept inside a
+// shrinking bracket.
+struct BeckmannSlope {
+  static constexpr int kMostSteps = 12;
+  static constexpr float kInvSqrtPi = 0.564189584f;
+
+  // Numbers of the search; x is erf(slope), as far as it is known.
+  float tangent, target, low, high, x;
+
+  // `cosTheta` and `sinTheta` are of the angle of view, u in [0, 1) draws the slope.
+  static BeckmannSlope begin(float cosTheta, float sinTheta, float u) {
+    u = std::min(std::max(u, 1e-6f), 1 - 1e-6f);
+    const float tangent = std::min(sinTheta / cosTheta, 1e6f);
+    const float cotangent = cosTheta / std::max(sinTheta, 1e-6f);
+    const float top = 1 - complementaryErf(cotangent);
+    const float target = u * (1 + top + kInvSqrtPi * tangent * exponential(-cotangent * cotangent));
+    const float guess = top - (top + 1) * (1 - complementaryErf(std::sqrt(-logarithm(u))));
+    return {tangent, target, -1, top, guess};
   }
-  return p * x;
-}
+  // Takes a step, and returns whether the slope is found: further steps change nothing then.
+  bool step() {
+    x = (x > low) & (x < high) ? x : 0.5f * (low + high);
+    const float slope = inverseErf(x);
+    const float excess = 1 + x + kInvSqrtPi * tangent * exponential(-slope * slope) - target;
+    const bool found = std::abs(excess) < 1e-6f;
+    const float newHigh = excess > 0 ? x : high, newLow = excess > 0 ? low : x;
+    high = found ? high : newHigh;
+    low = found ? low : newLow;
+    const float next = x - excess / (1 - slope * tangent);
+    x = found ? x : next;
+    return found;
+  }
+  float slope() const { return inverseErf(std::min(std::max(x, -0.9999999f), 0.9999999f)); }
+};
 
 class Microfacet {
  public:
@@ -55,7 +73,7 @@ class Microfacet {
   float d(const Vec3& m) const {
     const float slopes = sqr(m.x / m_alphaU) + sqr(m.y / m_alphaV), c2 = m.z * m.z;
     const float scale = kPi * m_alphaU * m_alphaV;
-    const float result = m_type == Type::beckmann ? std::exp(-slopes / c2) / (scale * c2 * c2)
+    const float result = m_type == Type::beckmann ? exponential(-slopes / c2) / (scale * c2 * c2)
                                                   : 1 / (scale * sqr(slopes + c2));
     // Far tails would only produce denormals and infinite weights.
     return result * m.z > 1e-20f ? result : 0;
@@ -69,11 +87,11 @@ class Microfacet {
       const float seen = projected == 0 ? 1 : 2 / (1 + std::sqrt(1 + projected / (v.z * v.z)));
       return hidden ? 0 : seen;
     }
-    if (hidden) return 0;
-    if (projected == 0) return 1;
-    const float a = std::abs(v.z) / std::sqrt(projected);
     // The exact form, not the usual rational fit: densities must integrate to one.
-    return a > 4 ? 1 : 2 / (1 + std::erf(a) + std::exp(-a * a) / (a * 1.77245385f));
+    const float a = std::abs(v.z) / std::sqrt(projected);
+    const float some = 2 / (2 - complementaryErf(a) + exponential(-a * a) / (a * 1.77245385f));
+    const float seen = (projected == 0) | (a > 4) ? 1 : some;
+    return hidden ? 0 : seen;
   }
   float g(const Vec3& a, const Vec3& b, const Vec3& m) const { return g1(a, m) * g1(b, m); }
 
@@ -95,10 +113,9 @@ class Microfacet {
     if (!m_sampleVisible) return sampleAll(u);
     if (m_type == Type::ggx) return sampleGgx(w, u);
     const Stretched view = stretched(w);
-    const float along = sampleBeckmannSlope(view.v.z, view.sinTheta, u.x);
-    const float across = inverseErf(std::clamp(2 * u.y - 1, -0.999999f, 0.999999f));
-    return normalize(Vec3(-m_alphaU * (view.axis.x * along - view.axis.y * across),
-                          -m_alphaV * (view.axis.y * along + view.axis.x * across), 1));
+    BeckmannSlope slope = BeckmannSlope::begin(view.v.z, view.sinTheta, u.x);
+    for (int i = 0; i < BeckmannSlope::kMostSteps && !slope.step(); ++i) continue;
+    return beckmannFacet(view, slope.slope(), u.y);
   }
   // The same for visible facets of the GGX distribution; without branches, so that loops over lanes become
   // vectors.
@@ -111,10 +128,9 @@ class Microfacet {
     const Vec3 n = t1 * disk.x + t2 * y + v * safeSqrt(1 - disk.x * disk.x - y * y);
     return normalize(Vec3(m_alphaU * n.x, m_alphaV * n.y, std::max(n.z, 1e-7f)));
   }
-
- private:
-  // A direction stretched by the roughness, so that the surface has unit roughness, and the axis that it is
-  // tilted along.
+  // The steps of it for visible facets of the Beckmann distribution. A direction stretched by the roughness,
+  // so that the surface has unit roughness, and the axis that it is tilted along; the facet whose slope along
+  // the view is found and whose slope across u draws.
   struct Stretched {
     Vec3 v;
     Vec2 axis;
@@ -126,7 +142,13 @@ class Microfacet {
     const bool tilted = planar > 1e-12f;
     return {v, {tilted ? v.x / r : 1.0f, tilted ? v.y / r : 0.0f}, r};
   }
+  Vec3 beckmannFacet(const Stretched& view, float along, float u) const {
+    const float across = inverseErf(std::min(std::max(2 * u - 1, -0.999999f), 0.999999f));
+    return normalize(Vec3(-m_alphaU * (view.axis.x * along - view.axis.y * across),
+                          -m_alphaV * (view.axis.y * along + view.axis.x * across), 1));
+  }
 
+ private:
   float pdf(const Vec3& w, const Vec3& m, float d, float g1) const {
     return m_sampleVisible ? d * g1 * absDot(w, m) / std::abs(w.z) : d * m.z;
   }
@@ -136,28 +158,6 @@ class Microfacet {
     const float t2 = m_type == Type::beckmann ? -std::log1p(-u.x) : u.x / (1 - u.x);
     const float phi = 2 * kPi * u.y, r = std::sqrt(t2);
     return normalize(Vec3(m_alphaU * r * std::cos(phi), m_alphaV * r * std::sin(phi), 1));
-  }
-
-  // Slope along the direction of view, for unit roughness: inverts the distribution function in the domain of
-  // erf(slope) with Newton's method, which is kept inside a shrinking bracket.
-  static float sampleBeckmannSlope(float cosTheta, float sinTheta, float u) {
-    u = std::clamp(u, 1e-6f, 1 - 1e-6f);
-    const float tangent = std::min(sinTheta / cosTheta, 1e6f);
-    const float cotangent = cosTheta / std::max(sinTheta, 1e-6f);
-    constexpr float invSqrtPi = 0.564189584f;
-    const float top = std::erf(cotangent);
-    float low = -1, high = top;
-    const float target = u * (1 + top + invSqrtPi * tangent * std::exp(-cotangent * cotangent));
-    float x = top - (top + 1) * std::erf(std::sqrt(-std::log(u)));
-    for (int i = 0; i < 12; ++i) {
-      if (!(x > low && x < high)) x = 0.5f * (low + high);
-      const float slope = inverseErf(x);
-      const float excess = 1 + x + invSqrtPi * tangent * std::exp(-slope * slope) - target;
-      if (std::abs(excess) < 1e-6f) break;
-      (excess > 0 ? high : low) = x;
-      x -= excess / (1 - slope * tangent);
-    }
-    return inverseErf(std::clamp(x, -0.9999999f, 0.9999999f));
   }
 
   float m_alphaU, m_alphaV;

@@ -30,7 +30,8 @@ class RoughConductor final : public FacetedBsdf {
             .specular = m_specular(at),
             .isMetal = 1,
             .metalEta = m_ior.eta(at) * m_ior.scale,
-            .metalK = m_ior.k(at) * m_ior.scale};
+            .metalK = m_ior.k(at) * m_ior.scale,
+            .type = type()};
   }
   BsdfFeatures features(const SurfacePoint& at, const Vec3& wo) const override {
     return {clampUnit(m_ior.reflectance(at, std::abs(wo.z)) * m_specular(at)), roughness(at, wo)};

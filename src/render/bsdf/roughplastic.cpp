@@ -37,7 +37,8 @@ class RoughPlastic final : public FacetedBsdf {
             .base = m_base.baseAlbedo(at),
             .entering = entering,
             .eta = m_base.eta,
-            .transmittance = m_transmittance.get()};
+            .transmittance = m_transmittance.get(),
+            .type = type()};
   }
   BsdfFeatures features(const SurfacePoint& at, const Vec3& wo) const override {
     return m_base.features(at, m_transmittance->external(std::abs(wo.z)), std::min(m_alpha, 1.0f));

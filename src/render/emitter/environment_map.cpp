@@ -178,8 +178,8 @@ ODIS_WIDE void EnvironmentMap::findDirections(const EnvironmentMap& map, size_t 
     const Vec3 world = transformVector(map.m_toWorld, {sinPhi * sinTheta, cosTheta, -cosPhi * sinTheta});
     const float scale = length(world);
     directions.wi.set(i, world * (1 / scale));
-    // The solid angle of an element of uv is 2 pi^2 sin(theta); a transform that is not a rotation stretches it
-    // further.
+    // The solid angle of an element of uv is 2 pi^2 sin(theta); a transform that is not a rotation stretches
+    // it further.
     const float pdf = tablePdf[i] * (scale * scale * scale) / (2 * kPi * kPi * sinTheta * map.m_determinant);
     directions.pdf[i] = sinTheta > 0 ? pdf : 0.0f;
   }

@@ -44,8 +44,8 @@ class LightSampler {
   // Chooses with uChoice in [0, 1). The point u of [0, 1)^2 comes back as it is, or moved into the region
   // of an environment that was chosen by what was learned.
   Choice sample(const LightReference& ref, float uChoice, const Vec2& u) const;
-  // Finds for up to kLanes references what both sample() and probability() need to know, so that they need not
-  // find it themselves.
+  // Finds for up to kLanes references what both sample() and probability() need to know, so that they need
+  // not find it themselves.
   void prepare(std::span<LightReference> refs) const;
   // The same for up to kLanes references at once.
   struct Request {

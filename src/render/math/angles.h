@@ -1,5 +1,5 @@
-// Angles in turns, 2 pi each, and their sines and cosines. Without branches or calls, so that loops over lanes
-// become vectors; the same bits on all processors.
+// Angles in turns, 2 pi each, and their sines and cosines. Without branches or calls, so that loops over
+// lanes become vectors; the same bits on all processors.
 #pragma once
 
 #include <bit>
@@ -34,8 +34,8 @@ inline SinCos sinCosOfTurns(float turns) {
   return {negateIf(q >> 1 & 1, s), negateIf((q + 1) >> 1 & 1, c)};
 }
 
-// The angle of the vector (x, y) to the x axis, in [-0.5, 0.5] turns: atan2(y, x) / 2 pi, with relative errors
-// below 4e-7. 0 or a half turn for the zero vector.
+// The angle of the vector (x, y) to the x axis, in [-0.5, 0.5] turns: atan2(y, x) / 2 pi, with relative
+// errors below 4e-7. 0 or a half turn for the zero vector.
 inline float angleInTurns(float y, float x) {
   float across = std::abs(y), along = std::abs(x);
   const bool steep = across > along;

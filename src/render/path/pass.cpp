@@ -83,11 +83,21 @@ Ray beyondEmitters(const Scene& scene, Ray ray) {
   return ray;
 }
 
-// Draws the numbers of the camera rays of several samples: those of the pixel go to u and v, those of the lens
-// and the time to `places`.
-void drawCameraNumbers(const Scene& scene, const SamplerBlock& samplers, Column& u, Column& v,
-                       CameraPlaces& places) {
-  samplers.draw2D(kPixelNumber, u, v);
+// Camera rays of several samples, and what they are drawn by.
+struct CameraSamples {
+  Column u, v;  // numbers that the reconstruction filter draws the place in the pixel with
+  CameraPlaces places;
+  CameraRays rays;
+  Column weights;  // of the filter
+
+  Ray ray(size_t lane) const {
+    return {rays.origin[lane], rays.direction[lane], rays.tMax[lane], places.time[lane]};
+  }
+};
+
+void drawCameraNumbers(const Scene& scene, const SamplerBlock& samplers, CameraSamples& samples) {
+  samplers.draw2D(kPixelNumber, samples.u, samples.v);
+  CameraPlaces& places = samples.places;
   if (scene.sensor().readsLens()) samplers.draw2D(kLensNumber, places.lensU, places.lensV);
   if (scene.moves())
     samplers.draw1D(kTimeNumber, places.time);
@@ -111,41 +121,37 @@ Path pathWithoutRay(const Pass& pass, uint32_t pixel, Vec2i at, uint32_t sample)
   return path;
 }
 
-// The camera rays of several samples whose pixels lie at `pixels` on the film, drawn by their numbers; the
-// weights of the reconstruction filter go to `weights`.
-void findCameraRays(const Scene& scene, std::span<const Vec2i> pixels, const Column& u, const Column& v,
-                    CameraPlaces& places, CameraRays& rays, Column& weights) {
+// Finds the rays of samples, whose numbers are drawn and whose pixels lie there on the film.
+void findCameraRays(const Scene& scene, std::span<const Vec2i> pixels, CameraSamples& samples) {
   const Sensor& sensor = scene.sensor();
-  FilterSamples samples;
-  scene.film().filter->sampleEach(pixels.size(), u, v, samples);
+  CameraPlaces& places = samples.places;
+  FilterSamples offsets;
+  scene.film().filter->sampleEach(pixels.size(), samples.u, samples.v, offsets);
   for (size_t i = 0; i < pixels.size(); ++i) {
-    places.filmX[i] = float(pixels[i].x) + 0.5f + samples.x[i];
-    places.filmY[i] = float(pixels[i].y) + 0.5f + samples.y[i];
-    weights[i] = samples.weight[i] * sensor.weight(places.film(i));
+    places.filmX[i] = float(pixels[i].x) + 0.5f + offsets.x[i];
+    places.filmY[i] = float(pixels[i].y) + 0.5f + offsets.y[i];
+    samples.weights[i] = offsets.weight[i] * sensor.weight(places.film(i));
   }
-  sensor.rays(pixels.size(), places, rays);
+  sensor.rays(pixels.size(), places, samples.rays);
 }
 
-// One of them, behind the lights that the integrator hides.
-Ray rayAt(const Scene& scene, const CameraPlaces& places, const CameraRays& rays, size_t lane) {
-  const Ray ray{rays.origin[lane], rays.direction[lane], rays.tMax[lane], places.time[lane]};
+// The same ray, behind the lights if the integrator hides them.
+Ray seen(const Scene& scene, const Ray& ray) {
   return scene.integrator().hideEmitters ? beyondEmitters(scene, ray) : ray;
 }
 
-// Gives paths, whose pixels lie at `pixels` on the film, their camera rays, several at once.
+// Gives paths, whose pixels lie there on the film, their camera rays, several at once.
 void addCameraRays(const Scene& scene, std::span<Path> paths, std::span<const Vec2i> pixels) {
   for (size_t begin = 0; begin < paths.size(); begin += SamplerBlock::kSize) {
     const auto some = paths.subspan(begin, std::min(SamplerBlock::kSize, paths.size() - begin));
     SamplerBlock samplers;
     for (const Path& path : some) samplers.add(path.sampler);
-    Column u, v, weights;
-    CameraPlaces places;
-    CameraRays rays;
-    drawCameraNumbers(scene, samplers, u, v, places);
-    findCameraRays(scene, pixels.subspan(begin, some.size()), u, v, places, rays, weights);
+    CameraSamples samples;
+    drawCameraNumbers(scene, samplers, samples);
+    findCameraRays(scene, pixels.subspan(begin, some.size()), samples);
     for (size_t i = 0; i < some.size(); ++i) {
-      some[i].ray = rayAt(scene, places, rays, i);
-      some[i].identity.sampleWeight = weights[i];
+      some[i].ray = seen(scene, samples.ray(i));
+      some[i].identity.sampleWeight = samples.weights[i];
     }
   }
 }
@@ -182,22 +188,21 @@ uint32_t tileCount(const Crop& crop) {
 CameraNumbers cameraNumbers(const Scene& scene, const Sampler& sampler) {
   SamplerBlock block;
   block.add(sampler);
-  Column u, v;
-  CameraPlaces places;
-  drawCameraNumbers(scene, block, u, v, places);
-  return {{u[0], v[0]}, places.lens(0), places.time[0]};
+  CameraSamples samples{};
+  drawCameraNumbers(scene, block, samples);
+  return {{samples.u[0], samples.v[0]}, samples.places.lens(0), samples.places.time[0]};
 }
 
 Ray cameraRay(const Scene& scene, Vec2i pixel, const CameraNumbers& numbers, float& filterWeight) {
-  Column weights;
-  CameraPlaces places{};
-  places.lensU[0] = numbers.lens.x;
-  places.lensV[0] = numbers.lens.y;
-  places.time[0] = numbers.time;
-  CameraRays rays;
-  findCameraRays(scene, {&pixel, 1}, {numbers.pixel.x}, {numbers.pixel.y}, places, rays, weights);
-  filterWeight = weights[0];
-  return rayAt(scene, places, rays, 0);
+  CameraSamples samples{};
+  samples.u[0] = numbers.pixel.x;
+  samples.v[0] = numbers.pixel.y;
+  samples.places.lensU[0] = numbers.lens.x;
+  samples.places.lensV[0] = numbers.lens.y;
+  samples.places.time[0] = numbers.time;
+  findCameraRays(scene, {&pixel, 1}, samples);
+  filterWeight = samples.weights[0];
+  return seen(scene, samples.ray(0));
 }
 
 Path cameraPath(const Pass& pass, uint32_t pixel, uint32_t sample) {
