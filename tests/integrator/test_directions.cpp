@@ -135,7 +135,7 @@ constexpr const char* kSurfaces[] = {
     "<bsdf type=\"twosided\"><bsdf type=\"roughconductor\"><string name=\"distribution\" "
     "value=\"ggx\"/><float "
     "name=\"alpha_u\" value=\"0.5\"/><float name=\"alpha_v\" value=\"0.2\"/></bsdf></bsdf>",
-    "<bsdf type=\"roughconductor\"><float name=\"alpha_u\" value=\"0.1\"/><float name=\"alpha_v\" "
+    "<bsdf type=\"roughconductor\"><float name=\"alpha_u\" value=\"0.2\"/><float name=\"alpha_v\" "
     "value=\"0.4\"/></bsdf>",
     // Metal on one side, plastic on the other, with different distributions.
     "<bsdf type=\"twosided\"><bsdf type=\"roughplastic\"><string name=\"distribution\" value=\"ggx\"/></bsdf>"
