@@ -65,6 +65,7 @@ template <Microfacet::Type type>
   }
 }
 
+// Loops that call functions are not turned into vectors: `flatten` inlines them all.
 [[gnu::flatten]] ODIS_WIDE void evaluateGgx(const FacetedColumns& surfaces, size_t count,
                                             const FacetedDirections& directions, const Column& leaving,
                                             BsdfValues& values) {

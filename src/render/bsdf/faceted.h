@@ -19,7 +19,7 @@ struct FacetedSurface {
   Rgb base{0, 0, 0};              // PlasticBase::baseAlbedo()
   float entering = 0;             // the share of the light along wo that enters
   float eta = 1;                  // of a dielectric
-  float isMetal = 0;              // 1: eta and k are these
+  float isMetal = 0;              // 1: of a metal, whose complex index is metalEta + i metalK
   Rgb metalEta{0, 0, 0}, metalK{0, 0, 0};
   const RoughTransmittance* transmittance = nullptr;  // of the facets over a base
   Microfacet::Type type = Microfacet::Type::ggx;

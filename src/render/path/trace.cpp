@@ -87,11 +87,11 @@ void addLookUps(const PathSettings& settings, std::span<const Path> paths, std::
   const std::span<uint64_t> keysTo(lookUps.keys), hashesTo(lookUps.hashes);
   const std::span<uint32_t> verticesTo(lookUps.vertices);
   size_t count = lookUps.count;
-  for (size_t k = 0; k < surfaces.size(); ++k) {  // without a branch, which would often be mispredicted
+  for (size_t k = 0; k < surfaces.size(); ++k) {
     keysTo[count] = keys[k];
     hashesTo[count] = hashes[k];
     verticesTo[count] = surfaces[k];
-    count += vertices[k]->at.shape->bsdf().traits().evaluable &
+    count += vertices[k]->at.shape->bsdf().traits().evaluable &&
              guidesAt(settings, paths[batch.active[surfaces[k]]]);
   }
   lookUps.count = count;
