@@ -29,7 +29,7 @@ struct DielectricFresnel {
   const float s = (c - result.etaIn * t) / (c + result.etaIn * t);
   const float p = (t - result.etaIn * c) / (t + result.etaIn * c);
   const float grazing = eta == 1 ? 0.0f : 1.0f;
-  result.reflectance = (c == 0) | (eta == 1) ? grazing : 0.5f * (s * s + p * p);
+  result.reflectance = ((c == 0) | (eta == 1)) ? grazing : 0.5f * (s * s + p * p);
   return result;
 }
 

@@ -34,7 +34,7 @@ struct BeckmannSlope {
   }
   // Takes a step, and returns whether the slope is found: further steps change nothing then.
   bool step() {
-    x = (x > low) & (x < high) ? x : 0.5f * (low + high);
+    x = ((x > low) & (x < high)) ? x : 0.5f * (low + high);
     const float slope = inverseErf(x);
     const float excess = 1 + x + kInvSqrtPi * tangent * exponential(-slope * slope) - target;
     const bool found = std::abs(excess) < 1e-6f;
@@ -90,7 +90,7 @@ class Microfacet {
     // The exact form, not the usual rational fit: densities must integrate to one.
     const float a = std::abs(v.z) / std::sqrt(projected);
     const float some = 2 / (2 - complementaryErf(a) + exponential(-a * a) / (a * 1.77245385f));
-    const float seen = (projected == 0) | (a > 4) ? 1 : some;
+    const float seen = ((projected == 0) | (a > 4)) ? 1 : some;
     return hidden ? 0 : seen;
   }
   float g(const Vec3& a, const Vec3& b, const Vec3& m) const { return g1(a, m) * g1(b, m); }

@@ -22,7 +22,7 @@ struct SinCos {
 // Of `turns` in [0, 1]; relative errors are below 4e-7 but for zeros of either that lie between two numbers.
 inline SinCos sinCosOfTurns(float turns) {
   // The angle to the nearest axis is at most an eighth of a turn, where short series are exact to a rounding.
-  const int32_t quarters = int32_t(turns * 4 + 0.5f);
+  const int32_t quarters = (int32_t(turns * 8) + 1) >> 1;
   const float x = (turns - float(quarters) * 0.25f) * (2 * kPi), x2 = x * x;
   float s = x * (1 + x2 * (-1.0f / 6 + x2 * (1.0f / 120 + x2 * (-1.0f / 5040 + x2 * (1.0f / 362880)))));
   float c = 1 + x2 * (-1.0f / 2 + x2 * (1.0f / 24 + x2 * (-1.0f / 720 + x2 * (1.0f / 40320))));

@@ -175,8 +175,13 @@ void activateAll(std::span<const Path> paths, Batch& batch) {
   std::iota(batch.active.begin(), batch.active.end(), 0u);
 }
 
-// Kept apart, so that the compiler need not look for a thread's batch again and again.
-[[gnu::noipa]] void traceBatch(const PathSettings& settings, std::span<Path> paths, Batch& batch) {
+// Not inline, so that compilers do not look for a thread's batch again and again.
+[[gnu::noinline]] Batch& batchOfThread() {
+  thread_local Batch batch;
+  return batch;
+}
+
+[[gnu::noinline]] void traceBatch(const PathSettings& settings, std::span<Path> paths, Batch& batch) {
   activateAll(paths, batch);
   for (int depth = 1; !batch.active.empty(); ++depth) {
     findVertices(settings, paths, batch);
@@ -216,7 +221,7 @@ bool passesMirror(Path& path, const Vertex& vertex, int depth) {
 }  // namespace
 
 void tracePaths(const PathSettings& settings, std::span<Path> paths, std::vector<PathVertex>* vertices) {
-  thread_local Batch batch;
+  Batch& batch = batchOfThread();
   batch.recording = vertices != nullptr;
   if (batch.recording)
     for (Path& path : paths) path.handle = batch.recorder.begin(path.identity);
@@ -227,7 +232,7 @@ void tracePaths(const PathSettings& settings, std::span<Path> paths, std::vector
 }
 
 void traceFirstHits(const PathSettings& settings, std::span<Path> paths) {
-  thread_local Batch batch;
+  Batch& batch = batchOfThread();
   activateAll(paths, batch);
   for (int depth = 1; !batch.active.empty(); ++depth) {
     findVertices(settings, paths, batch);
