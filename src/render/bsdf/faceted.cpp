@@ -65,16 +65,14 @@ template <Microfacet::Type type>
   }
 }
 
-// Loops that call functions are not turned into vectors: `flatten` inlines them all.
-[[gnu::flatten]] ODIS_WIDE void evaluateGgx(const FacetedColumns& surfaces, size_t count,
-                                            const FacetedDirections& directions, const Column& leaving,
-                                            BsdfValues& values) {
+ODIS_WIDE void evaluateGgx(const FacetedColumns& surfaces, size_t count, const FacetedDirections& directions,
+                           const Column& leaving, BsdfValues& values) {
   evaluateLanes<Microfacet::Type::ggx>(surfaces, count, directions, leaving, values);
 }
 
-[[gnu::flatten]] ODIS_WIDE void evaluateBeckmann(const FacetedColumns& surfaces, size_t count,
-                                                 const FacetedDirections& directions, const Column& leaving,
-                                                 BsdfValues& values) {
+ODIS_WIDE void evaluateBeckmann(const FacetedColumns& surfaces, size_t count,
+                                const FacetedDirections& directions, const Column& leaving,
+                                BsdfValues& values) {
   evaluateLanes<Microfacet::Type::beckmann>(surfaces, count, directions, leaving, values);
 }
 

@@ -34,7 +34,7 @@ struct DielectricFresnel {
 }
 
 // Reflectance of a metal with the complex index eta + i k, for one wavelength; `cosTheta` >= 0.
-inline float fresnelConductor(float cosTheta, float eta, float k) {
+[[gnu::always_inline]] inline float fresnelConductor(float cosTheta, float eta, float k) {
   const float c2 = cosTheta * cosTheta, s2 = 1 - c2;
   const float difference = eta * eta - k * k - s2;
   const float modulus = safeSqrt(difference * difference + 4 * eta * eta * k * k);  // a^2 + b^2
@@ -47,7 +47,7 @@ inline float fresnelConductor(float cosTheta, float eta, float k) {
   return 0.5f * s * (1 + ratio);
 }
 
-inline Rgb fresnelConductor(float cosTheta, const Rgb& eta, const Rgb& k) {
+[[gnu::always_inline]] inline Rgb fresnelConductor(float cosTheta, const Rgb& eta, const Rgb& k) {
   return {fresnelConductor(cosTheta, eta.x, k.x), fresnelConductor(cosTheta, eta.y, k.y),
           fresnelConductor(cosTheta, eta.z, k.z)};
 }

@@ -70,7 +70,7 @@ class Microfacet {
   }
 
   // Density of facets over projected area: integrates to one when weighted by cos(theta_m). `m` is in z >= 0.
-  float d(const Vec3& m) const {
+  [[gnu::always_inline]] float d(const Vec3& m) const {
     const float slopes = sqr(m.x / m_alphaU) + sqr(m.y / m_alphaV), c2 = m.z * m.z;
     const float scale = kPi * m_alphaU * m_alphaV;
     const float result = m_type == Type::beckmann ? exponential(-slopes / c2) / (scale * c2 * c2)
@@ -80,7 +80,7 @@ class Microfacet {
   }
 
   // Smith's masking of direction v; zero if v sees the facet's back.
-  float g1(const Vec3& v, const Vec3& m) const {
+  [[gnu::always_inline]] float g1(const Vec3& v, const Vec3& m) const {
     const bool hidden = dot(v, m) * v.z <= 0;
     const float projected = sqr(m_alphaU * v.x) + sqr(m_alphaV * v.y);
     if (m_type == Type::ggx) {
@@ -103,7 +103,7 @@ class Microfacet {
   struct Terms {
     float d, g, pdf;
   };
-  Terms terms(const Vec3& wo, const Vec3& wi, const Vec3& m) const {
+  [[gnu::always_inline]] Terms terms(const Vec3& wo, const Vec3& wi, const Vec3& m) const {
     const float d = this->d(m), g1 = this->g1(wo, m);
     return {d, g1 * this->g1(wi, m), pdf(wo, m, d, g1)};
   }

@@ -41,7 +41,7 @@ inline float lengthSquared(const Vec3& v) {
 inline float length(const Vec3& v) {
   return std::sqrt(dot(v, v));
 }
-inline Vec3 normalize(const Vec3& v) {
+[[gnu::always_inline]] inline Vec3 normalize(const Vec3& v) {
   return v * (1.0f / length(v));
 }
 inline float sqr(float x) {
