@@ -47,7 +47,7 @@ Path cameraPath(const Pass& pass, uint32_t pixel, uint32_t sample);
 
 // The random numbers of a camera ray, uniform in [0, 1).
 struct CameraNumbers {
-  Vec2 pixel, lens;  // where in the pixel, through which point of the lens
+  Vec2 pixel, lens;  // where in the pixel; through which point of the lens, if the sensor reads that
   float time = 0;    // when, where something moves; else 0
 };
 CameraNumbers cameraNumbers(const Scene& scene, const Sampler& sampler);
