@@ -14,6 +14,7 @@
 #include "render/emitter/textured_mesh_light.h"
 #include "render/emitter/textured_shape_light.h"
 #include "render/scene/builder.h"
+#include "render/shape/sphere.h"
 
 namespace odis::render {
 
@@ -26,8 +27,11 @@ constexpr uint64_t kWholePrimitives = 2;
 
 AreaLight::AreaLight(const Shape& shape, TexturePtr radiance)
     : m_shape(shape), m_radiance(std::move(radiance)), m_whole(shape.primitiveCount() <= kWholePrimitives) {
+  if (!m_radiance->isConstant()) return;
+  if (const auto* sphere = dynamic_cast<const Sphere*>(&shape); sphere && !sphere->flipsNormals())
+    m_sphere = {sphere->center(), sphere->radius(), m_radiance->mean()};
   const auto* mesh = dynamic_cast<const Mesh*>(&shape);
-  if (!mesh || !mesh->isFlat() || !m_radiance->isConstant()) return;
+  if (!mesh || !mesh->isFlat()) return;
   m_mesh = mesh;
   m_triangles.reserve(mesh->primitiveCount());
   for (uint32_t i = 0; i < mesh->primitiveCount(); ++i)

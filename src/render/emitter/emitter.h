@@ -29,6 +29,7 @@ struct LightDraw {
 };
 
 struct LightTriangle;  // see light_triangles.h
+struct LightSphere;    // see light_spheres.h
 
 class Emitter {
  public:
@@ -44,6 +45,9 @@ class Emitter {
   // The triangle that sample() draws from a part and, in `u`, the numbers that draw a point of it. Null for
   // emitters that are not flat triangles that shine evenly.
   virtual const LightTriangle* drawTriangle(uint32_t /*part*/, Vec2& /*u*/) const { return nullptr; }
+  // The sphere that sample() draws points of. Null for emitters that are not spheres that shine evenly
+  // outwards.
+  virtual const LightSphere* sphere() const { return nullptr; }
   // sample() for each of up to kLanes draws, for those that read much from memory.
   virtual void sampleEach(std::span<const LightDraw> draws, std::span<EmitterSample> samples) const {
     for (size_t i = 0; i < draws.size(); ++i) samples[i] = sample(draws[i].part, draws[i].ref, draws[i].u);

@@ -1,6 +1,7 @@
 // Next-event estimation: the choice of a light, its MIS weight, shadow rays.
 #include <odis/instruction_sets.h>
 
+#include "render/emitter/light_spheres.h"
 #include "render/emitter/moving_light.h"
 #include "render/math/warp.h"
 #include "render/path/bounce.h"
@@ -60,6 +61,7 @@ void sampleEnvironment(const Emitter& environment, std::span<const uint8_t> lane
 void samplePoints(Bounces& bounces) {
   ChosenLights& lights = bounces.chosen;
   LightTriangles triangles;
+  LightSpheres spheres;
   LaneList environments, others, dark;
   for (size_t i = 0; i < bounces.count; ++i) {
     LightSampler::Choice& choice = lights.choices[i];
@@ -68,15 +70,20 @@ void samplePoints(Bounces& bounces) {
     if (!choice.emitter) continue;
     bounces.light.group[i] = int32_t(choice.group);
     bounces.light.groupProbability[i] = choice.groupProbability();
-    const LightTriangle* triangle =
-        choice.emitter->motion() ? nullptr : choice.emitter->drawTriangle(choice.part, choice.u);
+    const bool moves = choice.emitter->motion();
+    const LightTriangle* triangle = moves ? nullptr : choice.emitter->drawTriangle(choice.part, choice.u);
+    const LightSphere* sphere = moves ? nullptr : choice.emitter->sphere();
     if (triangle)
       triangles.set(i, *triangle, choice.u);
+    else if (sphere)
+      spheres.set(i, *sphere, choice.u);
     else
       (choice.emitter->partCount() == 0 ? environments : others).addIf(true, i);
   }
   if (!triangles.empty()) triangles.find(bounces.count, bounces.at.p, lights.samples);
   for (const size_t i : dark) lights.samples.pdf[i] = 0;
+  if (!spheres.empty())
+    for (const size_t i : spheres.find(bounces.at.p, lights.samples)) others.addIf(true, i);
   for (const size_t i : others) lights.samples.set(i, sampleChosen(bounces, i, lights.choices[i]));
   for (std::span<uint8_t> rest(environments.lanes, environments.count); !rest.empty();) {
     const Emitter* environment = lights.choices[rest.front()].emitter;

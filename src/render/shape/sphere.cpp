@@ -10,6 +10,7 @@
 
 #include "render/math/warp.h"
 #include "render/shape/factories.h"
+#include "render/shape/sphere_cone.h"
 #include "render/shape/surface_math.h"
 
 namespace odis::render {
@@ -92,46 +93,18 @@ float Sphere::area() const {
   return float(4 * M_PI * m_radius * m_radius);
 }
 
-double Sphere::coneHeight(const Vec3& ref, double squaredDistance) const {
-  // A point of the sphere itself, rounded to either side, must see all of the inside.
-  const double outside = m_radius + positionError(maxAbs(ref));
-  if (!(squaredDistance > outside * outside)) return -1;
-  const double sinSquared = m_radius * m_radius / squaredDistance;
-  return sinSquared / (1 + std::sqrt(1 - sinSquared));  // 1 - cos, without its cancellation
-}
-
 ShapeSample Sphere::sample(const Vec3& ref, const Vec2& u) const {
-  const Vec3d toCenter = m_center - Vec3d(ref);
-  const double squaredDistance = toCenter.dot(toCenter), height = coneHeight(ref, squaredDistance);
-  if (height < 0)
+  const SphereCone cone(m_center, m_radius, ref);
+  if (!cone.outside)
     return uniformAreaSample(
         ref, [&] { return placeToward(Vec3d(squareToSphere(u))); }, area());
-
-  // Draw a direction in the cone, and find where it enters the sphere: the angle at the centre follows from
-  // the two sides of the triangle and the angle at the reference point.
-  const double distance = std::sqrt(squaredDistance), perDistance = 1 / distance;
-  const double oneMinusCos = u.x * height, cosTheta = 1 - oneMinusCos;
-  const double sinSquared = oneMinusCos * (2 - oneMinusCos);
-  const double toSurface =
-      distance * cosTheta - std::sqrt(std::max(0.0, m_radius * m_radius - squaredDistance * sinSquared));
-  const CoordinateFrame frame(Vec3(toCenter * perDistance));
-  const auto [sinPhi, cosPhi] = sinCosOfTurns(u.y);
-  const Vec3d around(frame.s * cosPhi + frame.t * sinPhi);
-  const Vec3d direction = around * std::sqrt(sinSquared) + toCenter * (cosTheta * perDistance);
-  const Vec3d fromCenter = direction * toSurface - toCenter;
-
-  ShapeSample sample;
-  sample.at = placeToward(fromCenter * (1 / std::sqrt(fromCenter.dot(fromCenter))));
-  sample.wi = Vec3(direction * (1 / std::sqrt(direction.dot(direction))));
-  sample.distance = float(toSurface);
-  sample.pdf = float(1 / (2 * M_PI * height));
-  return sample;
+  const auto [normal, wi, distance] = sampleSphere(cone, u);
+  return {placeToward(normal), wi, distance, cone.pdf()};
 }
 
 float Sphere::pdf(const Vec3& ref, const SurfacePoint& at) const {
-  const Vec3d toCenter = m_center - Vec3d(ref);
-  const double height = coneHeight(ref, toCenter.dot(toCenter));
-  return height < 0 ? uniformAreaPdf(ref, at, area()) : float(1 / (2 * M_PI * height));
+  const SphereCone cone(m_center, m_radius, ref);
+  return cone.outside ? cone.pdf() : uniformAreaPdf(ref, at, area());
 }
 
 SurfacePoint Sphere::pointAtUv(const Vec2& uv) const {

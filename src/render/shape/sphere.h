@@ -28,12 +28,14 @@ class Sphere final : public Shape {
   PrimitiveExtent extent(uint32_t primitive) const override;
   uint64_t bytes() const override { return sizeof(*this); }
 
+  const Vec3d& center() const { return m_center; }
+  double radius() const { return m_radius; }
+  bool flipsNormals() const { return m_flipNormals; }
+
   Imath::Box3d bounds() const;
   bool hit(const PreciseRay& ray, double& t) const;
 
  private:
-  // 1 - cos of half the cone's angle, seen from so far from the center; negative inside the sphere.
-  double coneHeight(const Vec3& ref, double squaredDistance) const;
   // Coordinates along the axes, and uv from these.
   Vec3d toLocal(const Vec3d& unit) const;
   static Vec2 uvToward(const Vec3d& local);
