@@ -50,8 +50,8 @@ ODIS_HOST_DEVICE inline uint32_t findCell(const GuideView& view, const Place& pl
   return findAround(view, key, cellHash(key));
 }
 
-// Does so for many keys, whose slots should have been fetched with prefetchSlot(). Neighbours in the list are
-// often neighbours in the scene: those with the same key share all coarser cells, too.
+// Finds these cells for many keys, whose slots should have been fetched with prefetchSlot(). Neighbours in
+// the list are often neighbours in the scene: those with the same key share all coarser cells, too.
 inline void findAround(const GuideView& view, const uint64_t* keys, const uint64_t* hashes, size_t count,
                        uint32_t* cells) {
   for (size_t i = 0; i < count; ++i)

@@ -84,10 +84,9 @@ struct OneMap {
   float pdf(const Float3& wi) const { return map.pdf(wi); }
 };
 
-// The direction of a sample that failed means nothing.
 bool same(const BsdfSample& a, const BsdfSample& b) {
-  return (a.wi == b.wi || a.lobe == Lobe::none) && a.weight == b.weight && a.pdf == b.pdf &&
-         a.guidablePdf == b.guidablePdf && a.eta == b.eta && a.lobe == b.lobe;
+  return a.wi == b.wi && a.weight == b.weight && a.pdf == b.pdf && a.guidablePdf == b.guidablePdf &&
+         a.eta == b.eta && a.lobe == b.lobe;
 }
 
 // Paths that arrive at one surface in [-1, 1]^2, from both sides of it.

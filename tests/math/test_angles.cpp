@@ -27,7 +27,7 @@ TEST(Angles, SinesAndCosinesAreExactToSomeRoundings) {
 TEST(Angles, AreThoseOfTheArcTangent) {
   Random random(1);
   for (int i = 0; i < 100000; ++i) {
-    // Of any length, and often near an axis.
+    // The vector has any length, and often lies near an axis.
     const float length = std::exp2(60 * random() - 30), lean = std::exp2(-30 * random());
     const float x = (2 * random() - 1) * length, y = (2 * random() - 1) * length * lean;
     for (const auto& [a, b] : {std::pair(x, y), std::pair(y, x)}) {

@@ -80,6 +80,26 @@ TEST(PiecewiseConstant1D, AnIndexFindsTheSameCells) {
   }
 }
 
+// What is fetched ahead lies where sample() looks: in its row, and before its cell by no more than a piece of
+// the index holds.
+TEST(PiecewiseConstant2D, FetchesWhatIsSampled) {
+  constexpr uint32_t kWidth = 64, kHeight = 9;
+  std::mt19937 engine(4);
+  std::uniform_real_distribution<float> uniform(0, 1);
+  std::vector<float> weights(kWidth * kHeight);
+  for (float& w : weights) w = 0.5f + uniform(engine);
+  const PiecewiseConstant2D table(weights, kWidth, kHeight);
+  for (int i = 0; i < 1000; ++i) {
+    const Vec2 u(uniform(engine), uniform(engine));
+    const PiecewiseConstant2D::Sample sample = table.sample(u);
+    const PiecewiseConstant2D::Row row = table.chooseRow(u.y);
+    const uint32_t cell = table.cellAhead(row, u.x);
+    EXPECT_EQ(row.cell, cellAt(sample.x.y, kHeight));
+    EXPECT_LE(cell, cellAt(sample.x.x, kWidth));
+    EXPECT_GE(cell + 3 * kCellsPerPiece, cellAt(sample.x.x, kWidth));
+  }
+}
+
 TEST(PiecewiseConstant1D, TheEndsOfTheUnitIntervalAreSafe) {
   const PiecewiseConstant1D d(std::vector<float>{0, 1, 0});
   for (float u : {0.0f, kOneMinusEpsilon, 1.0f, -1.0f}) {

@@ -31,13 +31,12 @@ BsdfValue FacetedBsdf::evaluate(const SurfacePoint& at, const Vec3& wo, const Ve
 
 float FacetedBsdf::guidableProbability(const SurfacePoint& at, const Vec3& wo) const {
   if (!(wo.z > 0)) return 0;
-  const FacetedSurface s = surface(at, wo.z);
-  return facets(s).lobe() == Lobe::smooth ? 1.0f : 1 - s.specularProbability;
+  return surface(at, wo.z).guidable();
 }
 
 namespace {
 
-// Seen from the side that it scatters to, or back.
+// A direction as it is seen from the side that a surface scatters to; the way back is the same.
 Vec3 flipped(const Vec3& w, float side) {
   return {w.x, w.y, side * w.z};
 }
@@ -164,10 +163,7 @@ ODIS_WIDE void chooseDirections(const FacetedColumns& surfaces, size_t count, co
 void evaluateFaceted(const FacetedColumns& surfaces, const LaneList& lanes,
                      const FacetedDirections& directions, BsdfValues& values) {
   Column leaving;
-  for (const size_t i : lanes) {
-    const RoughTransmittance* transmittance = surfaces.transmittances[i];
-    leaving[i] = transmittance ? transmittance->external(directions.side[i] * directions.wi.z[i]) : 0.0f;
-  }
+  for (const size_t i : lanes) leaving[i] = surfaces[i].leaving(directions.side[i] * directions.wi.z[i]);
   const LaneList ggx = ofType(surfaces, lanes, Microfacet::Type::ggx),
                  beckmann = ofType(surfaces, lanes, Microfacet::Type::beckmann);
   if (!ggx.empty()) evaluateGgx(surfaces, endOf(ggx), directions, leaving, values);

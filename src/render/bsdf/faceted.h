@@ -26,6 +26,9 @@ struct FacetedSurface {
 
   // Whether a lobe is sampled from the facets; u is not read where there is no base.
   bool drawsFacets(float u) const { return (u < specularProbability) | (specularProbability >= 1); }
+  // How the facets count for guiding, and how often a lobe is drawn that may be guided.
+  Lobe lobe() const { return Microfacet(type, alphaU, alphaV).lobe(); }
+  float guidable() const { return lobe() == Lobe::smooth ? 1.0f : 1 - specularProbability; }
   // The share of the light along wi that enters.
   float leaving(float cosI) const { return transmittance ? transmittance->external(cosI) : 0.0f; }
 };
@@ -93,15 +96,13 @@ struct FacetedColumns {
     transmittances[lane] = s.transmittance;
     types[lane] = int32_t(s.type);
   }
-  // All but the transmittance and the type.
   FacetedSurface operator[](size_t lane) const {
-    return {alphaU[lane],        alphaV[lane],    specularProbability[lane],
-            Rgb(specular[lane]), Rgb(base[lane]), entering[lane],
-            eta[lane],           isMetal[lane],   Rgb(metalEta[lane]),
-            Rgb(metalK[lane])};
+    return {alphaU[lane],        alphaV[lane],         specularProbability[lane],
+            Rgb(specular[lane]), Rgb(base[lane]),      entering[lane],
+            eta[lane],           isMetal[lane],        Rgb(metalEta[lane]),
+            Rgb(metalK[lane]),   transmittances[lane], Microfacet::Type(types[lane])};
   }
   Microfacet facets(size_t lane, Microfacet::Type type) const { return {type, alphaU[lane], alphaV[lane]}; }
-  Lobe lobe(size_t lane) const { return facets(lane, Microfacet::Type::ggx).lobe(); }
 };
 
 // BsdfValue of several vertices.

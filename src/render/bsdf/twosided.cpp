@@ -20,7 +20,7 @@ class TwoSided final : public Bsdf {
   BsdfSample sample(const SurfacePoint& at, const Vec3& wo, float uLobe, const Vec2& u) const override {
     const Side side(wo);
     BsdfSample result = of(side).sample(at, side.flip(wo), uLobe, u);
-    result.wi = side.flip(result.wi);
+    if (result.lobe != Lobe::none) result.wi = side.flip(result.wi);
     return result;
   }
 

@@ -19,7 +19,7 @@ inline void swapIf(bool condition, float& a, float& b) {
 struct SinCos {
   float sin, cos;
 };
-// Of `turns` in [0, 1]; relative errors are below 4e-7 but for zeros of either that lie between two numbers.
+// The sine and the cosine of an angle, in [0, 1] turns, with relative errors below 4e-7.
 inline SinCos sinCosOfTurns(float turns) {
   // The angle to the nearest axis is at most an eighth of a turn, where short series are exact to a rounding.
   const int32_t quarters = (int32_t(turns * 8) + 1) >> 1;

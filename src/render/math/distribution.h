@@ -137,11 +137,11 @@ class PiecewiseConstant2D {
     const uint32_t cell = findCell(cdf, index(y.cell), u);
     return {{invertCell(cdf, cell, u), y.x}, cellPdf(cdf, cell) * y.pdf};
   }
-  // Fetches what the second step reads from memory.
-  void prefetchRow(const Row& y, float u) const {
-    const uint32_t piece = std::min(uint32_t(u * float(m_pieces)), m_pieces - 1);
-    __builtin_prefetch(&row(y.cell)[index(y.cell)[piece]]);
+  // By the index alone, about the cell of the row that the second step finds; fetches what it reads there.
+  uint32_t cellAhead(const Row& y, float u) const {
+    return index(y.cell)[std::min(uint32_t(u * float(m_pieces)), m_pieces - 1)];
   }
+  void prefetchRow(const Row& y, float u) const { __builtin_prefetch(&row(y.cell)[cellAhead(y, u)]); }
   // Fetches what pdf() and invert() read from memory.
   void prefetchPdf(const Vec2& x) const {
     __builtin_prefetch(&row(cellAt(x.y, m_marginal.size()))[cellAt(x.x, m_width)]);

@@ -18,22 +18,13 @@ struct VertexColumns {
   // Vertices are read and written in fours: there are as many pointers as the next multiple of four, all to
   // vertices that may be read or written.
   void read(const Vertex* const* vertices, size_t count) {
-    for (size_t first = 0; first < count; first += 4)
-      forEachRow(*this, [&](size_t offset, Column& a, Column& b, Column& c, Column& d) {
-        const auto row = [&](size_t lane) { return reinterpret_cast<const float*>(vertices[lane]) + offset; };
-        toColumns(first, row, a.of, b.of, c.of, d.of);
-      });
+    readRows(vertices, count, [](size_t) { return true; });
   }
-  // Reads p, n and wo, and nothing that matters else.
+  // Reads the rows that p, n and wo lie in.
   void readPlaces(const Vertex* const* vertices, size_t count) {
-    for (size_t first = 0; first < count; first += 4) {
-      const auto from = [&](size_t offset) {
-        return [=](size_t lane) { return reinterpret_cast<const float*>(vertices[lane]) + offset; };
-      };
-      toColumns(first, from(kPlaceRow), p.x.of, p.y.of, p.z.of, ng.x.of);
-      toColumns(first, from(kNormalRow), n.x.of, n.y.of, n.z.of, uvX.of);
-      toColumns(first, from(kDirectionRow), pError.of, wo.x.of, wo.y.of, wo.z.of);
-    }
+    readRows(vertices, count, [](size_t offset) {
+      return offset == kPlaceRow || offset == kNormalRow || offset == kDirectionRow;
+    });
   }
   void write(Vertex* const* vertices, size_t count) const {
     for (size_t first = 0; first < count; first += 4)
@@ -48,6 +39,17 @@ struct VertexColumns {
   // Where rows begin, in numbers from the vertex.
   static constexpr size_t kPlaceRow = 0, kNormalRow = 12,
                           kDirectionRow = offsetof(Vertex, at.pError) / sizeof(float);
+
+  // Reads the rows whose offsets are wanted.
+  template <class Wanted>
+  [[gnu::always_inline]] void readRows(const Vertex* const* vertices, size_t count, const Wanted& wanted) {
+    for (size_t first = 0; first < count; first += 4)
+      forEachRow(*this, [&](size_t offset, Column& a, Column& b, Column& c, Column& d) {
+        if (!wanted(offset)) return;
+        const auto row = [&](size_t lane) { return reinterpret_cast<const float*>(vertices[lane]) + offset; };
+        toColumns(first, row, a.of, b.of, c.of, d.of);
+      });
+  }
 
   // Calls use(offset, a, b, c, d) for each four numbers that lie side by side in a vertex.
   template <class Self, class Use>

@@ -25,8 +25,8 @@ struct VertexNumbers {
 struct Surfaces : VertexColumns {
   Columns3 facing;  // facingNormal()
   const Bsdf* bsdfs[kLanes];
-  // Of surfaces that scatter without virtual calls: the side that they scatter to (BsdfSide), and how. Such a
-  // surface is Lambertian or has facets.
+  // Surfaces that are Lambertian or have facets scatter without virtual calls: `side` is the side that they
+  // scatter to (BsdfSide), what follows is how.
   Column side;
   IntColumn isDiffuse;
   Columns3 reflectance;

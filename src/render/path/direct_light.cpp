@@ -72,7 +72,7 @@ void samplePoints(Bounces& bounces) {
     bounces.light.groupProbability[i] = choice.groupProbability();
     const bool moves = choice.emitter->motion();
     const LightTriangle* triangle = moves ? nullptr : choice.emitter->drawTriangle(choice.part, choice.u);
-    const LightSphere* sphere = moves ? nullptr : choice.emitter->sphere();
+    const LightSphere* sphere = moves || triangle ? nullptr : choice.emitter->sphere();
     if (triangle)
       triangles.set(i, *triangle, choice.u);
     else if (sphere)

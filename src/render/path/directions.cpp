@@ -14,9 +14,7 @@ void findGuidableLobes(const PathSettings& settings, const Batch& batch, Bounces
     if (at.isDiffuse[i]) {
       at.guidable[i] = at.side[i] != 0 ? 1.0f : 0.0f;
     } else if (at.isFaceted[i]) {
-      const bool isSmooth = at.faceted.lobe(i) == Lobe::smooth;
-      const float guidable = isSmooth ? 1.0f : 1 - at.faceted.specularProbability[i];
-      at.guidable[i] = at.side[i] * at.wo.z[i] > 0 ? guidable : 0.0f;
+      at.guidable[i] = at.side[i] * at.wo.z[i] > 0 ? at.faceted[i].guidable() : 0.0f;
     } else {
       const Vertex& vertex = *bounces.arrivals[i].vertex;
       at.guidable[i] = at.bsdfs[i]->guidableProbability(vertex.at, vertex.wo);
@@ -140,7 +138,7 @@ ODIS_WIDE void keepFaceted(const Columns3& wi, const BsdfValues& values, const I
   NextDirections& next = bounces.next;
   const Surfaces& at = bounces.at;
   for (size_t i = 0, end = endOfLanes(bounces.count); i < end; ++i) {
-    const bool is = at.isFaceted[i], isSharp = at.faceted.lobe(i) == Lobe::nearDelta;
+    const bool is = at.isFaceted[i], isSharp = at.faceted[i].lobe() == Lobe::nearDelta;
     const Vec3 value = values.value[i], ofDiffuse = next.weight[i], wiOfDiffuse = next.wi[i];
     const float pdf = values.pdf[i];
     const int32_t lobe = fromFacets[i] && isSharp ? int32_t(Lobe::nearDelta) : int32_t(Lobe::smooth);

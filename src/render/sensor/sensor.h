@@ -17,7 +17,7 @@ struct CameraPlaces {
   Vec2 film(size_t lane) const { return {filmX[lane], filmY[lane]}; }
   Vec2 lens(size_t lane) const { return {lensU[lane], lensV[lane]}; }
 };
-// These rays; they have the times of their places.
+// The rays of such places, at whose times they start.
 struct CameraRays {
   Columns3 origin, direction;
   Column tMax;
@@ -39,7 +39,7 @@ class Sensor {
   virtual bool readsLens() const { return true; }
   // The same at a time, as a fraction of the time that the shutter is open.
   Ray ray(const Vec2& film, const Vec2& lens, float time) const;
-  // And for several places: the first `count` lanes.
+  // The rays of several places, in the first `count` lanes.
   void rays(size_t count, const CameraPlaces& places, CameraRays& rays) const;
   // How the sensor moves, null if it doesn't: ray() without a time is then in the sensor's own space.
   const Motion* motion() const { return m_motion.get(); }
