@@ -11,8 +11,9 @@ namespace odis::core {
 Splat splat(const Float3& wi) {
   const Float2 square = directionToSquare(wi);
   const float x = square.x * kMapSize - 0.5f, y = square.y * kMapSize - 0.5f;
-  const int x0 = std::clamp(int(std::floor(x)), -1, kMapSize - 1),
-            y0 = std::clamp(int(std::floor(y)), -1, kMapSize - 1);
+  // Rounded down, as no coordinate is less than -1: std::floor() is a call.
+  const int x0 = std::clamp(int(x + 1) - 1, -1, kMapSize - 1),
+            y0 = std::clamp(int(y + 1) - 1, -1, kMapSize - 1);
   const float fx = std::clamp(x - x0, 0.0f, 1.0f), fy = std::clamp(y - y0, 0.0f, 1.0f);
   return {{wrappedTexel(x0, y0), wrappedTexel(x0 + 1, y0), wrappedTexel(x0, y0 + 1),
            wrappedTexel(x0 + 1, y0 + 1)},

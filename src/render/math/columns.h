@@ -11,8 +11,10 @@
 
 namespace odis::render {
 
-// How many paths lie side by side.
-inline constexpr size_t kLanes = 16;
+// How many paths lie side by side. Between two paths' turns at a step, all other steps' instructions are
+// fetched from the second-level cache again, which holds the columns, too (48 KiB of a bounce): the more paths,
+// the less often.
+inline constexpr size_t kLanes = 64;
 
 // The end of a loop over the first `count` lanes: the next multiple of eight, so that vectors are full.
 inline size_t endOfLanes(size_t count) {

@@ -87,9 +87,8 @@ struct NextDirections {
   }
 };
 
-// Some paths from their arrival at vertices of one depth to their departure: as many as the first-level cache
-// holds, so that each step finds what the step before it left. Steps fill in one column after another; lanes
-// from `count` on hold anything.
+// Some paths from their arrival at vertices of one depth to their departure. Steps fill in one column after
+// another; lanes from `count` on hold anything.
 struct Bounces {
   int depth = 0;     // 1 for the first vertex
   size_t count = 0;  // of the paths

@@ -164,20 +164,20 @@ ODIS_WIDE void estimateRadiance(Bounces& bounces, IntColumn& lit) {
   }
 }
 
-// Whether the map that guides a vertex is asked for the density of its light's direction.
-bool hasMapPdf(const Bounces& bounces, size_t lane) {
-  return bounces.light.pdf[lane] > 0 && bounces.bsdfs.hasMap[lane];
+// Of paths that are lit, those whose map is asked for the density of the light's direction.
+LaneList lightsInMaps(const LaneList& lit, const Bounces& bounces) {
+  LaneList lanes;
+  for (const size_t i : lit) lanes.addIf((bounces.light.pdf[i] > 0) & (bounces.bsdfs.hasMap[i] != 0), i);
+  return lanes;
 }
 
 // Finds the texels of lights' directions, which are fetched while other steps are taken.
 void fetchTexels(const LaneList& lit, Bounces& bounces) {
+  const LaneList inMaps = lightsInMaps(lit, bounces);
   MapLookUps lookUps;
-  for (const size_t i : lit)
-    if (hasMapPdf(bounces, i)) lookUps.add(bounces.bsdfs.maps[i], bounces.light.wi[i]);
+  for (const size_t i : inMaps) lookUps.add(bounces.bsdfs.maps[i], bounces.light.wi[i]);
   findTexels(lookUps);
-  const int32_t* texel = lookUps.texels;
-  for (const size_t i : lit)
-    if (hasMapPdf(bounces, i)) bounces.light.texel[i] = *texel++;
+  for (size_t k = 0; k < inMaps.count; ++k) bounces.light.texel[inMaps.lanes[k]] = lookUps.texels[k];
 }
 
 }  // namespace
@@ -219,16 +219,14 @@ ODIS_WIDE void weigh(Bounces& bounces, const Column& mapPdf) {
 
 void weighLights(Bounces& bounces, const LaneList& lit) {
   if (lit.empty()) return;
+  const LaneList inMaps = lightsInMaps(lit, bounces);
   MapLookUps lookUps;
-  for (const size_t i : lit)
-    if (hasMapPdf(bounces, i)) lookUps.add(bounces.bsdfs.maps[i], bounces.light.texel[i]);
+  for (const size_t i : inMaps) lookUps.add(bounces.bsdfs.maps[i], bounces.light.texel[i]);
   findPdfs(lookUps);
-  const float* found = lookUps.pdf.of;
   Column mapPdf{};
-  for (const size_t i : lit) {
-    if (hasMapPdf(bounces, i)) mapPdf[i] = *found++;
+  for (size_t k = 0; k < inMaps.count; ++k) mapPdf[inMaps.lanes[k]] = lookUps.pdf[k];
+  for (const size_t i : lit)
     if (const DirectionSampler* rival = bounces.bsdfs.rivals[i]) mapPdf[i] = rival->pdf(bounces.light.wi[i]);
-  }
   weigh(bounces, mapPdf);
 }
 
@@ -252,18 +250,29 @@ ODIS_WIDE void spawnShadowRays(const Bounces& bounces, ShadowRays& rays) {
   }
 }
 
-// Divides what a shadow ray brings by the probability with which it is traced.
-void playForShadowRay(const PathSettings& settings, Bounces& bounces, size_t i, ShadowRays& rays) {
+// Plays for shadow rays: what they bring is divided by the probability with which they are traced, and
+// `played` is that probability, or 0 where they are not.
+ODIS_WIDE void playForShadowRays(const GuideRules& rules, const Column& pixelValues, Bounces& bounces,
+                                 ShadowRays& rays, Column& played) {
   LightEstimates& light = bounces.light;
-  const Arrival& arrival = bounces.arrivals[i];
-  if (arrival.cell == kNoCell) return;
-  const float probability = shadowRayProbability(settings.guide->rules,
-                                                 luminance(Rgb(rays.radiance[i])) / arrival.path->pixelValue);
-  if (probability >= 1) return;
-  light.shadowRayProbability[i] = bounces.numbers.shadowRay[i] < probability ? probability : 0.0f;
-  light.direct.set(i, light.direct[i] / probability);
-  light.radiance.set(i, light.radiance[i] / probability);
-  rays.radiance.set(i, bounces.throughput[i] * light.direct[i]);
+  for (size_t i = 0, end = endOfLanes(bounces.count); i < end; ++i) {
+    const float contribution = luminance(Rgb(rays.radiance[i])) / pixelValues[i];
+    const float probability = shadowRayProbability(rules, contribution);
+    const Vec3 direct = light.direct[i] / probability, radiance = light.radiance[i] / probability;
+    played[i] = bounces.numbers.shadowRay[i] < probability ? probability : 0.0f;
+    light.direct.set(i, direct);
+    light.radiance.set(i, radiance);
+    rays.radiance.set(i, bounces.throughput[i] * direct);
+  }
+}
+
+// The values of the paths' pixels, for those that are in a cell; 0, so that everything is worth its rays, for
+// others.
+void readPixelValues(Bounces& bounces, Column& values) {
+  for (size_t i = 0; i < bounces.count; ++i) {
+    const Arrival& arrival = bounces.arrivals[i];
+    values[i] = arrival.cell == kNoCell ? 0 : arrival.path->pixelValue;
+  }
 }
 
 }  // namespace
@@ -274,9 +283,13 @@ void requestShadowRays(const PathSettings& settings, Batch& batch, Bounces& boun
   if (lit.empty()) return;
   ShadowRays rays;
   spawnShadowRays(bounces, rays);
-  for (const size_t i : lit) light.shadowRayProbability[i] = isBlack(Rgb(light.direct[i])) ? 0.0f : 1.0f;
-  if (settings.shadowRoulette)
-    for (const size_t i : lit) playForShadowRay(settings, bounces, i, rays);
+  Column played, pixelValues;
+  std::fill_n(played.of, kLanes, 1.0f);
+  if (settings.shadowRoulette) {
+    readPixelValues(bounces, pixelValues);
+    playForShadowRays(settings.guide->rules, pixelValues, bounces, rays, played);
+  }
+  for (const size_t i : lit) light.shadowRayProbability[i] = isBlack(Rgb(light.direct[i])) ? 0.0f : played[i];
   for (const size_t i : lit) {
     const Arrival& arrival = bounces.arrivals[i];
     const bool asked = light.shadowRayProbability[i] > 0;

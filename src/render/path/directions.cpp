@@ -185,12 +185,15 @@ Source sampleOther(Bounces& bounces, size_t lane) {
   return host.failed(drawn) ? Source::plain : Source::bsdf;
 }
 
-// At a surface that has been sampled in lanes.
-Source sourceInLane(Bounces& bounces, size_t lane, bool drawn) {
-  if (!drawn) bounces.next.set(lane, {});
-  const bool isSharp = bounces.next.lobeAt(lane) == Lobe::nearDelta;
-  if (bounces.draws.fromMap[lane] && (bounces.bsdfs.guidable[lane] >= 1 || !isSharp)) return Source::map;
-  return drawn && bounces.bsdfs.hasMap[lane] ? Source::bsdf : Source::plain;
+// Finds the sources of all lanes, as if each had been sampled in lanes.
+ODIS_WIDE void findSources(const IntColumn& drawn, const Bounces& bounces, IntColumn& sources) {
+  const GuidedBsdfs& bsdfs = bounces.bsdfs;
+  for (size_t i = 0, end = endOfLanes(bounces.count); i < end; ++i) {
+    const bool mayBeMap = (bsdfs.guidable[i] >= 1) | (bounces.next.lobe[i] != int32_t(Lobe::nearDelta));
+    const bool mixed = (drawn[i] != 0) & (bsdfs.hasMap[i] != 0);
+    const int32_t fromBsdf = mixed ? int32_t(Source::bsdf) : int32_t(Source::plain);
+    sources[i] = ((bounces.draws.fromMap[i] != 0) & mayBeMap) ? int32_t(Source::map) : fromBsdf;
+  }
 }
 
 ODIS_WIDE void turnToWorld(const Bounces& bounces, Columns3& world) {
@@ -267,18 +270,17 @@ ODIS_WIDE void mix(const IntColumn& sources, const Column& mapPdf, Bounces& boun
 void mixWithMaps(const IntColumn& sources, Bounces& bounces) {
   Columns3 world;
   turnToWorld(bounces, world);
+  LaneList fromMaps, fromBsdfs;
+  for (size_t i = 0; i < bounces.count; ++i) {
+    fromMaps.addIf(sources[i] == int32_t(Source::map), i);
+    fromBsdfs.addIf(sources[i] == int32_t(Source::bsdf), i);
+  }
   MapSamples samples;
   MapLookUps lookUps;
-  LaneList fromMaps, fromBsdfs;
   const DirectionDraws& draws = bounces.draws;
-  for (size_t i = 0; i < bounces.count; ++i) {
-    const VertexMap<float>& map = bounces.bsdfs.maps[i];
-    const bool fromMap = sources[i] == int32_t(Source::map), fromBsdf = sources[i] == int32_t(Source::bsdf);
-    samples.addIf(fromMap, map, {draws.withinBlockU[i], draws.withinBlockV[i]}, draws.block[i]);
-    fromMaps.addIf(fromMap, i);
-    if (fromBsdf) lookUps.add(map, world[i]);
-    fromBsdfs.addIf(fromBsdf, i);
-  }
+  for (const size_t i : fromMaps)
+    samples.add(bounces.bsdfs.maps[i], {draws.withinBlockU[i], draws.withinBlockV[i]}, draws.block[i]);
+  for (const size_t i : fromBsdfs) lookUps.add(bounces.bsdfs.maps[i], world[i]);
   findTexels(lookUps);
   sampleWithinBlocks(samples);
   findPdfs(lookUps);
@@ -301,14 +303,17 @@ void sampleDirections(Bounces& bounces) {
   IntColumn drawn, sources;
   sampleDiffuse(bounces, drawn);
   sampleFaceted(bounces, drawn);
-  bool anyMap = false;
+  LaneList others;
   for (size_t i = 0; i < bounces.count; ++i) {
     // What rivals guide is sampled one by one.
     const bool inLane = (bounces.at.isDiffuse[i] || bounces.at.isFaceted[i]) && !bounces.bsdfs.rivals[i];
-    const Source source = inLane ? sourceInLane(bounces, i, drawn[i]) : sampleOther(bounces, i);
-    sources[i] = int32_t(source);
-    anyMap |= source != Source::plain;
+    others.addIf(!inLane, i);
+    if (inLane && !drawn[i]) bounces.next.set(i, {});
   }
+  findSources(drawn, bounces, sources);
+  for (const size_t i : others) sources[i] = int32_t(sampleOther(bounces, i));
+  bool anyMap = false;
+  for (size_t i = 0; i < bounces.count; ++i) anyMap |= sources[i] != int32_t(Source::plain);
   if (anyMap) mixWithMaps(sources, bounces);
   for (size_t i = 0; i < bounces.count; ++i)
     if (!isFinite(Rgb(bounces.next.weight[i]))) bounces.next.set(i, {});

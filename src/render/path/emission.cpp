@@ -135,16 +135,13 @@ void playRouletteOnArrival(const PathSettings& settings, Batch& batch, Bounces& 
     // The mean outgoing radiance is a control variate: it leaves the expectation as it is.
     const Float3& outgoing = cell.outgoingRadiance;
     const Rgb standIn = path.throughput * Rgb(outgoing.x, outgoing.y, outgoing.z);
-    // The random number is that of the vertex before.
+    // The random number is that of the vertex before. Without a branch, which would often be mispredicted.
     arrival.scatters = path.uSurvival < survival;
-    if (!arrival.scatters) {
-      path.radiance += standIn;
-      continue;
-    }
-    path.radiance += standIn * (1 - 1 / survival);
-    path.throughput /= survival;
-    if (!path.visible) path.visibleWeight /= survival;
-    if (batch.recording) batch.recorder.survived(path.handle, survival);
+    const float kept = arrival.scatters ? 1 / survival : 0;
+    path.radiance += standIn * (1 - kept);
+    path.throughput *= kept;
+    path.visibleWeight *= path.visible ? 1 : kept;
+    if (batch.recording && arrival.scatters) batch.recorder.survived(path.handle, survival);
   }
 }
 
