@@ -58,12 +58,15 @@ class Mixture {
     Real u;
   };
   ODIS_HOST_DEVICE Choice choose(Real u) const {
-    const auto fromMap = u >= m_fraction;
-    // The part of [0, 1) that u lies in begins at 0 or m_fraction. Without a branch on scalars, which would
-    // be mispredicted.
-    const Real isMap = select(fromMap, Real(1), Real(0));
-    const Real begin = isMap * m_fraction, length = isMap + (Real(1) - Real(2) * isMap) * m_fraction;
-    return {fromMap, min((u - begin) / length, Real(0x1.fffffep-1f))};
+    const auto fromMap = choosesMap(u);
+    return {fromMap, stretched(u, fromMap)};
+  }
+  // The same in two steps, for loops over vertices, which compilers turn into vectors if each is a loop.
+  ODIS_HOST_DEVICE auto choosesMap(Real u) const { return u >= m_fraction; }
+  ODIS_HOST_DEVICE Real stretched(Real u, decltype(Real() > Real()) fromMap) const {
+    const Real mapFraction = Real(1) - m_fraction;
+    const Real begin = select(fromMap, m_fraction, Real(0)), length = select(fromMap, mapFraction, m_fraction);
+    return min((u - begin) / length, Real(0x1.fffffep-1f));
   }
 
   // Samples the mixture, for one path. `map` has sample(u, v), with the fields wi and pdf, and pdf(wi),

@@ -11,9 +11,8 @@
 
 namespace odis::render {
 
-// How many paths lie side by side. Between two paths' turns at a step, all other steps' instructions are
-// fetched from the second-level cache again, which holds the columns, too (48 KiB of a bounce): the more paths,
-// the less often.
+// How many paths lie side by side. The steps of a bounce are more instructions than the first-level cache
+// holds, so each is fetched anew for every so many paths. The columns of a bounce are 48 KiB then.
 inline constexpr size_t kLanes = 64;
 
 // The end of a loop over the first `count` lanes: the next multiple of eight, so that vectors are full.

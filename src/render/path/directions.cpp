@@ -78,10 +78,15 @@ namespace {
 
 ODIS_WIDE void chooseSources(Bounces& bounces) {
   DirectionDraws& draws = bounces.draws;
-  for (size_t i = 0, end = endOfLanes(bounces.count); i < end; ++i) {
-    const auto choice = bounces.bsdfs.mixture(i).choose(bounces.numbers.directionU[i]);
-    draws.fromMap[i] = bounces.bsdfs.hasMap[i] & int32_t(choice.fromMap);
-    draws.u[i] = bounces.bsdfs.hasMap[i] ? choice.u : bounces.numbers.directionU[i];
+  const size_t end = endOfLanes(bounces.count);
+  const Column& u = bounces.numbers.directionU;
+  for (size_t i = 0; i < end; ++i)
+    draws.fromMap[i] = bounces.bsdfs.hasMap[i] & int32_t(bounces.bsdfs.mixture(i).choosesMap(u[i]));
+  for (size_t i = 0; i < end; ++i)
+    draws.u[i] = bounces.bsdfs.mixture(i).stretched(u[i], draws.fromMap[i] != 0);
+  for (size_t i = 0; i < end; ++i) {
+    const float unguided = u[i], guided = draws.u[i];
+    draws.u[i] = bounces.bsdfs.hasMap[i] ? guided : unguided;
   }
 }
 
@@ -137,18 +142,27 @@ ODIS_WIDE void keepFaceted(const Columns3& wi, const BsdfValues& values, const I
                            Bounces& bounces, IntColumn& drawn) {
   NextDirections& next = bounces.next;
   const Surfaces& at = bounces.at;
-  for (size_t i = 0, end = endOfLanes(bounces.count); i < end; ++i) {
-    const bool is = at.isFaceted[i], isSharp = at.faceted[i].lobe() == Lobe::nearDelta;
-    const Vec3 value = values.value[i], ofDiffuse = next.weight[i], wiOfDiffuse = next.wi[i];
-    const float pdf = values.pdf[i];
-    const int32_t lobe = fromFacets[i] && isSharp ? int32_t(Lobe::nearDelta) : int32_t(Lobe::smooth);
-    const bool isDrawn = (pdf > 0) & isFinite(value);
-    next.wi.set(i, select(is, wi[i], wiOfDiffuse));
-    next.weight.set(i, select(is, value / pdf, ofDiffuse));
+  const size_t end = endOfLanes(bounces.count);
+  Columns3 weights;
+  IntColumn isDrawn, lobes;
+  for (size_t i = 0; i < end; ++i) {
+    const Vec3 value = values.value[i];
+    const bool isSharp = (at.faceted[i].lobe() == Lobe::nearDelta) & (fromFacets[i] != 0);
+    weights.set(i, value / values.pdf[i]);
+    isDrawn[i] = (values.pdf[i] > 0) & isFinite(value);
+    lobes[i] = isSharp ? int32_t(Lobe::nearDelta) : int32_t(Lobe::smooth);
+  }
+  for (size_t i = 0; i < end; ++i) {
+    const bool is = at.isFaceted[i];
+    const Vec3 weight = weights[i], direction = wi[i], ofDiffuse = next.weight[i], wiOfDiffuse = next.wi[i];
+    const float pdf = values.pdf[i], guidablePdf = values.guidablePdf[i];
+    const int32_t lobe = lobes[i], wasDrawn = isDrawn[i];
+    next.wi.set(i, select(is, direction, wiOfDiffuse));
+    next.weight.set(i, select(is, weight, ofDiffuse));
     next.pdf[i] = is ? pdf : next.pdf[i];
-    next.guidablePdf[i] = is ? values.guidablePdf[i] : next.guidablePdf[i];
+    next.guidablePdf[i] = is ? guidablePdf : next.guidablePdf[i];
     next.lobe[i] = is ? lobe : next.lobe[i];
-    drawn[i] = is ? int32_t(isDrawn) : drawn[i];
+    drawn[i] = is ? wasDrawn : drawn[i];
   }
 }
 

@@ -9,8 +9,8 @@ namespace odis::render {
 namespace {
 
 constexpr int kTileSize = 16;
-// A tile's paths are traced in batches of at least this size, but for the last one: the larger, the fuller are
-// packets of rays and columns at later bounces, and the less of a batch stays in the second-level cache.
+// A tile's paths are traced in batches of at least this size, but for the last one. In larger ones packets of
+// rays and columns are fuller at later bounces, but less of them stays in the second-level cache.
 constexpr size_t kLeastPaths = 512;
 
 // Denormal numbers are slow and mean nothing here: flushed to zero (bit 15) and taken as zero (bit 6).
