@@ -65,7 +65,8 @@ class Mixture {
   ODIS_HOST_DEVICE auto choosesMap(Real u) const { return u >= m_fraction; }
   ODIS_HOST_DEVICE Real stretched(Real u, decltype(Real() > Real()) fromMap) const {
     const Real mapFraction = Real(1) - m_fraction;
-    const Real begin = select(fromMap, m_fraction, Real(0)), length = select(fromMap, mapFraction, m_fraction);
+    const Real begin = select(fromMap, m_fraction, Real(0)),
+               length = select(fromMap, mapFraction, m_fraction);
     return min((u - begin) / length, Real(0x1.fffffep-1f));
   }
 

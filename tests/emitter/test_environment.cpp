@@ -345,7 +345,8 @@ TEST(SkyDome, IsExactDownToTheHorizon) {
         if (theta * stretch > kPi) continue;
         Vec3 world;
         someRotation().multDirMatrix(local, world);
-        const Rgb expected = kSky.radiance(before.y, std::acos(dot(before, kToSun))) * 3,
+        const float cosGamma = dot(before, kToSun);
+        const Rgb expected = kSky.radiance(before.y, std::acos(cosGamma), cosGamma) * 3,
                   found = dome.radiance(world);
         for (int c = 0; c < 3; ++c)
           EXPECT_NEAR(found[c], expected[c], 1e-3f * expected[c]) << stretch << " " << theta << " " << phi;

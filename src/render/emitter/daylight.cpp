@@ -64,23 +64,6 @@ Sky::Sky(float turbidity, float sunZenith, const Rgb& albedo) {
   }
 }
 
-Rgb Sky::radiance(float cosTheta, float gamma) const {
-  if (!(cosTheta >= 0)) return {0, 0, 0};
-  const float cosGamma = std::cos(gamma), cosGamma2 = cosGamma * cosGamma;
-  Rgb result;
-  for (int c = 0; c < 3; ++c) {
-    // Equation 8 of the paper; chi is the glow around the sun.
-    const auto& [A, B, C, D, E, F, G, I, H] = m_channels[c].shape;
-    const float toSun = 1 + H * H - 2 * H * cosGamma;
-    const float chi = (1 + cosGamma2) / (toSun * std::sqrt(toSun));
-    const float share = (1 + A * std::exp(B / (cosTheta + 0.01f))) *
-                        (C + D * std::exp(E * gamma) + F * cosGamma2 + G * chi + I * std::sqrt(cosTheta));
-    // Below 0 where the colour is outside of RGB: blue at the horizon away from a sun that sets.
-    result[c] = std::max(0.0f, share * m_channels[c].mean);
-  }
-  return result;
-}
-
 Rgb sunRadiance(float turbidity, float sunZenith) {
   if (!(sunZenith <= kPi / 2)) return {0, 0, 0};
   const Position haze = turbidityPosition(turbidity);

@@ -10,7 +10,7 @@
 
 #include <array>
 
-#include "render/math/vec.h"
+#include "render/math/elementary.h"
 
 namespace odis::render {
 
@@ -20,16 +20,43 @@ class Sky {
  public:
   Sky(float turbidity, float sunZenith, const Rgb& albedo);
 
-  // The sky at `cosTheta` above the horizon, `gamma` radians from the sun; black below the horizon.
-  Rgb radiance(float cosTheta, float gamma) const;
+  // The sky at an angle of this cosine from the zenith, `gamma` radians, at most pi, from the sun; black below
+  // the horizon.
+  Rgb radiance(float cosTheta, float gamma, float cosGamma) const {
+    return cosTheta >= 0 ? radianceAbove(cosTheta, gamma, cosGamma) : Rgb(0, 0, 0);
+  }
+  // The same for a cosine of at least 0, without branches or calls, for loops over lanes.
+  Rgb radianceAbove(float cosTheta, float gamma, float cosGamma) const;
 
  private:
   struct Channel {
     std::array<float, 9> shape;  // parameters of the paper's F(theta, gamma): A to G, I, H
     float mean;                  // radiance that F is a share of
+
+    float radiance(float cosTheta, float gamma, float cosGamma) const;
   };
   Channel m_channels[3];
 };
+
+// Equation 8 of the paper; chi is the glow around the sun.
+[[gnu::always_inline]] inline float Sky::Channel::radiance(float cosTheta, float gamma,
+                                                           float cosGamma) const {
+  const auto& [A, B, C, D, E, F, G, I, H] = shape;
+  const float cosGamma2 = cosGamma * cosGamma, toSun = 1 + H * H - 2 * H * cosGamma;
+  const float chi = (1 + cosGamma2) / (toSun * std::sqrt(toSun));
+  const float glow = exponential(std::min(B / (cosTheta + 0.01f), 88.0f));
+  const float share =
+      (1 + A * glow) * (C + D * exponential(E * gamma) + F * cosGamma2 + G * chi + I * std::sqrt(cosTheta));
+  // Below 0 where the colour is outside of RGB: blue at the horizon away from a sun that sets.
+  return std::max(0.0f, share * mean);
+}
+
+[[gnu::always_inline]] inline Rgb Sky::radianceAbove(float cosTheta, float gamma, float cosGamma) const {
+  const float r = m_channels[0].radiance(cosTheta, gamma, cosGamma),
+              g = m_channels[1].radiance(cosTheta, gamma, cosGamma),
+              b = m_channels[2].radiance(cosTheta, gamma, cosGamma);
+  return {r, g, b};
+}
 
 // Mean radiance of the sun's disc, 0.5358 degrees wide, after the atmosphere; black below the horizon. The
 // turbidity is clamped to 1 to 10.

@@ -115,8 +115,8 @@ inline EnvironmentMap::Place EnvironmentMap::placeOf(const Vec3& wi) const {
   return {{turns < 0 ? turns + 1 : turns, 2 * angleInTurns(sinTheta, d.y)}, sinTheta, stretch};
 }
 
-ODIS_WIDE void EnvironmentMap::findPlaces(const EnvironmentMap& map, size_t count, const Columns3& wi,
-                                          Places& places) {
+ODIS_WIDE void EnvironmentMap::findPlacesInLanes(const EnvironmentMap& map, size_t count, const Columns3& wi,
+                                                 Places& places) {
   for (size_t i = 0, end = endOfLanes(count); i < end; ++i) {
     const Place place = map.placeOf(wi[i]);
     places.u[i] = place.uv.x;
@@ -169,19 +169,27 @@ Rgb EnvironmentMap::radiance(const Vec3& wi) const {
 // `places` are those of the table before, and those of the image after.
 ODIS_WIDE void EnvironmentMap::findDirections(const EnvironmentMap& map, size_t count, const Column& tablePdf,
                                               ImagePlaces& places, Directions& directions) {
-  for (size_t i = 0, end = endOfLanes(count); i < end; ++i) {
+  const size_t end = endOfLanes(count);
+  const Matrix4 toWorld = map.m_toWorld;  // copies, which no column can be the same memory as
+  const float halfColumn = 0.5f / float(map.m_width), determinant = map.m_determinant;
+  Column sinThetas;
+  for (size_t i = 0; i < end; ++i) {
     // Cell 0 of the table begins at the centre of column 0.
-    const float right = places.u[i] + 0.5f / float(map.m_width), u = right >= 1 ? right - 1 : right;
+    const float right = places.u[i] + halfColumn, u = right >= 1 ? right - 1 : right;
     places.u[i] = u;
     const auto [sinPhi, cosPhi] = sinCosOfTurns(u);
     const auto [sinTheta, cosTheta] = sinCosOfTurns(0.5f * places.v[i]);
-    const Vec3 world = transformVector(map.m_toWorld, {sinPhi * sinTheta, cosTheta, -cosPhi * sinTheta});
+    const Vec3 world = transformVector(toWorld, {sinPhi * sinTheta, cosTheta, -cosPhi * sinTheta});
     const float scale = length(world);
     directions.wi.set(i, world * (1 / scale));
     // The solid angle of an element of uv is 2 pi^2 sin(theta); a transform that is not a rotation stretches
     // it further.
-    const float pdf = tablePdf[i] * (scale * scale * scale) / (2 * kPi * kPi * sinTheta * map.m_determinant);
-    directions.pdf[i] = sinTheta > 0 ? pdf : 0.0f;
+    directions.pdf[i] = tablePdf[i] * (scale * scale * scale) / (2 * kPi * kPi * sinTheta * determinant);
+    sinThetas[i] = sinTheta;
+  }
+  for (size_t i = 0; i < end; ++i) {
+    const float pdf = directions.pdf[i];
+    directions.pdf[i] = sinThetas[i] > 0 ? pdf : 0.0f;
   }
 }
 
@@ -241,20 +249,34 @@ float EnvironmentMap::pdf(const Vec3& wi) const {
   return pdfAt(placeOf(wi));
 }
 
-void EnvironmentMap::view(std::span<EnvironmentView> views) const {
+void EnvironmentMap::findPlaces(std::span<const EnvironmentView> views, Places& places) const {
   Columns3 wi{};
   for (size_t i = 0; i < views.size(); ++i) wi.set(i, views[i].wi);
-  Places places;
-  findPlaces(*this, views.size(), wi, places);
-  Patches patches;
-  findPatches(views.size(), places, patches);
+  findPlacesInLanes(*this, views.size(), wi, places);
   for (size_t i = 0; i < views.size(); ++i)
     if (views[i].asksPdf) m_table.prefetchPdf(inTable(places[i].uv));
+}
+
+void EnvironmentMap::findDensities(std::span<EnvironmentView> views, const Places& places) const {
   for (size_t i = 0; i < views.size(); ++i) {
-    views[i].radiance = lookUp(patches[i], places.v[i]);
     if (views[i].asksPdf) views[i].pdf = pdfAt(places[i]);
     if (views[i].asksNumbers) views[i].u = m_table.invert(inTable(places[i].uv));
   }
+}
+
+void EnvironmentMap::view(std::span<EnvironmentView> views) const {
+  Places places;
+  findPlaces(views, places);
+  Patches patches;
+  findPatches(views.size(), places, patches);
+  for (size_t i = 0; i < views.size(); ++i) views[i].radiance = lookUp(patches[i], places.v[i]);
+  findDensities(views, places);
+}
+
+void EnvironmentMap::viewDensities(std::span<EnvironmentView> views) const {
+  Places places;
+  findPlaces(views, places);
+  findDensities(views, places);
 }
 
 std::vector<EmitterPtr> makeEnvironmentMap(const Properties& node, Builder& builder) {

@@ -30,6 +30,8 @@ class EnvironmentMap final : public EnvironmentEmitter {
   // sampleEach() without radiances, and where the image has those.
   void sampleDirections(std::span<const LightDraw> draws, std::span<EmitterSample> samples,
                         ImagePlaces& at) const;
+  // view() without radiances.
+  void viewDensities(std::span<EnvironmentView> views) const;
   uint64_t bytes() const { return m_pixels.size() * sizeof(Rgb) + m_table.bytes(); }
 
  private:
@@ -46,7 +48,8 @@ class EnvironmentMap final : public EnvironmentEmitter {
 
     Place operator[](size_t lane) const { return {{u[lane], v[lane]}, sinTheta[lane], stretch[lane]}; }
   };
-  static void findPlaces(const EnvironmentMap& map, size_t count, const Columns3& wi, Places& places);
+  static void findPlacesInLanes(const EnvironmentMap& map, size_t count, const Columns3& wi, Places& places);
+  void findPlaces(std::span<const EnvironmentView> views, Places& places) const;
   // The way back, for samples of the table.
   struct Directions {
     Columns3 wi;
@@ -76,6 +79,7 @@ class EnvironmentMap final : public EnvironmentEmitter {
                                  Patches& patches);
   Rgb lookUp(const Patch& patch, float v) const;
   float pdfAt(const Place& place) const;
+  void findDensities(std::span<EnvironmentView> views, const Places& places) const;
   std::vector<float> patchWeights();
 
   int m_width, m_height;

@@ -20,18 +20,29 @@ class SkyDome final : public EnvironmentEmitter {
   void sampleEach(std::span<const LightDraw> draws, std::span<EmitterSample> samples) const override;
   float meanIrradiance() const override { return m_table.meanIrradiance(); }
   Rgb radiance(const Vec3& wi) const override;
+  void view(std::span<EnvironmentView> views) const override;
   float pdf(const Vec3& wi) const override { return m_table.pdf(wi); }
   bool invertible() const override { return true; }
   Vec2 invert(const Vec3& wi) const override { return m_table.invert(wi); }
 
  private:
-  std::vector<Rgb> tabulate(int width, int rows) const;
-  Rgb unstretchedRadiance(const Vec3& direction) const;
+  // What the sky shows, and where.
+  struct Model {
+    Sky sky;
+    Vec3 sunDirection;
+    float scale, stretch;
+    Matrix4 toLocal;
 
-  Sky m_sky;
-  Vec3 m_sunDirection;
-  float m_scale, m_stretch;
-  Matrix4 m_toLocal;
+    // A direction of the world in the sky's space, before the sky is stretched.
+    Vec3 unstretched(const Vec3& wi) const;
+    // The radiance from a direction of that space, if it is not below the horizon.
+    Rgb radianceAbove(const Vec3& direction) const;
+  };
+  // The radiance from the first `count` directions of the world.
+  static void findRadiance(const Model& sky, size_t count, const Columns3& wi, Columns3& radiance);
+  std::vector<Rgb> tabulate(int width, int rows) const;
+
+  Model m_model;
   EnvironmentMap m_table;
 };
 

@@ -11,13 +11,14 @@ Projection::Projection(double fov, const Vec2i& resolution, const Vec2& principa
               float(pixel * resolution.y * (0.5 - principalPointOffset.y))};
 }
 
-ODIS_WIDE void Perspective::findRays(const Perspective& camera, size_t count, const CameraPlaces& places,
+ODIS_WIDE void Perspective::findRays(const Pinhole& camera, size_t count, const CameraPlaces& places,
                                      CameraRays& rays) {
-  for (size_t i = 0, end = endOfLanes(count); i < end; ++i) rays.set(i, camera.through(places.film(i)));
+  const Pinhole copy = camera;  // which no column can be the same memory as
+  for (size_t i = 0, end = endOfLanes(count); i < end; ++i) rays.set(i, copy.through(places.film(i)));
 }
 
 void Perspective::raysAtRest(size_t count, const CameraPlaces& places, CameraRays& rays) const {
-  findRays(*this, count, places, rays);
+  findRays(m_pinhole, count, places, rays);
 }
 
 }  // namespace odis::render

@@ -33,27 +33,29 @@ class Perspective final : public Sensor {
  public:
   // `toWorld` keeps lengths.
   Perspective(const Matrix4& toWorld, const Projection& projection, const ClipRange& clip = {})
-      : m_toWorld(toWorld),
-        m_position(transformPoint(toWorld, Vec3(0))),
-        m_projection(projection),
-        m_clip(clip) {}
-  Ray ray(const Vec2& film, const Vec2&) const override { return through(film); }
+      : m_pinhole{toWorld, transformPoint(toWorld, Vec3(0)), projection, clip} {}
+  Ray ray(const Vec2& film, const Vec2&) const override { return m_pinhole.through(film); }
   bool readsLens() const override { return false; }
 
  private:
-  void raysAtRest(size_t count, const CameraPlaces& places, CameraRays& rays) const override;
-  static void findRays(const Perspective& camera, size_t count, const CameraPlaces& places, CameraRays& rays);
-  // The ray through a place on the film.
-  Ray through(const Vec2& film) const {
-    const Vec3 direction = m_projection.direction(film);
-    const Ray ray{m_position, normalize(transformVector(m_toWorld, direction))};
-    return m_clip.clip(ray, 1 / length(direction));
-  }
+  struct Pinhole {
+    Matrix4 toWorld;
+    Vec3 position;
+    Projection projection;
+    ClipRange clip;
 
-  Matrix4 m_toWorld;
-  Vec3 m_position;
-  Projection m_projection;
-  ClipRange m_clip;
+    // The ray through a place on the film.
+    Ray through(const Vec2& film) const {
+      const Vec3 direction = projection.direction(film);
+      const Ray ray{position, normalize(transformVector(toWorld, direction))};
+      return clip.clip(ray, 1 / length(direction));
+    }
+  };
+
+  void raysAtRest(size_t count, const CameraPlaces& places, CameraRays& rays) const override;
+  static void findRays(const Pinhole& camera, size_t count, const CameraPlaces& places, CameraRays& rays);
+
+  Pinhole m_pinhole;
 };
 
 }  // namespace odis::render
