@@ -20,8 +20,8 @@ class Sky {
  public:
   Sky(float turbidity, float sunZenith, const Rgb& albedo);
 
-  // The sky at an angle of this cosine from the zenith, `gamma` radians, at most pi, from the sun; black below
-  // the horizon.
+  // The sky at an angle of this cosine from the zenith, `gamma` radians, at most pi, from the sun; black
+  // below the horizon.
   Rgb radiance(float cosTheta, float gamma, float cosGamma) const {
     return cosTheta >= 0 ? radianceAbove(cosTheta, gamma, cosGamma) : Rgb(0, 0, 0);
   }

@@ -58,7 +58,15 @@ inline uint32_t findCell(std::span<const float> cdf, std::span<const uint32_t> i
   uint32_t begin = index[piece], end = index[piece + 1];
   while (cdf[begin] > u) --begin;
   while (cdf[end + 1] <= u) ++end;
-  return uint32_t(std::upper_bound(cdf.begin() + begin, cdf.begin() + end + 1, u) - cdf.begin()) - 1;
+  // A binary search without branches, which would be mispredicted half of the time: cdf[cell] <= u <
+  // cdf[cell + count].
+  uint32_t cell = begin;
+  for (uint32_t count = end + 1 - begin; count > 1;) {
+    const uint32_t half = count / 2;
+    cell += cdf[cell + half] <= u ? half : 0;
+    count -= half;
+  }
+  return cell;
 }
 
 inline float cellPdf(std::span<const float> cdf, uint32_t cell) {
