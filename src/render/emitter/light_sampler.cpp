@@ -1,6 +1,7 @@
 #include "render/emitter/light_sampler.h"
 
 #include <cmath>
+#include <limits>
 
 #include "render/emitter/light_descents.h"
 #include "render/emitter/moving_light.h"
@@ -128,14 +129,15 @@ uint32_t LightSampler::drawRegion(const LightReference& ref, float probability, 
     return float(count) * even + learned.fraction * (cdf[first + count] - cdf[first]);
   };
   // Draws one of the pieces of `size` regions each, as many as the grid has columns, from the region
-  // `first` on.
+  // `first` on. Pieces are compared with all, since branches would be mispredicted.
   const auto draw = [&](uint32_t first, uint32_t size, float& x) {
-    x *= weight(first, m_side * size);
+    const float target = x * weight(first, m_side * size);
     uint32_t piece = 0;
-    float width = weight(first, size);
-    for (; x >= width && piece + 1 < m_side; width = weight(first + ++piece * size, size)) x -= width;
+    for (uint32_t i = 1; i < m_side; ++i) piece += target >= weight(first, i * size);
+    const float begin = weight(first, piece * size), width = weight(first + piece * size, size);
+    const float within = std::max(target - begin, 0.0f) / std::max(width, std::numeric_limits<float>::min());
     // Rounding must not carry it across the border.
-    x = std::min((float(piece) + x / width) / float(m_side),
+    x = std::min((float(piece) + within) / float(m_side),
                  float(piece + 1) / float(m_side) * kOneMinusEpsilon);
     return piece;
   };
