@@ -12,7 +12,8 @@
 namespace odis::render {
 
 // How many paths lie side by side. The steps of a bounce are more instructions than the first-level cache
-// holds, so each is fetched anew for every so many paths. The columns of a bounce are 48 KiB then.
+// holds, so they are fetched from the second level again for every so many paths. The columns of a bounce are
+// 48 KiB then.
 inline constexpr size_t kLanes = 64;
 
 // The end of a loop over the first `count` lanes: the next multiple of eight, so that vectors are full.

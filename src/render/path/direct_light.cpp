@@ -268,7 +268,7 @@ ODIS_WIDE void playForShadowRays(const GuideRules& rules, const Column& pixelVal
 
 // The values of the paths' pixels, for those that are in a cell; 0, so that everything is worth its rays, for
 // others.
-void readPixelValues(Bounces& bounces, Column& values) {
+void readPixelValues(const Bounces& bounces, Column& values) {
   for (size_t i = 0; i < bounces.count; ++i) {
     const Arrival& arrival = bounces.arrivals[i];
     values[i] = arrival.cell == kNoCell ? 0 : arrival.path->pixelValue;
