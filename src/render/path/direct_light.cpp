@@ -167,7 +167,11 @@ ODIS_WIDE void estimateRadiance(Bounces& bounces, IntColumn& lit) {
 // Of paths that are lit, those whose map is asked for the density of the light's direction.
 LaneList lightsInMaps(const LaneList& lit, const Bounces& bounces) {
   LaneList lanes;
-  for (const size_t i : lit) lanes.addIf((bounces.light.pdf[i] > 0) & (bounces.bsdfs.hasMap[i] != 0), i);
+  for (const size_t i : lit) {
+    const float pdf = bounces.light.pdf[i];
+    const int32_t hasMap = bounces.bsdfs.hasMap[i];
+    lanes.addIf((pdf > 0) & (hasMap != 0), i);
+  }
   return lanes;
 }
 

@@ -147,10 +147,12 @@ ODIS_WIDE void keepFaceted(const Columns3& wi, const BsdfValues& values, const I
   IntColumn isDrawn, lobes;
   for (size_t i = 0; i < end; ++i) {
     const Vec3 value = values.value[i];
-    const bool isSharp = (at.faceted[i].lobe() == Lobe::nearDelta) & (fromFacets[i] != 0);
-    weights.set(i, value / values.pdf[i]);
-    isDrawn[i] = (values.pdf[i] > 0) & isFinite(value);
-    lobes[i] = isSharp ? int32_t(Lobe::nearDelta) : int32_t(Lobe::smooth);
+    const float pdf = values.pdf[i];
+    const int32_t ofFacets =
+        at.faceted[i].lobe() == Lobe::nearDelta ? int32_t(Lobe::nearDelta) : int32_t(Lobe::smooth);
+    weights.set(i, value / pdf);
+    isDrawn[i] = (pdf > 0) & isFinite(value);
+    lobes[i] = fromFacets[i] != 0 ? ofFacets : int32_t(Lobe::smooth);
   }
   for (size_t i = 0; i < end; ++i) {
     const bool is = at.isFaceted[i];
@@ -203,10 +205,13 @@ Source sampleOther(Bounces& bounces, size_t lane) {
 ODIS_WIDE void findSources(const IntColumn& drawn, const Bounces& bounces, IntColumn& sources) {
   const GuidedBsdfs& bsdfs = bounces.bsdfs;
   for (size_t i = 0, end = endOfLanes(bounces.count); i < end; ++i) {
-    const bool mayBeMap = (bsdfs.guidable[i] >= 1) | (bounces.next.lobe[i] != int32_t(Lobe::nearDelta));
-    const bool mixed = (drawn[i] != 0) & (bsdfs.hasMap[i] != 0);
-    const int32_t fromBsdf = mixed ? int32_t(Source::bsdf) : int32_t(Source::plain);
-    sources[i] = ((bounces.draws.fromMap[i] != 0) & mayBeMap) ? int32_t(Source::map) : fromBsdf;
+    const int32_t lobe = bounces.next.lobe[i], wasDrawn = drawn[i], hasMap = bsdfs.hasMap[i],
+                  choseMap = bounces.draws.fromMap[i];
+    const float guidable = bsdfs.guidable[i];
+    const bool isSharp = lobe == int32_t(Lobe::nearDelta), staysSharp = isSharp & (guidable < 1);
+    const bool isMixed = (wasDrawn != 0) & (hasMap != 0), isFromMap = (choseMap != 0) & !staysSharp;
+    const int32_t fromBsdf = isMixed ? int32_t(Source::bsdf) : int32_t(Source::plain);
+    sources[i] = isFromMap ? int32_t(Source::map) : fromBsdf;
   }
 }
 
