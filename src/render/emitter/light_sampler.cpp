@@ -290,7 +290,7 @@ float LightSampler::groupProbability(const LightReference& ref, uint32_t group) 
 }
 
 uint64_t LightSampler::bytes() const {
-  return m_emitters.capacity() * sizeof(const Emitter*) + m_firstLight.capacity() * sizeof(uint32_t) +
+  return m_emitters.capacity() * sizeof(void*) + m_firstLight.capacity() * sizeof(uint32_t) +
          m_emitterOf.capacity() * sizeof(uint32_t) + m_tree.bytes() +
          (m_infinite.capacity() + m_groupOf.capacity() + m_memberOf.capacity()) * sizeof(uint32_t) +
          m_divided.capacity() + m_dividedLights.capacity() * sizeof(LightParts) +

@@ -52,7 +52,8 @@ std::vector<Rgb> SkyDome::tabulate(int width, int rows) const {
 }
 
 ODIS_WIDE void SkyDome::findRadiance(const Model& sky, size_t count, const Columns3& wi, Columns3& radiance) {
-  const Model copy = sky;  // which no column can be the same memory as
+  // Which no column can be the same memory as.
+  const Model copy = sky;  // NOLINT(performance-unnecessary-copy-initialization)
   const size_t end = endOfLanes(count);
   Columns3 directions;
   for (size_t i = 0; i < end; ++i) directions.set(i, copy.unstretched(wi[i]));
