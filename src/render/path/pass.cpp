@@ -157,7 +157,7 @@ void addCameraRays(const Scene& scene, std::span<Path> paths, std::span<const Ve
   }
 }
 
-// Traces all samples of a tile: one of each pixel at a time, or several where few pixels are left.
+// Traces all samples of a tile: two of each pixel at a time, or more where few pixels are left.
 void renderTile(const Pass& pass, uint32_t tile, TileResult& result) {
   std::vector<PixelSamples> left = samplesOfTile(pass, tile);
   std::vector<Path>& paths = result.paths;
