@@ -61,7 +61,9 @@ class Mixture {
     const auto fromMap = choosesMap(u);
     return {fromMap, stretched(u, fromMap)};
   }
-  // The same in two steps, for loops over vertices, which compilers turn into vectors if each is a loop.
+  // The same in two steps, for hosts that choose for many vertices: compilers turn a loop over vertices into
+  // vectors if it takes one of the steps, not if it takes both. The first decides, the second gives the
+  // number that the direction is drawn with.
   ODIS_HOST_DEVICE auto choosesMap(Real u) const { return u >= m_fraction; }
   ODIS_HOST_DEVICE Real stretched(Real u, decltype(Real() > Real()) fromMap) const {
     const Real mapFraction = Real(1) - m_fraction;

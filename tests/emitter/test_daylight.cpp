@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include "render/emitter/sky_dome.h"
 #include "render/emitter/sun_position.h"
 
 using namespace odis::render;
@@ -76,7 +77,9 @@ TEST(Sky, IsBlueAtTheZenithBrightAroundTheSunAndBlackBelow) {
   const Rgb up = sky.radiance(1, zenith, std::cos(zenith)), atSun = sky.radiance(std::cos(zenith), 0, 1);
   EXPECT_GT(up.z, 1.5f * up.x);
   EXPECT_GT(luminance(atSun), 3 * luminance(up));
-  EXPECT_TRUE(isBlack(sky.radiance(-0.01f, 1, std::cos(1.0f))));
+  const SkyDome dome(sky, {std::sin(zenith), std::cos(zenith), 0}, 1, 1, 16, Matrix4());
+  EXPECT_TRUE(isBlack(dome.radiance(normalize(Vec3(1, -0.01f, 0)))));
+  EXPECT_FALSE(isBlack(dome.radiance(normalize(Vec3(1, 0.01f, 0)))));
 }
 
 TEST(Sky, IsFiniteAndNotNegativeEverywhere) {

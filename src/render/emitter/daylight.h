@@ -20,13 +20,9 @@ class Sky {
  public:
   Sky(float turbidity, float sunZenith, const Rgb& albedo);
 
-  // The sky at an angle of this cosine from the zenith, `gamma` radians, at most pi, from the sun; black
-  // below the horizon.
-  Rgb radiance(float cosTheta, float gamma, float cosGamma) const {
-    return cosTheta >= 0 ? radianceAbove(cosTheta, gamma, cosGamma) : Rgb(0, 0, 0);
-  }
-  // The same for a cosine of at least 0, without branches or calls, for loops over lanes.
-  Rgb radianceAbove(float cosTheta, float gamma, float cosGamma) const;
+  // The sky above the horizon: at an angle from the zenith whose cosine is at least 0, `gamma` radians, at
+  // most pi, from the sun. Without branches or calls, so that loops over lanes become vectors.
+  Rgb radiance(float cosTheta, float gamma, float cosGamma) const;
 
  private:
   struct Channel {
@@ -51,7 +47,7 @@ class Sky {
   return std::max(0.0f, share * mean);
 }
 
-[[gnu::always_inline]] inline Rgb Sky::radianceAbove(float cosTheta, float gamma, float cosGamma) const {
+[[gnu::always_inline]] inline Rgb Sky::radiance(float cosTheta, float gamma, float cosGamma) const {
   const float r = m_channels[0].radiance(cosTheta, gamma, cosGamma),
               g = m_channels[1].radiance(cosTheta, gamma, cosGamma),
               b = m_channels[2].radiance(cosTheta, gamma, cosGamma);

@@ -170,7 +170,7 @@ Rgb EnvironmentMap::radiance(const Vec3& wi) const {
 ODIS_WIDE void EnvironmentMap::findDirections(const EnvironmentMap& map, size_t count, const Column& tablePdf,
                                               ImagePlaces& places, Directions& directions) {
   const size_t end = endOfLanes(count);
-  const Matrix4 toWorld = map.m_toWorld;  // copies, which no column can be the same memory as
+  const Matrix4 toWorld = map.m_toWorld;  // a copy: see columns.h
   const float halfColumn = 0.5f / float(map.m_width), determinant = map.m_determinant;
   Column sinThetas;
   for (size_t i = 0; i < end; ++i) {

@@ -49,6 +49,7 @@ class EnvironmentMap final : public EnvironmentEmitter {
     Place operator[](size_t lane) const { return {{u[lane], v[lane]}, sinTheta[lane], stretch[lane]}; }
   };
   static void findPlacesInLanes(const EnvironmentMap& map, size_t count, const Columns3& wi, Places& places);
+  // Those of views; fetches what their densities are found from.
   void findPlaces(std::span<const EnvironmentView> views, Places& places) const;
   // The way back, for samples of the table.
   struct Directions {

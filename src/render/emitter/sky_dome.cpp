@@ -48,12 +48,11 @@ std::vector<Rgb> SkyDome::tabulate(int width, int rows) const {
   const float cosGamma = std::min(std::max(dot(direction, sunDirection), -1.0f), 1.0f);
   // The arc tangent keeps its precision near the sun, where the arc cosine has lost it.
   const float gamma = 2 * kPi * angleInTurns(length(cross(direction, sunDirection)), cosGamma);
-  return sky.radianceAbove(std::max(direction.y, 0.0f), gamma, cosGamma) * scale;
+  return sky.radiance(std::max(direction.y, 0.0f), gamma, cosGamma) * scale;
 }
 
 ODIS_WIDE void SkyDome::findRadiance(const Model& sky, size_t count, const Columns3& wi, Columns3& radiance) {
-  // Which no column can be the same memory as.
-  const Model copy = sky;  // NOLINT(performance-unnecessary-copy-initialization)
+  const Model copy = sky;  // NOLINT(performance-unnecessary-copy-initialization): see columns.h
   const size_t end = endOfLanes(count);
   Columns3 directions;
   for (size_t i = 0; i < end; ++i) directions.set(i, copy.unstretched(wi[i]));
@@ -65,8 +64,10 @@ ODIS_WIDE void SkyDome::findRadiance(const Model& sky, size_t count, const Colum
 }
 
 Rgb SkyDome::radiance(const Vec3& wi) const {
-  const Vec3 direction = m_model.unstretched(wi);
-  return direction.y >= 0 ? m_model.radianceAbove(direction) : Rgb(0, 0, 0);
+  Columns3 directions{}, radiance;
+  directions.set(0, wi);
+  findRadiance(m_model, 1, directions, radiance);
+  return Rgb(radiance[0]);
 }
 
 void SkyDome::view(std::span<EnvironmentView> views) const {

@@ -35,10 +35,10 @@ class SkyDome final : public EnvironmentEmitter {
 
     // A direction of the world in the sky's space, before the sky is stretched.
     Vec3 unstretched(const Vec3& wi) const;
-    // The radiance from a direction of that space, if it is not below the horizon.
+    // The radiance from a direction of that space, as if those below the horizon lay on it.
     Rgb radianceAbove(const Vec3& direction) const;
   };
-  // The radiance from the first `count` directions of the world.
+  // The radiance from the first `count` directions of the world, black below the horizon.
   static void findRadiance(const Model& sky, size_t count, const Columns3& wi, Columns3& radiance);
   std::vector<Rgb> tabulate(int width, int rows) const;
 

@@ -53,7 +53,8 @@ struct LightEstimates {
   Column guidablePdf;           // and the part of it that may be guided
   IntColumn group;              // of lights that the light was drawn from
   Column groupProbability;      // of that group
-  IntColumn texel;              // of the map there that wi falls into
+  LaneList inMaps;              // lit vertices whose map gives the density of wi, for the MIS weight
+  IntColumn texel;              // theirs: that wi falls into
   Columns3 direct;              // the radiance with the MIS weight
   Column shadowRayProbability;  // with which the shadow ray was traced; 0: it was not
 };

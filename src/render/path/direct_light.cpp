@@ -164,24 +164,21 @@ ODIS_WIDE void estimateRadiance(Bounces& bounces, IntColumn& lit) {
   }
 }
 
-// Of paths that are lit, those whose map is asked for the density of the light's direction.
-LaneList lightsInMaps(const LaneList& lit, const Bounces& bounces) {
-  LaneList lanes;
-  for (const size_t i : lit) {
-    const float pdf = bounces.light.pdf[i];
-    const int32_t hasMap = bounces.bsdfs.hasMap[i];
-    lanes.addIf((pdf > 0) & (hasMap != 0), i);
-  }
-  return lanes;
-}
-
-// Finds the texels of lights' directions, which are fetched while other steps are taken.
+// Finds the vertices whose maps are asked for the density of the light's direction, and the texels of these
+// directions, which are fetched while other steps are taken.
 void fetchTexels(const LaneList& lit, Bounces& bounces) {
-  const LaneList inMaps = lightsInMaps(lit, bounces);
+  LightEstimates& light = bounces.light;
+  light.inMaps.count = 0;
+  for (const size_t i : lit) {
+    const float pdf = light.pdf[i];
+    const int32_t hasMap = bounces.bsdfs.hasMap[i];
+    light.inMaps.addIf((pdf > 0) & (hasMap != 0), i);
+  }
   MapLookUps lookUps;
-  for (const size_t i : inMaps) lookUps.add(bounces.bsdfs.maps[i], bounces.light.wi[i]);
+  for (const size_t i : light.inMaps) lookUps.add(bounces.bsdfs.maps[i], light.wi[i]);
   findTexels(lookUps);
-  for (size_t k = 0; k < inMaps.count; ++k) bounces.light.texel[inMaps.lanes[k]] = lookUps.texels[k];
+  const uint8_t* lanes = light.inMaps.lanes;
+  for (size_t k = 0; k < lookUps.count; ++k) light.texel[lanes[k]] = lookUps.texels[k];
 }
 
 }  // namespace
@@ -223,12 +220,12 @@ ODIS_WIDE void weigh(Bounces& bounces, const Column& mapPdf) {
 
 void weighLights(Bounces& bounces, const LaneList& lit) {
   if (lit.empty()) return;
-  const LaneList inMaps = lightsInMaps(lit, bounces);
+  const LaneList& inMaps = bounces.light.inMaps;
   MapLookUps lookUps;
   for (const size_t i : inMaps) lookUps.add(bounces.bsdfs.maps[i], bounces.light.texel[i]);
   findPdfs(lookUps);
   Column mapPdf{};
-  for (size_t k = 0; k < inMaps.count; ++k) mapPdf[inMaps.lanes[k]] = lookUps.pdf[k];
+  for (size_t k = 0; k < lookUps.count; ++k) mapPdf[inMaps.lanes[k]] = lookUps.pdf[k];
   for (const size_t i : lit)
     if (const DirectionSampler* rival = bounces.bsdfs.rivals[i]) mapPdf[i] = rival->pdf(bounces.light.wi[i]);
   weigh(bounces, mapPdf);

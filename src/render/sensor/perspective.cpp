@@ -13,7 +13,7 @@ Projection::Projection(double fov, const Vec2i& resolution, const Vec2& principa
 
 ODIS_WIDE void Perspective::findRays(const Pinhole& camera, size_t count, const CameraPlaces& places,
                                      CameraRays& rays) {
-  const Pinhole copy = camera;  // which no column can be the same memory as
+  const Pinhole copy = camera;  // NOLINT(performance-unnecessary-copy-initialization): see columns.h
   for (size_t i = 0, end = endOfLanes(count); i < end; ++i) rays.set(i, copy.through(places.film(i)));
 }
 
