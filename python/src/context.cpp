@@ -16,7 +16,12 @@ void tellLogger(void*, OdisLogLevel level, const char* message) {
     const nb::object logger = nb::module_::import_("logging").attr("getLogger")("odis");
     logger.attr(level == ODIS_LOG_WARNING ? "warning" : "info")("%s", message);
   } catch (nb::python_error& error) {
-    error.discard_as_unraisable("a message of odis");
+    // Ctrl-C while the logger was called: no exception gets through the library, but the signal comes again
+    // and stops the call that the message is from, or what follows it.
+    if (error.matches(PyExc_KeyboardInterrupt))
+      PyErr_SetInterrupt();
+    else
+      error.discard_as_unraisable("a message of odis");
   }
 }
 

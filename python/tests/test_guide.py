@@ -1,6 +1,7 @@
 """Guides: the same bits as in C++, whatever arrays the vertices lie in; arrays that outlive their guide."""
 
 import gc
+import logging
 import os
 import signal
 import tempfile
@@ -249,6 +250,23 @@ class Threads(unittest.TestCase):
             builder.build(fields)
             other.join()
         self.assertGreater(len(builder.build(fields)), 0)
+
+    def test_ctrl_c_while_logging(self):
+        """A signal that arrives while a message is logged is not lost."""
+        class Interrupted(logging.Handler):
+            def emit(self, record):
+                raise KeyboardInterrupt
+
+        logger, handler = logging.getLogger("odis"), Interrupted()
+        self.addCleanup(signal.signal, signal.SIGINT, signal.signal(signal.SIGINT, signal.default_int_handler))
+        self.addCleanup(logger.setLevel, logger.level)
+        self.addCleanup(logger.removeHandler, handler)
+        logger.setLevel(logging.INFO)
+        logger.addHandler(handler)
+        builder = odis.GuideBuilder()
+        with self.assertRaises(KeyboardInterrupt):
+            builder.build(made_up.vertices(2000))
+            self.fail("the signal did not come again")
 
 
 if __name__ == "__main__":

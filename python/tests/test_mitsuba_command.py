@@ -209,7 +209,7 @@ class Command(InFolder):
                                 stderr=subprocess.PIPE, text=True, preexec_fn=heed)
         self.assertIn("0 %", long.stderr.readline())
         long.send_signal(signal.SIGINT)
-        self.assertIn("interrupted", long.communicate(timeout=300)[1])
+        self.assertIn("interrupted", long.communicate(timeout=50)[1])
         self.assertEqual(long.returncode, 130)
         self.assertEqual(sorted(file.name for file in self.folder.iterdir()), ["link", "scene.xml", "shown"])
 
