@@ -1,7 +1,7 @@
 // Numbers of several paths side by side. Loops over lanes that call short functions without branches become
-// vector instructions where they are compiled for them (ODIS_WIDE). Parameters that come by reference are
-// copied before such a loop: compilers have to assume that writing a column may change what a reference leads
-// to, and leave loops as they are where too much would have to be checked for that.
+// vector instructions where they are compiled for them (ODIS_WIDE). Where many parameters come by reference,
+// they are copied before the loop: compilers have to assume that writing a column may change what a reference
+// leads to, and leave the loop as it is if too much would have to be checked for that.
 #pragma once
 
 #include <xmmintrin.h>
@@ -15,7 +15,7 @@ namespace odis::render {
 
 // How many paths lie side by side. The steps of a bounce have more instructions than the first-level cache
 // holds, and each group of paths fetches them from the second-level cache again: larger groups do so less
-// often. The columns of 64 paths take 48 KiB; those of 128 are slower.
+// often. The columns of 64 paths take 48 KiB; 128 paths were slower.
 inline constexpr size_t kLanes = 64;
 
 // The end of a loop over the first `count` lanes: the next multiple of eight, so that vectors are full.
