@@ -161,6 +161,27 @@ TEST_P(Extreme, CameraInsideAnObject) {
   EXPECT_NEAR(meanOf(render(*loadScene(kCamera + glass + kSky), 256)), 1, 0.02);
 }
 
+// From within a ball whose BSDF is one-sided all is black, however flat the view is and however rough the
+// surface; the sky lies outside.
+TEST_P(Extreme, OneSidedFromBehind) {
+  const std::string flatViews =
+      test::sensor("origin=\"0,0,99.9\" target=\"1,0,99.9\" up=\"0,1,0\"", 150, 16, 16);
+  const auto ball = [](const std::string& type, const std::string& parameters) {
+    return "<shape type=\"sphere\"><float name=\"radius\" value=\"100\"/><bsdf type=\"" + type + "\">" +
+           parameters + "</bsdf></shape>";
+  };
+  for (const char* type : {"diffuse", "conductor", "plastic", "phong", "ward", "pplastic", "roughdiffuse"})
+    EXPECT_EQ(meanOf(render(*loadScene(flatViews + ball(type, "") + kSky), 4)), 0) << type;
+  for (const char* type : {"roughplastic", "roughconductor"})
+    for (const char* facets : {"beckmann", "ggx"})
+      for (const double alpha : {0.02, 0.1, 0.25, 0.5, 1.0}) {
+        const std::string parameters = "<string name=\"distribution\" value=\"" + std::string(facets) +
+                                       "\"/><float name=\"alpha\" value=\"" + text(alpha) + "\"/>";
+        EXPECT_EQ(meanOf(render(*loadScene(flatViews + ball(type, parameters) + kSky), 4)), 0)
+            << type << ' ' << parameters;
+      }
+}
+
 // A light without extent lights nothing and does no harm, whatever form it has.
 TEST_P(Extreme, LightsWithoutArea) {
   const test::TemporaryFolder folder;

@@ -61,7 +61,8 @@ struct BsdfSide {
   const FacetedBsdf* faceted = nullptr;       // of one with facets: what it is, seen from the front
   float side = 0;
 
-  bool scatters(const Vec3& wo) const { return side != 0 && std::abs(wo.z) > 0; }
+  // Neither the other side nor edge-on, nor a direction that is not a number.
+  bool scatters(const Vec3& wo) const { return side * wo.z > 0; }
 };
 
 // Static properties, fixed at construction.

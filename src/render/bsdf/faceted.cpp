@@ -10,7 +10,7 @@ namespace odis::render {
 FacetedBsdf::FacetedBsdf(Microfacet::Type type, bool sampleVisible)
     : m_type(type), m_sampleVisible(sampleVisible) {
   if (!sampleVisible) return;
-  for (BsdfSide& side : m_sides) side = {.faceted = this, .side = 1};
+  m_sides[0] = {.faceted = this, .side = 1};
 }
 
 BsdfSample FacetedBsdf::sample(const SurfacePoint& at, const Vec3& wo, float uLobe, const Vec2& u) const {

@@ -11,9 +11,10 @@ class RoughTransmittance {
  public:
   RoughTransmittance(Microfacet::Type type, float alpha, float eta);
 
-  // Share of the light from outside at this cosine (>= 0) that enters; linear between 64 nodes.
+  // Share of the light from outside at this cosine (0 if it is not a number) that enters; linear between 64
+  // nodes.
   float external(float cosTheta) const {
-    const float x = std::clamp(cosTheta, 0.0f, 1.0f) * (kNodes - 1);
+    const float x = std::min(std::max(0.0f, cosTheta), 1.0f) * (kNodes - 1);
     const int i = std::min(int(x), kNodes - 2);
     return lerp(x - float(i), m_external[i], m_external[i + 1]);
   }

@@ -14,7 +14,7 @@ void findGuidableLobes(const PathSettings& settings, const Batch& batch, Bounces
     if (at.isDiffuse[i]) {
       at.guidable[i] = at.side[i] != 0 ? 1.0f : 0.0f;
     } else if (at.isFaceted[i]) {
-      at.guidable[i] = at.side[i] * at.wo.z[i] > 0 ? at.faceted[i].guidable() : 0.0f;
+      at.guidable[i] = at.faceted[i].guidable();
     } else {
       const Vertex& vertex = *bounces.arrivals[i].vertex;
       at.guidable[i] = at.bsdfs[i]->guidableProbability(vertex.at, vertex.wo);

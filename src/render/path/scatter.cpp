@@ -42,12 +42,12 @@ void readSurfaces(Bounces& bounces) {
     at.bsdfs[i] = &bsdf;
     const BsdfSide& side = bsdf.side(vertex.wo);
     at.isDiffuse[i] = side.reflectance != nullptr;
-    at.isFaceted[i] = side.faceted != nullptr;
-    at.side[i] = side.side;
+    // Facets that are seen from behind can't be sampled: virtual calls say that those are black.
+    at.isFaceted[i] = side.faceted && side.scatters(vertex.wo);
+    at.side[i] = side.scatters(vertex.wo) ? side.side : 0.0f;
     if (side.reflectance) {
       at.reflectance.set(i, (*side.reflectance)(vertex.at));
-      at.side[i] = side.scatters(vertex.wo) ? side.side : 0.0f;
-    } else if (side.faceted) {
+    } else if (at.isFaceted[i]) {
       at.faceted.set(i, side.faceted->surface(vertex.at, side.side * vertex.wo.z));
       at.facetedLanes.addIf(true, i);
     }
