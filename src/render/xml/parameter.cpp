@@ -20,8 +20,9 @@ float decodeSrgb(float x) {
 SpectrumUse useOf(bool inEmitter, const XmlElement& e) {
   if (inEmitter) return SpectrumUse::emission;
   const std::string name = snakeCase(e.require("name"));
-  const bool index = name == "eta" || name == "k" || name == "int_ior" || name == "ext_ior";
-  return index ? SpectrumUse::index : SpectrumUse::reflectance;
+  static const std::set<std::string> unbounded = {"alpha",   "alpha_u", "alpha_v", "delta",   "eta",
+                                                  "ext_ior", "int_ior", "k",       "sigma_a", "theta"};
+  return unbounded.count(name) > 0 ? SpectrumUse::unbounded : SpectrumUse::reflectance;
 }
 
 // "5000" or "5000K".
@@ -54,6 +55,24 @@ bool canMove(const Properties& owner) {
   if (owner.tag == "sensor") return true;
   static const std::set<std::string> emitters = {"directional", "envmap", "point", "projector", "spot"};
   return owner.tag == "emitter" && emitters.count(owner.type) > 0;
+}
+
+// D65 that lights a texture is the texture in RGB, and Mitsuba 3 does without its scale.
+void becomeItsTexture(Properties& d65, Warnings& warnings) {
+  const auto scale = d65.parameters.find("scale");
+  if (scale != d65.parameters.end()) {
+    warnings.add(scale->second.location,
+                 "'scale' of the spectrum 'd65' has no effect beside a texture, as in Mitsuba 3",
+                 Effect::same);
+    d65.parameters.erase(scale);
+  }
+  d65.type = "scale";
+}
+
+void warnOfUnknown(const Properties& spectrum, Warnings& warnings) {
+  for (const auto& [name, location] : spectrum.unqueried())
+    warnings.add(location, "unknown parameter '" + name + "' of the spectrum '" + spectrum.type +
+                               "' is ignored" + spectrum.suggestionFor(name));
 }
 
 }  // namespace
@@ -180,10 +199,16 @@ bool XmlParser::parseSpectrumObject(const Place& place, const pugi::xml_node& no
   if (e.tag == "texture" && !isColor) return false;
   e.allow({"name", "type", "id"});
   const std::shared_ptr<Properties> object = parseObject(place, node, e);
-  if (isColor)
+  if (object->type == "d65" && !object->children.empty()) becomeItsTexture(*object, m_warnings);
+  if (isSpectrumType(object->type)) {
+    if (!object->children.empty())
+      throw SceneError(e.at, "found an element inside of the spectrum '" + object->type +
+                                 "', expected nothing but its parameters");
     addParameter(owner, e, spectrumObject(*object, useOf(place.emitter, e)));
-  else
+    warnOfUnknown(*object, m_warnings);
+  } else {
     addObject(owner, e, object, "texture");
+  }
   return true;
 }
 
@@ -198,9 +223,7 @@ PropertyValue XmlParser::parseSpectrumValue(const Place& place, const XmlElement
   if (v.size() != 1)
     throw SceneError(e.at,
                      "found '" + text + "' in <spectrum>, expected one number or wavelength:value pairs");
-  // Light that is the same at all wavelengths is not the white of RGB images; Mitsuba 3 shows it as it is,
-  // too.
-  if (place.emitter) return Rgb(spectrumToRgb({{360, 1}, {830, 1}}, use) * float(v[0]));
+  if (place.emitter) return uniformEmission(v[0]);
   return v[0];
 }
 

@@ -175,7 +175,9 @@ std::shared_ptr<Properties> XmlParser::parseObject(const Place& place, const pug
   if (e.has("id")) object->id = e.require("id");
   object->location = e.at;
   object->before2 = m_before2;
-  parseChildren({place.file, place.depth + 1, place.emitter || e.tag == "emitter"}, node, *object);
+  // The spectra of textures are those of what reflects, wherever the texture is.
+  const bool emits = e.tag == "emitter" || (place.emitter && e.tag == "spectrum");
+  parseChildren({place.file, place.depth + 1, emits}, node, *object);
   return object;
 }
 

@@ -3,50 +3,49 @@
 #include <sstream>
 
 #include "render/files/input_file.h"
+#include "render/xml/cie_tables.h"
 #include "render/xml/element.h"
 
 namespace odis::render {
 namespace {
 
-constexpr double kMinWavelength = 360, kMaxWavelength = 830;
+// Mitsuba's constants: they give spectra that are 1 everywhere, and D65, the luminance 1.
+constexpr double kMatchingIntegral = 106.7502593994140625, kD65Integral = 98.99741751876255;
 
-// CIE standard illuminant D65, every 10 nm from 360 nm.
-constexpr double kD65[] = {46.6383, 52.0891, 49.9755, 54.6482, 82.7549, 91.4860, 93.4318, 86.6823,
-                           104.865, 117.008, 117.812, 114.861, 115.923, 108.811, 109.354, 107.802,
-                           104.790, 107.689, 104.405, 104.046, 100.000, 96.3342, 95.7880, 88.6856,
-                           90.0062, 89.5991, 87.6987, 83.2886, 83.6992, 80.0268, 80.2146, 82.2778,
-                           78.2842, 69.7213, 71.6091, 74.3490, 61.6040, 69.8856, 75.0870, 63.5927,
-                           46.4182, 66.8054, 63.3828, 64.3040, 59.4519, 51.9590, 57.4406, 60.3125};
+// The entries of a table of even steps over the range of wavelengths that `position`, 0 to 1, lies between.
+struct TablePosition {
+  TablePosition(double position, size_t entries)
+      : index(std::min(size_t(position * double(entries - 1)), entries - 2)),
+        fraction(position * double(entries - 1) - double(index)) {}
+  double between(double a, double b) const { return a + fraction * (b - a); }
 
-double d65(double wavelength) {
-  const double x = (wavelength - kMinWavelength) / 10;
-  const int i = std::clamp(int(x), 0, int(std::size(kD65)) - 2);
-  return kD65[i] + (x - i) * (kD65[i + 1] - kD65[i]);
+  size_t index;
+  double fraction;
+};
+
+Imath::V3d matching(double position) {
+  const TablePosition at(position, std::size(kMatching));
+  const double *a = kMatching[at.index], *b = kMatching[at.index + 1];
+  return {at.between(a[0], b[0]), at.between(a[1], b[1]), at.between(a[2], b[2])};
 }
 
-double lobe(double wavelength, double center, double below, double above) {
-  const double x = (wavelength - center) / (wavelength < center ? below : above);
-  return std::exp(-0.5 * x * x);
+double d65(double position) {
+  const TablePosition at(position, std::size(kD65));
+  return at.between(kD65[at.index], kD65[at.index + 1]) / kD65Integral;
 }
 
-Imath::V3d matching(double w) {
-  return {1.056 * lobe(w, 599.8, 37.9, 31.0) + 0.362 * lobe(w, 442.0, 16.0, 26.7) -
-              0.065 * lobe(w, 501.1, 20.4, 26.2),
-          0.821 * lobe(w, 568.8, 46.9, 40.5) + 0.286 * lobe(w, 530.9, 16.3, 31.1),
-          1.217 * lobe(w, 437.0, 11.8, 36.0) + 0.681 * lobe(w, 459.0, 26.0, 13.8)};
-}
-
-// The integral of value * matching functions over the visible range, midpoint rule.
+// The integral of a function of the wavelength times the matching functions, and D65 if it lights; by the sum
+// that Mitsuba makes, so that spectra of narrow bands get its colours, too.
 template <class Function>
-Imath::V3d integrate(Function&& value) {
-  constexpr int steps = 940;
-  const double step = (kMaxWavelength - kMinWavelength) / steps;
+Imath::V3d integrate(Function&& value, bool lit) {
+  constexpr int steps = 1000;
   Imath::V3d sum(0.0);
   for (int i = 0; i < steps; ++i) {
-    const double wavelength = kMinWavelength + (i + 0.5) * step;
-    sum += matching(wavelength) * value(wavelength) * step;
+    const double position = double(i) / (steps - 1);
+    const double wavelength = kMinWavelength + position * (kMaxWavelength - kMinWavelength);
+    sum += matching(position) * value(wavelength) * (lit ? d65(position) : 1);
   }
-  return sum;
+  return sum * (kMaxWavelength - kMinWavelength) / (steps * kMatchingIntegral);
 }
 
 Imath::V3d xyzToRgb(const Imath::V3d& c) {
@@ -70,26 +69,22 @@ Rgb bounded(const Imath::V3d& color, double maximum) {
 }  // namespace
 
 Rgb spectrumToRgb(const std::vector<SpectrumSample>& samples, SpectrumUse use) {
-  constexpr double most = std::numeric_limits<float>::max();
-  if (use == SpectrumUse::emission) {
-    const double norm = integrate([](double) { return 1.0; }).y;
-    return bounded(xyzToRgb(integrate([&](double w) { return interpolate(samples, w); }) / norm), most);
-  }
-  // Divided by the colour of perfect white, so that the small errors of the fit don't tint a grey.
-  const Imath::V3d white = xyzToRgb(integrate(d65));
-  const Imath::V3d color = xyzToRgb(integrate([&](double w) { return d65(w) * interpolate(samples, w); }));
-  return bounded({color.x / white.x, color.y / white.y, color.z / white.z},
-                 use == SpectrumUse::reflectance ? 1 : most);
+  const auto value = [&](double wavelength) { return interpolate(samples, wavelength); };
+  return bounded(xyzToRgb(integrate(value, use != SpectrumUse::emission)),
+                 use == SpectrumUse::reflectance ? 1 : std::numeric_limits<float>::max());
+}
+
+Rgb uniformEmission(double value) {
+  return Rgb(bounded(xyzToRgb({1, 1, 1}), std::numeric_limits<float>::max()) * float(value));
 }
 
 Rgb blackbodyToRgb(double kelvin) {
   constexpr double h = 6.62607015e-34, c = 299792458, k = 1.380649e-23;
-  const double norm = integrate([](double) { return 1.0; }).y;
   const auto planck = [&](double nanometres) {
     const double w = nanometres * 1e-9;
     return 2 * h * c * c / (std::pow(w, 5) * std::expm1(h * c / (w * k * kelvin))) * 1e-9;
   };
-  return bounded(xyzToRgb(integrate(planck) / norm), std::numeric_limits<float>::max());
+  return bounded(xyzToRgb(integrate(planck, false)), std::numeric_limits<float>::max());
 }
 
 std::vector<SpectrumSample> parseSpectrum(const std::string& text, const SourceLocation& at) {

@@ -1,5 +1,5 @@
-// Spectra turned into linear RGB (Rec. 709 primaries). The colour matching functions are the analytic fit of
-// Wyman, Sloan and Shirley 2013, "Simple Analytic Approximations to the CIE XYZ Color Matching Functions".
+// Spectra turned into linear RGB (Rec. 709 primaries) by the CIE 1931 observer, as Mitsuba 3 does in its RGB
+// variants.
 #pragma once
 
 #include <string>
@@ -15,16 +15,17 @@ struct SpectrumSample {
   double value;
 };
 
-// As Mitsuba 3 does in its RGB modes: what reflects is lit by D65, and white is (1, 1, 1); what emits is seen
-// as it is.
+// What reflects is lit by D65, whose colour is white but for 0.0012; what emits is seen as it is.
 enum class SpectrumUse {
   reflectance,  // clamped to [0, 1]
-  index,        // of refraction: not bounded above
+  unbounded,    // the same, not bounded above: indices of refraction, absorption
   emission,     // radiance per nm; a flat spectrum of 1 has luminance 1
 };
 
 // Samples in rising order of wavelength, linear in between, zero outside. Negative channels become 0.
 Rgb spectrumToRgb(const std::vector<SpectrumSample>& samples, SpectrumUse use);
+// Of light of this radiance at all wavelengths, which is reddish beside the white of RGB images.
+Rgb uniformEmission(double value);
 // Planck's law in W / (m^2 sr nm).
 Rgb blackbodyToRgb(double kelvin);
 // "400:0.1, 500:0.2, ..."

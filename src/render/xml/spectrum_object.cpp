@@ -28,7 +28,11 @@ PropertyValue spectrumObject(const Properties& node, SpectrumUse use) {
   // What the colour is used for says what it may be.
   const NumberRange& any = kAnyNumber;
   const float scale = node.number("scale", any, 1.0f);
-  if (node.type == "uniform") return double(node.number("value", any, 1.0f)) * scale;
+  if (node.type == "uniform") {
+    // Its range of wavelengths changes nothing of a colour.
+    for (const char* end : {"wavelength_min", "wavelength_max"}) node.optionalNumber(end, any);
+    return double(node.number("value", any, 1.0f)) * scale;
+  }
   if (node.type == "d65") return Rgb(node.color("color", any, node.color("value", any, Rgb(1.0f))) * scale);
   if (node.type == "srgb") return Rgb(node.color("color", any) * scale);
   if (node.type == "blackbody") return Rgb(blackbodyToRgb(node.number("temperature", kTemperatures)) * scale);
