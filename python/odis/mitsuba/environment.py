@@ -15,7 +15,9 @@ REGIONS = 16  # a power of two
 LEAST_SIDE, MOST_SIDE = 128, 1024
 POINTS = 1 << 22  # at which the radiance is asked for, about
 UNIFORM = 0.01  # share of the directions that are uniform, so that every region has some
-SUN_MARGIN = 1.02  # of the cone that samples the sun: rounding at its border then does not cut the sun off
+# By how much 1 - cosine of an angle is off in single precision, some ulps of 1. Mitsuba's `eval` sees the sun where that
+# of the angle to its centre says so, within a disk that is some .5 % larger or smaller than the one it samples.
+ROUNDING = 2.5e-7
 
 
 @dataclass
@@ -24,7 +26,7 @@ class Sun:
     small, which rounding would spoil otherwise."""
 
     axis: object  # Vector3f, unit, in the world
-    height: object  # Float: 1 - cosine of the half angle
+    height: object  # Float: 1 - cosine of the half angle, as Mitsuba samples it
     density: object  # Float: of uniform directions in the cone, over solid angle
 
     def sample(self, u):
@@ -34,7 +36,15 @@ class Sun:
         return dr.normalize(mi.Frame3f(self.axis).to_world(mi.Vector3f(cos_phi * sine, sin_phi * sine, 1 - below)))
 
     def contains(self, direction):
-        return dr.squared_norm(direction - self.axis) <= 2 * self.height
+        """Whether a direction is, or may by rounding be taken for one, of the cone."""
+        return dr.squared_norm(direction - self.axis) <= 2 * (self.height + ROUNDING)
+
+    def seen(self, direction):
+        """A direction of the cone, away from the border, where `eval` may not see the sun; others as they are."""
+        offset = direction - self.axis
+        most = 2 * dr.maximum(self.height - ROUNDING, 0)
+        shrink = dr.minimum(1, dr.sqrt(most / dr.maximum(dr.squared_norm(offset), 1e-30)))
+        return dr.select(self.contains(direction), dr.normalize(self.axis + offset * shrink), direction)
 
 
 @dataclass
@@ -91,6 +101,8 @@ class Environment:
 
     def radiance(self, si, direction, active):
         """What arrives at an interaction from a direction, if nothing hides it."""
+        if self.sun is not None:
+            direction = self.sun.seen(direction)
         seen = dr.zeros(mi.SurfaceInteraction3f)
         seen.wi, seen.wavelengths, seen.time = -direction, si.wavelengths, si.time
         return self.emitter.eval(seen, active)
@@ -114,7 +126,7 @@ def luminance_of(emitter, direction):
 
 
 def find_sun(emitter):
-    """The cone of the sun of `sunsky`; None of other emitters, and where it does not shine."""
+    """The cone of the sun of `sunsky`; None of other emitters, and where it does not shine: too small a sun does not."""
     if emitter.class_name() != "SunskyEmitter":
         return None
     parameters = mi.traverse(emitter)
@@ -122,7 +134,9 @@ def find_sun(emitter):
     if aperture is None or parameters["sun_scale"] <= 0:
         return None
     axis = np.array(parameters["sun_direction"], np.float64).ravel()
-    height = 2 * np.sin(np.radians(float(aperture[1])) * SUN_MARGIN / 4) ** 2
+    height = 1 - float(np.float32(np.cos(np.radians(float(aperture[1])) / 2)))
+    if height <= 0:
+        return None
     return Sun(mi.Vector3f(*map(float, axis / np.linalg.norm(axis))), mi.Float(height),
                mi.Float(1 / (2 * np.pi * height)))
 
@@ -153,14 +167,13 @@ def split_regions(weights, count):
     regions = np.zeros(weights.shape, np.uint32)
     boxes = [(0, weights.shape[0], 0, weights.shape[1])]
     while len(boxes) < count:
-        halves = []
-        for top, bottom, left, right in boxes:
-            along_rows = bottom - top >= right - left
-            sums = np.cumsum(weights[top:bottom, left:right].sum(axis=1 if along_rows else 0))
-            at = int(np.clip(np.searchsorted(sums, sums[-1] / 2) + 1, 1, sums.size - 1))
-            halves += [(top, top + at, left, right), (top + at, bottom, left, right)] if along_rows else \
-                [(top, bottom, left, left + at), (top, bottom, left + at, right)]
-        boxes = halves
+        # The first one that is more than a texel, so that no region is empty.
+        top, bottom, left, right = boxes.pop(next(i for i, b in enumerate(boxes) if (b[1] - b[0]) * (b[3] - b[2]) > 1))
+        along_rows = bottom - top >= right - left
+        sums = np.cumsum(weights[top:bottom, left:right].sum(axis=1 if along_rows else 0))
+        at = int(np.clip(np.searchsorted(sums, sums[-1] / 2) + 1, 1, sums.size - 1))
+        boxes += [(top, top + at, left, right), (top + at, bottom, left, right)] if along_rows else \
+            [(top, bottom, left, left + at), (top, bottom, left + at, right)]
     for region, (top, bottom, left, right) in enumerate(boxes):
         regions[top:bottom, left:right] = region
     return regions

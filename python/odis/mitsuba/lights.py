@@ -10,6 +10,7 @@ import odis
 
 from .arrays import array_of
 from .environment import REGIONS, make_environment
+from .uneven_lights import is_uneven
 
 MOST_GROUPS = 32
 
@@ -26,6 +27,7 @@ class LightTable:
     cdf: object  # Float, [places + 1]: sums of that
     group_begin: object  # UInt32, [groups + 1]: first place of a group
     place: object  # UInt32, by number in Dr.Jit's registry
+    uneven: object  # Bool, by place: weighed as `path` does; None where no emitter is (uneven_lights.py)
     count: int  # of emitters
     groups: int  # that are learned about; 0 where there is nothing to choose
 
@@ -107,10 +109,13 @@ class LightTable:
             of_emitter &= ~far
             pdf = self.environment_pdf(tables, cell, fraction, met.d, far)
         if self.count > self.regions:
-            place = dr.gather(mi.UInt32, self.place, dr.reinterpret_array(mi.UInt32, met.emitter), of_emitter)
+            place = self.place_of(met.emitter, of_emitter)
             pdf = dr.select(of_emitter, met.emitter.pdf_direction(reference, met, of_emitter)
                             * self.probability(tables, cell, fraction, place, of_emitter), pdf)
         return pdf
+
+    def place_of(self, emitter, active):
+        return dr.gather(mi.UInt32, self.place, dr.reinterpret_array(mi.UInt32, emitter), active)
 
     def environment_pdf(self, tables, cell, fraction, direction, active):
         region, density = self.environment.region_and_density(direction, active)
@@ -189,13 +194,14 @@ def make_light_table(scene):
     place = np.zeros(int(numbers.max()) + 1, np.uint32)
     place[numbers] = np.arange(len(numbers))
     begin = np.cumsum([0] + [len(members) for members in groups])
+    uneven = np.array([is_uneven(emitter) for emitter in emitters] or [False])[order]
     whole = lambda values: array_of(mi.UInt32, np.asarray(values, np.uint32))
     real = lambda values: array_of(mi.Float, np.asarray(values, np.float32))
     table = LightTable(
         environment=environment, emitters=dr.reinterpret_array(mi.EmitterPtr, mi.UInt32(numbers)),
         group=whole(np.repeat(np.arange(len(groups)), np.diff(begin)).tolist() + [0] * (len(order) - begin[-1])),
         probabilities=real(probabilities), cdf=real(np.concatenate([[0], np.cumsum(probabilities)])),
-        group_begin=whole(begin), place=whole(place),
+        group_begin=whole(begin), place=whole(place), uneven=array_of(mi.Bool, uneven) if uneven.any() else None,
         count=len(order), groups=len(groups) if len(groups) > 1 else 0)
     dr.make_opaque(table)
     return table

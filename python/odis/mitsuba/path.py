@@ -68,6 +68,19 @@ def power_heuristic(pdf, other):
     return dr.select(pdf > 0, 1 / (1 + ratio * ratio), 0)
 
 
+def weight_of_met(lights, mis, bsdf_pdf, previous, met, active):
+    """The weight of light that was met: `mis`, or as `path` has it where the light is uneven (uneven_lights.py)."""
+    plain = lights.pdf(None, None, None, previous, met, active)
+    uneven = dr.gather(mi.Bool, lights.uneven, lights.place_of(met.emitter, active), active)
+    return dr.select(uneven, power_heuristic(bsdf_pdf, plain), mis)
+
+
+def weight_toward(lights, mis, place, choice, pdf, bsdf_pdf, active):
+    """The same of light that was sampled, with the density pdf that has the choice of its place in it."""
+    plain = pdf / choice * dr.gather(mi.Float, lights.probabilities, place, active)
+    return dr.select(dr.gather(mi.Bool, lights.uneven, place, active), power_heuristic(plain, bsdf_pdf), mis)
+
+
 def to_rgb(spectrum, wavelengths):
     """The colour, linear with the primaries of sRGB, that a sample of radiance adds."""
     if mi.is_spectral:
@@ -117,7 +130,8 @@ def trace(scene, camera, settings, known, tables, recorder, samples):
     known: SceneTables. tables: GuideTables or None. recorder: Recorder or None. samples: Samples.
     """
     lights = known.lights
-    sees_environment = not settings.hide_emitters and scene.environment() is not None
+    sees_anything = settings.max_depth != 0
+    sees_environment = sees_anything and not settings.hide_emitters and scene.environment() is not None
 
     index = mi.UInt32(samples.lane)
     under_way = mi.Bool(False)  # a path is
@@ -128,7 +142,7 @@ def trace(scene, camera, settings, known, tables, recorder, samples):
     depth, rays, valid = mi.UInt32(0), mi.UInt32(0), mi.Bool(False)
     # Of the vertex before.
     previous_p, previous_n = mi.Point3f(0), mi.Normal3f(0)
-    previous_pdf, previous_delta = mi.Float(1), mi.Bool(True)
+    previous_pdf, previous_bsdf_pdf, previous_delta = mi.Float(1), mi.Float(1), mi.Bool(True)
     previous_cell, previous_fraction = mi.UInt32(odis.NO_CELL), mi.Float(0)
     row, recorded = mi.UInt32(recording.NO_ROW), mi.Bool(False)
     # How many vertices before had lobes that may be guided: the first ones have maps at pixels.
@@ -173,6 +187,8 @@ def trace(scene, camera, settings, known, tables, recorder, samples):
         weighed = lit & ~previous_delta
         light_pdf = lights.pdf(tables, previous_cell, previous_fraction, previous, met, weighed)
         mis = dr.select(weighed, power_heuristic(previous_pdf, light_pdf), 1)
+        if dr.hint(lights.uneven is not None, mode="scalar"):
+            mis = weight_of_met(lights, mis, previous_bsdf_pdf, previous, met, weighed)
         radiance += dr.select(lit, throughput * emitted * mis, 0)
         if dr.hint(recorder is not None, mode="scalar"):
             had_row = active & (row != recording.NO_ROW)
@@ -180,10 +196,11 @@ def trace(scene, camera, settings, known, tables, recorder, samples):
             recording.write(recorder, row, 5, [color.x, color.y, color.z, mis, light_pdf,
                                                dr.select(si.is_valid(), si.t, dr.inf)], had_row)
 
-        active = active & si.is_valid() & ~passes
+        arrived = active & si.is_valid() & ~passes & sees_anything
+        active = mi.Bool(arrived)
         if dr.hint(settings.max_depth >= 0, mode="scalar"):
             active &= depth + 1 < settings.max_depth
-        flags, roughness = material_at(known.materials, bsdf, active)
+        flags, roughness = material_at(known.materials, bsdf, arrived)
         normal = mi.Vector3f(dr.mulsign(si.sh_frame.n, si.wi.z))
         both_sides = (flags & BOTH_SIDES) != 0
 
@@ -221,7 +238,7 @@ def trace(scene, camera, settings, known, tables, recorder, samples):
             decisions = guide_tables.decisions_of(tables, cell, roughness, active)
             if dr.hint(settings.learned_roulette, mode="scalar"):
                 survival = guide_tables.survival_probability(tables, decisions.survival_factor, relative)
-                survival_on_arrival = dr.select(active & (depth > 0) & (cell != odis.NO_CELL), survival, 1)
+                survival_on_arrival = dr.select(active & (depth > 0) & valid & (cell != odis.NO_CELL), survival, 1)
                 stand_in = throughput * (decisions.outgoing_radiance if not mi.is_spectral
                                          else mi.Spectrum(mi.luminance(decisions.outgoing_radiance)))
                 goes_on = rng.next() < survival_on_arrival
@@ -252,8 +269,10 @@ def trace(scene, camera, settings, known, tables, recorder, samples):
             map_direction, map_pdf = vertex_map.sample_or_evaluate(from_map, u_within, v, toward.d, guided)
             toward_map = si.to_local(map_direction)
 
-        scattered = scatter(dr.select(active, bsdf, dr.zeros(mi.BSDFPtr)), si, toward_wo, toward_map, u_lobe,
-                            mi.Point2f(u_within, v), known.materials.any_delta, active)
+        # Paths that end here are asked, too, whether they pass straight through: `valid` says so.
+        asked = active | (arrived & ~valid & ((flags & SEES_THROUGH) != 0))
+        scattered = scatter(dr.select(asked, bsdf, dr.zeros(mi.BSDFPtr)), si, toward_wo, toward_map, u_lobe,
+                            mi.Point2f(u_within, v), known.materials.any_delta, asked)
         sampled, weight, bsdf_pdf = scattered.sample, scattered.weight, scattered.light_pdf
         discrete = mi.has_flag(sampled.sampled_type, mi.BSDFFlags.Delta)
         mixes = ((flags & HAS_DELTA) != 0) & ((flags & GUIDABLE) != 0)
@@ -276,6 +295,8 @@ def trace(scene, camera, settings, known, tables, recorder, samples):
             light_mix_pdf = dr.select(guided, light_mix_pdf, bsdf_pdf)
 
         mis = dr.select(toward.delta, 1, power_heuristic(toward_pdf, light_mix_pdf))
+        if dr.hint(lights.uneven is not None, mode="scalar"):
+            mis = weight_toward(lights, mis, place, choice, toward_pdf, bsdf_pdf, lightable)
         unweighted = scattered.light_value * light
         direct = unweighted * mis
         lightable &= dr.max(dr.abs(direct)) > 0
@@ -292,7 +313,7 @@ def trace(scene, camera, settings, known, tables, recorder, samples):
 
         # Roulette on departure, where nothing was learned.
         weight = dr.select(active & dr.all(dr.isfinite(weight)), weight, 0)
-        eta *= dr.select(from_map, 1, sampled.eta)
+        eta *= dr.select(from_map | passes, 1, sampled.eta)
         most = dr.max(throughput * weight)
         plays = active & (depth >= settings.rr_depth)
         survival = dr.minimum(most * eta * eta, 0.95)
@@ -330,19 +351,22 @@ def trace(scene, camera, settings, known, tables, recorder, samples):
             recording.write(recorder, row, 5, [mi.Float(0)] * 5 + [mi.Float(dr.inf)], has_row)
             row = dr.select(active, row, previous_row)
 
-        valid |= active & ~mi.has_flag(sampled.sampled_type, mi.BSDFFlags.Null)
-        throughput *= weight
+        valid |= arrived & ~mi.has_flag(sampled.sampled_type, mi.BSDFFlags.Null)
+        throughput *= dr.select(passes, 1, weight)
         previous_p, previous_n, previous_pdf, previous_delta = mi.Point3f(si.p), mi.Normal3f(si.n), pdf, discrete
+        if dr.hint(lights.uneven is not None, mode="scalar"):
+            previous_bsdf_pdf = mi.Float(guidable_pdf)
         previous_cell, previous_fraction = cell, learned_lights
         if dr.hint(settings.hide_emitters, mode="scalar"):
             wi, previous_delta = dr.select(passes, ray.d, wi), previous_delta | passes
         ray = dr.select(goes_on | passes, si.spawn_ray(wi), ray)
         depth += dr.select(goes_on, mi.UInt32(1), mi.UInt32(0))
 
-        # The sample is complete where the path does not go on.
+        # The sample is complete where the path does not go on. As with `path` it is black where nothing was met that
+        # is neither hidden nor passed straight through.
         under_way = more & (goes_on | passes)
         ends = more & ~under_way
-        color = to_rgb(radiance, ray.wavelengths)
+        color = to_rgb(dr.select(valid, radiance, 0), ray.wavelengths)
         count = recording.bits(rays | dr.select(valid, mi.UInt32(VALID), 0))
         dr.scatter(samples.result, mi.Vector4f(color.x, color.y, color.z, count), sample, ends)
         if dr.hint(recorder is not None, mode="scalar"):
