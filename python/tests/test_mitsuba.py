@@ -208,6 +208,51 @@ class Images(unittest.TestCase):
 
 
 class Errors(unittest.TestCase):
+    def test_arguments(self):
+        """What `render` and `guide` are handed is refused in their own words."""
+        scene = mi.load_dict(box())
+        guide, render = odis.mitsuba.guide, odis.mitsuba.guide(scene).render
+        spoiled = odis.mitsuba.guide(scene)
+        spoiled.progress = 3
+        for call, expected in (
+                (lambda: guide("scene.xml"), "guide: expected a mi.Scene, found a str; .*load_file"),
+                (lambda: guide(box()), "guide: expected a mi.Scene, found a dict; mi.load_dict"),
+                (lambda: guide(None), "guide: expected a mi.Scene, found a NoneType"),
+                (lambda: guide(scene, max_dept=3), "no parameter max_dept; expected one of max_depth"),
+                (lambda: guide(scene, max_depth="3"), "max_depth: expected -1"),
+                (lambda: guide(scene, rr_depth=0), "^odis: rr_depth: expected a whole number from 1"),
+                (lambda: guide(scene, hide_emitters=1), "hide_emitters: expected true or false, found 1"),
+                (lambda: guide(scene, settings=["cells=3"]), "settings: expected a string"),
+                (lambda: guide(scene, aovs="foo"), "^odis: aovs: expected NAME:TYPE .* types are albedo, depth"),
+                (lambda: render(scene, seed=-1), "seed: expected a whole number from 0 to 4294967295, found -1"),
+                (lambda: render(scene, seed=2**32), "seed: expected"), (lambda: render(scene, seed=1.5), "seed: expected"),
+                (lambda: render(scene, seed=mi.UInt32([1, 2])), "seed: expected"),
+                (lambda: render(scene, spp=-1), "spp: expected a whole number from 0 to 2147483647, found -1"),
+                (lambda: render(scene, spp=2.5), "spp: expected"),
+                (lambda: render(scene, 1), "sensor: expected a mi.Sensor or the number of one of the scene's 1, found 1"),
+                (lambda: render(scene, None), "sensor: expected"),
+                (lambda: render("scene.xml"), "render: expected a mi.Scene"),
+                (lambda: spoiled.render(scene), "progress: expected a function")):
+            with self.assertRaisesRegex((TypeError, ValueError), expected):
+                call()
+        mi.set_variant("scalar_rgb")
+        self.addCleanup(mi.set_variant, "llvm_ad_rgb")
+        with self.assertRaisesRegex(TypeError, "^odis: guide: expected a mi.Scene, found a str"):
+            guide("scene.xml")
+        with self.assertRaisesRegex(RuntimeError, "^odis: expected a variant that compiles kernels"):
+            guide(mi.load_dict({"type": "scene"}))
+
+    def test_gradients(self):
+        scene = mi.load_dict(box())
+        integrator, parameters = odis.mitsuba.guide(scene, max_depth=2), mi.traverse(scene)
+        key = next(key for key in parameters.keys() if key.endswith("reflectance.value"))
+        dr.enable_grad(parameters[key])
+        parameters.update()
+        for differentiate in (lambda: dr.backward(dr.sum(mi.render(scene, parameters, integrator=integrator, spp=1).array)),
+                              lambda: dr.forward_to(mi.render(scene, parameters, integrator=integrator, spp=1))):
+            with self.assertRaisesRegex(RuntimeError, "has no gradients"):
+                differentiate()
+
     def test_parameters(self):
         for parameters, expected in (({"max_depth": -2}, "max_depth: expected"), ({"rr_depth": 0}, "rr_depth: expected"),
                                      ({"max_dept": 3}, "max_dept"),

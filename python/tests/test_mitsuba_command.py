@@ -14,6 +14,7 @@ from unittest import mock
 
 import numpy as np
 import odis
+import test_mitsuba
 
 try:
     import drjit as dr
@@ -164,7 +165,12 @@ class Command(InFolder):
                  ((scene, "--set", "refine=0", "--integrator", "path"), "--set: expected --integrator odis"),
                  ((scene, "--cached", "--variant", "llvm_ad_spectral"), "cached: expected a variant in rgb"),
                  ((scene, "--variant", "llvm_ad_mono"), "rgb or spectral"),
-                 ((scene, "-o", self.folder / "a.exr", "--aovs", "a:b"), "Invalid AOV"),
+                 ((scene, "-o", self.folder / "a.exr", "--aovs", "a:b"), "found a:b; the types are albedo, depth"),
+                 ((scene, "-o", self.folder / "a.exr", "--aovs", "foo"), "aovs: expected NAME:TYPE"),
+                 ((scene, "-o", self.folder / "a.exr", "--aovs", "d:depth,:uv", "--integrator", "path"), "found :uv"),
+                 ((scene, "-o", self.folder / "a.exr", "--aovs", "a:depth,a:depth"), "found a twice"),
+                 ((self.write("aov.xml", scene_text("aov", '<string name="aovs" value="foo"/>')), "-o",
+                   self.folder / "a.exr"), "aovs: expected NAME:TYPE"),
                  ((self.write("text.xml", "hello"), "-o", self.folder / "a.exr"), "expected a scene in XML"),
                  ((self.write("b.xml", "<bsdf/>"), "-o", self.folder / "a.exr"), "found the element <bsdf>"),
                  ((self.write("c.xml", "<scene version='3.0.0'/>"), "-o", self.folder / "a.exr"), "expected a sensor"),
@@ -228,6 +234,51 @@ class SceneFiles(InFolder):
         self.assertEqual({round(float(np.array(value).ravel()[0]), 3) for key, value in mi.traverse(scene)
                           if key.endswith("alpha.value")}, {0.1, 0.2})
 
+    def test_old_films_and_samplers(self):
+        """Those that Mitsuba 3 has not, and where it does not look for them."""
+        size = '<integer name="width" value="8"/><integer name="height" value="6"/><rfilter type="{}"/>'
+        box = size.format("box")
+        sensor = '<sensor type="perspective">{}</sensor>'
+        film = '<film type="{}">{}{}</film>'
+        text = lambda name, value: f'<string name="{name}" value="{value}"/>'
+        cases = [
+            ("0.6.0", sensor.format(film.format("ldrfilm", text("fileFormat", "png") + text("tonemapMethod", "gamma"), box)),
+             "ldrfilm is not known"),
+            ("0.5.0", sensor.format(film.format("mfilm", text("pixelFormat", "spectrum"), box)), "mfilm is not known"),
+            ("0.6.0", sensor.format(film.format("$kind", "", box)), "ldrfilm is not known"),
+            ("0.6.0", sensor.format(film.format("tiledhdrfilm", "", box)), "tiledhdrfilm is not known"),
+            ("3.0.0", sensor.format(film.format("specfilm", "", box)), "specfilm is not known"),
+            ("0.6.0", sensor.format(film.format("hdrfilm", text("pixelFormat", "rgb, luminance"), box)), "pixel_format"),
+            ("0.6.0", sensor.format(film.format("hdrfilm", text("pixelFormat", "luminanceAlpha"), box)), None),
+            ("0.6.0", sensor.format(film.format("hdrfilm", "", size.format("wsinc"))), "wsinc is not known"),
+            ("0.5.0", sensor.format("") + film.format("hdrfilm", "", box), None),
+            ("3.0.0", film.format("hdrfilm", "", '<integer name="width" value="5"/>')
+             + sensor.format(film.format("hdrfilm", "", box)), None),
+            ("3.0.0", '<film type="hdrfilm" id="f">' + box + "</film>" + sensor.format('<ref id="f"/>'), None),
+            ("0.6.0", sensor.format(film.format("hdrfilm", "", box) + film.format("hdrfilm", "", "")), "one film only"),
+            ("0.6.0", sensor.format(film.format("hdrfilm", "", box) + '<sampler type="halton"><integer '
+                                    'name="sampleCount" value="9"/><integer name="scramble" value="1"/></sampler>'),
+             "halton is not known"),
+        ]
+        for version, elements, expected in cases:
+            with self.subTest(elements):
+                warnings = []
+                path = self.write("film.xml", f'<scene version="{version}"><default name="kind" value="ldrfilm"/>'
+                                  f'{elements}<shape type="sphere"/></scene>')
+                found = scene_files.load_file(path, warn=warnings.append).sensors()[0]
+                self.assertEqual(list(found.film().size()), [8, 6])
+                self.assertEqual(len(warnings), 0 if expected is None else 1)
+                self.assertIn(expected or "", "".join(warnings))
+                smaller = scene_files.load_file(path, size=(4, 3), warn=warnings.append).sensors()[0]
+                self.assertEqual(list(smaller.film().size()), [4, 3])
+        self.assertEqual(found.sampler().sample_count(), 9)
+
+    def test_elements_behind_the_scene(self):
+        warnings = []
+        self.scene.write_text(scene_text() + "<bsdf/>\n<scene>")
+        self.assertIsInstance(scene_files.load_file(self.scene, warn=warnings.append), mi.Scene)
+        self.assertEqual(warnings, ["what follows </scene> (line 13) is left out"])
+
     def test_changes_of_the_sensor(self):
         scene = scene_files.load_file(self.scene, pixels=24, rfilter="gaussian", sampler="stratified")
         sensor = scene.sensors()[0]
@@ -260,6 +311,8 @@ class SceneFiles(InFolder):
         sky = str(scene_files.load_file(self.write("sky.xml", old.format('<float name="scale" value="3"/>'))).environment())
         for part in ("Sun aperture = 2.1432", "Sun scale = 3", "Sky scale = 3"):
             self.assertIn(part, sky)
+        with self.assertRaisesRegex(ValueError, "emitter sunsky: expected a number, found x"):
+            scene_files.load_file(self.write("sky.xml", old.format('<float name="hour" value="x"/>')))
 
     def test_file_resolver_stays(self):
         before = str(mi.file_resolver())
@@ -308,6 +361,14 @@ class Guide(unittest.TestCase):
         integrator = odis.mitsuba.guide(scene)
         integrator.progress = fractions.append
         mi.render(scene, integrator=integrator, spp=8)
+        self.assertEqual((fractions[0], fractions[-1]), (0, 1))
+        self.assertEqual(fractions, sorted(fractions))
+        # Here adaptive passes take more samples than were asked for.
+        cornell_box, fractions[:] = mi.load_dict(test_mitsuba.box()), []
+        integrator = odis.mitsuba.guide(cornell_box, max_depth=6)
+        integrator.progress = fractions.append
+        mi.render(cornell_box, integrator=integrator, spp=33)
+        self.assertGreater(integrator.frame.sample_counts().sum(), 33 * test_mitsuba.SIZE ** 2)
         self.assertEqual((fractions[0], fractions[-1]), (0, 1))
         self.assertEqual(fractions, sorted(fractions))
         stream = io.StringIO()

@@ -1,11 +1,30 @@
 """AOVs (depth, normals, albedo and the like) beside the image, rendered by Mitsuba's integrator `aov`."""
 
+import re
+
 import drjit as dr
 import mitsuba as mi
 import numpy as np
 
 # So many samples are traced at once at most.
 SAMPLES = 1 << 24
+# The types that Mitsuba's `aov` has, and the ends of their channels' names.
+TYPES = {"albedo": "RGB", "depth": "T", "position": "XYZ", "uv": "UV", "geo_normal": "XYZ", "sh_normal": "XYZ",
+         "dp_du": "XYZ", "dp_dv": "XYZ", "duv_dx": "UV", "duv_dy": "UV", "prim_index": "I", "shape_index": "I"}
+
+
+def check_aovs(text):
+    """Raises ValueError unless a text is what Mitsuba's `aov` expects, which crashes at some others."""
+    channels = set()
+    for word in re.split("[, ]+", text.strip(", ")):
+        parts = [part for part in word.split(":") if part]
+        if len(parts) < 2 or parts[1] not in TYPES:
+            raise ValueError("odis: aovs: expected NAME:TYPE with commas between them, as in dd:depth,nn:sh_normal, "
+                             f"found {word or 'nothing'}; the types are {', '.join(TYPES)}")
+        added = {f"{parts[0]}.{channel}" for channel in TYPES[parts[1]]}
+        if channels & added:
+            raise ValueError(f"odis: aovs: expected names that differ, found {parts[0]} twice")
+        channels |= added
 
 
 def nested_integrators(integrator):

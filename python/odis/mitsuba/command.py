@@ -16,6 +16,7 @@ import mitsuba as mi
 import odis
 
 from . import from_scene, scene_files
+from .aovs import check_aovs
 from .integrator import check_variant
 from .kernel_history import compile_seconds
 from .progress import ProgressLine
@@ -58,6 +59,14 @@ def resolution(text):
     return size
 
 
+def aovs(text):
+    try:
+        check_aovs(text)
+    except ValueError as error:
+        raise argparse.ArgumentTypeError(str(error).removeprefix("odis: aovs: ")) from None
+    return text
+
+
 def make_parser():
     parser = argparse.ArgumentParser(prog=NAME, description="Renders scenes of Mitsuba with guided paths.")
     parser.add_argument("--version", action="version", version=f"{NAME} {odis.__version__}, Mitsuba {mi.__version__}")
@@ -91,7 +100,7 @@ def make_parser():
                         help="depth from which Russian roulette may end paths (the scene's, or 5)")
     render.add_argument("--hide-emitters", action=argparse.BooleanOptionalAction,
                         help="the camera does not see emitters (the scene's, or it does)")
-    render.add_argument("--aovs", metavar="LIST",
+    render.add_argument("--aovs", type=aovs, metavar="LIST",
                         help="further channels, as of Mitsuba's integrator aov, such as dd:depth,nn:sh_normal (the "
                         "scene's with odis, none with path)")
     render.add_argument("--stats-json", metavar="FILE", help="writes times, rays and settings there")
@@ -241,7 +250,7 @@ class Rendering:
                                         **given, **({"aovs": args.aovs} if args.aovs else {}))
             path = {"type": "path", **from_scene.settings_of_scene(scene), **given}
             return mi.load_dict({"type": "aov", "aovs": args.aovs, "image": path} if args.aovs else path)
-        except RuntimeError as error:
+        except (RuntimeError, TypeError, ValueError) as error:
             last = re.sub(r"^\w*Error: |\[parser.cpp:\d+\] ", "", str(error).strip().splitlines()[-1])
             raise Problem(BAD_INPUT, last) from None
 

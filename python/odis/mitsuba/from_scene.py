@@ -1,10 +1,13 @@
 """The integrator `odis` in place of a scene's own."""
 
+import builtins
 import re
 
 import mitsuba as mi
 
+from . import checks
 from .aovs import make_aovs, nested_integrators
+from .parameters import NAMES, TEXTS
 
 PATH_TRACERS = {"PathIntegrator", "OdisIntegrator", "PRBIntegrator", "BasicPRBIntegrator", "PathProjectiveIntegrator"}
 VOLUMETRIC = {"VolumetricSimplePathIntegrator", "VolumetricMisPathIntegrator", "PRBVolpathIntegrator"}
@@ -51,6 +54,23 @@ def settings_of_scene(scene):
     return settings_of(integrator)
 
 
+def _make(parameters):
+    """The integrator with these parameters. Raises TypeError, ValueError, or RuntimeError for the variant."""
+    for name, value in parameters.items():
+        if name not in NAMES:
+            raise TypeError(f"odis: guide: there is no parameter {name}; expected one of {', '.join(NAMES)}")
+        if name in TEXTS:
+            checks.of_type(name, value, str, "a string")
+    try:
+        return mi.load_dict({"type": "odis", **parameters})
+    except RuntimeError as error:
+        # Mitsuba reports what the integrator raised as the text of a traceback.
+        raised = re.search(r"^(TypeError|ValueError|RuntimeError): (odis: .*)\Z", str(error).strip(), re.MULTILINE)
+        if raised is None:
+            raise
+        raise getattr(builtins, raised[1])(raised[2]) from None
+
+
 def guide(scene, **parameters):
     """An integrator `odis` in place of a scene's own, with its max_depth, rr_depth, hide_emitters and AOVs:
 
@@ -60,7 +80,8 @@ def guide(scene, **parameters):
     Participating media are not rendered, and an integrator that traces no paths is replaced by `odis` with default
     parameters; Mitsuba's log warns of both.
     """
-    integrator = mi.load_dict({"type": "odis", **settings_of_scene(scene), **parameters})
+    checks.scene("guide", scene)
+    integrator = _make({**settings_of_scene(scene), **parameters})
     if integrator.aovs is None:
         path_tracer, around = path_tracer_of(scene)
         if around is not None:

@@ -12,16 +12,17 @@ import numpy as np
 
 import odis
 
-from . import path, recording
+from . import checks, path, recording
 from .aovs import make_aovs, nested_integrators
 from .arrays import array_of
 from .guide_tables import make_guide_tables
 from .kernel_history import compile_seconds
 from .lights import make_light_table
 from .materials import make_material_table
+from .parameters import read_parameters
 from .progress import default_progress
 from .random_numbers import generator_of, hash_seed
-from .settings import LEAST_CACHED_MAX_DEPTH, GivenSettings
+from .settings import LEAST_CACHED_MAX_DEPTH
 
 # Vertices are recorded by so many paths at once at most, into so many rows; paths that need more come in smaller parts.
 RECORDED_PATHS = 1 << 17
@@ -170,6 +171,11 @@ def check_variant():
         raise RuntimeError(f"odis: expected a variant in rgb or spectral without polarisation, found {variant}")
 
 
+def refuse_gradients():
+    raise RuntimeError("odis: has no gradients: images of odis can't be differentiated. Mitsuba's integrators prb and "
+                       "path have gradients")
+
+
 def make_integrator():
     """The class of the integrator for the variant that is set."""
 
@@ -193,36 +199,24 @@ def make_integrator():
 
         def __init__(self, props):
             check_variant()
+            parameters = read_parameters(props)
             super().__init__(props)
-            self.given = GivenSettings.read(props.get("preset", "default"), props.get("settings", ""))
-            self.settings = path.Settings(props.get("max_depth", -1), props.get("rr_depth", 5),
-                                          props.get("hide_emitters", False), **self.given.path)
-            if self.settings.max_depth < -1:
-                raise ValueError("odis: max_depth: expected -1 (no limit) or a number from 0, "
-                                 f"found {self.settings.max_depth}")
-            if self.settings.rr_depth <= 0:
-                raise ValueError(f"odis: rr_depth: expected a number from 1, found {self.settings.rr_depth}")
-            self.cached = props.get("cached", False)
-            if not isinstance(self.cached, bool):
-                raise ValueError(f"odis: cached: expected true or false, found {self.cached}")
-            if self.cached and mi.is_spectral:
-                raise ValueError(f"odis: cached: expected a variant in rgb, found {mi.variant()}")
+            self.given, self.settings, self.cached = parameters.given, parameters.path, parameters.cached
             self.scene, self.known = None, None
             self.progress, self.separate_compile = None, False
-            names = props.get("aovs", "")
-            self.aovs = make_aovs(mi.load_dict({"type": "aov", "aovs": names})) if names else None
+            self.aovs = make_aovs(mi.load_dict({"type": "aov", "aovs": parameters.aovs})) if parameters.aovs else None
             self.unguided = mi.load_dict({"type": "path", "max_depth": self.settings.max_depth,
                                           "rr_depth": self.settings.rr_depth,
                                           "hide_emitters": self.settings.hide_emitters})
             self.said_unguided = False
 
         def render(self, scene, sensor=0, seed=0, spp=0, develop=True, evaluate=True):
-            if isinstance(sensor, int):
-                sensor = scene.sensors()[sensor]
+            sensor = checks.sensor_of(checks.scene("render", scene), sensor)
+            seed = checks.whole_number("seed", seed, 0, 2**32 - 1)
             film = sensor.film()
             if mi.has_flag(film.flags(), mi.FilmFlags.Special):
                 raise RuntimeError(f"odis: expected a film that stores colours, found {film.class_name()}")
-            seed, spp = int(dr.slice(seed) if dr.is_array_v(seed) else seed), spp or sensor.sampler().sample_count()
+            spp = checks.whole_number("spp", spp, 0) or sensor.sampler().sample_count()
             self.seconds = defaultdict(float)
             with dr.suspend_grad():
                 if self.scene is not scene:
@@ -238,6 +232,12 @@ def make_integrator():
                 if own is self or (own is not None and self in nested_integrators(own)):
                     self.scene = None  # Otherwise they would keep each other forever.
                 return film.develop() if develop else mi.TensorXf()
+
+        def render_forward(self, scene, params, sensor=0, seed=0, spp=0):
+            refuse_gradients()
+
+        def render_backward(self, scene, params, grad_in, sensor=0, seed=0, spp=0):
+            refuse_gradients()
 
         def sample(self, scene, sampler, ray, medium=None, active=True):
             """Single rays, which other integrators ask for, are traced without guidance."""
@@ -273,7 +273,7 @@ def make_integrator():
             pixels_per_recorded = PIXELS_PER_RECORDED_IF_CACHED if cached else PIXELS_PER_RECORDED
             has_alpha = mi.has_flag(film.flags(), mi.FilmFlags.Alpha)
             valid = np.zeros(width * height) if has_alpha else None  # samples of each pixel
-            progress, traced, self.rays = self.progress or default_progress(), 0, 0
+            progress, traced, self.rays = checks.progress(self.progress or default_progress()), 0, 0
             progress(0)
             tables, values, rebuilt = None, None, False
             while (frame_pass := frame.begin_pass()) is not None:
@@ -288,7 +288,7 @@ def make_integrator():
                 for part in parts_of_pass(frame, frame_pass, pixels_per_recorded):
                     self._trace_part(sensor, frame_pass, tables, values, part, valid)
                     traced += part.pixel.size
-                    progress(traced / (spp * width * height))
+                    progress(min(traced / (spp * width * height), 1))  # adaptive passes may take a few samples more
                 with self._timed("build"):
                     frame.end_pass()
             progress(1)

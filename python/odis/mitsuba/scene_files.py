@@ -8,12 +8,16 @@ from xml.parsers import expat
 import mitsuba as mi
 import numpy as np
 
+from .aovs import check_aovs
+from .elements import defaults_of, drop, name_of, number_of, set_number, value_of
+from .parts_of_sensors import renew_parts_of_sensors
+
 # What is kept of an integrator that Mitsuba does not have.
 KEPT = {"max_depth", "rr_depth", "hide_emitters"}
 # What only the skies of Mitsuba 0.6 know, and only those of Mitsuba 3; what says where the sun stands.
 OLD_SKY, NEW_SKY = {"extend", "resolution", "scale", "stretch", "sun_radius_scale"}, {"sun_aperture", "complex_sun"}
 TIME_AND_PLACE = {"year", "month", "day", "hour", "minute", "second", "latitude", "longitude", "timezone"}
-SUN_DIAMETER = 0.5358  # degrees
+SUN_DIAMETER, LEAST_APERTURE = 0.5358, 0.1  # degrees; single precision in Mitsuba loses smaller suns
 
 
 def load_file(path, size=None, pixels=None, rfilter=None, sampler=None, warn=None):
@@ -34,6 +38,7 @@ def load_file(path, size=None, pixels=None, rfilter=None, sampler=None, warn=Non
     warn = warn or (lambda text: mi.Log(mi.LogLevel.Warn, f"odis: {path}: {text}"))
     with open(path, "rb") as file:
         text = file.read()
+    text = _without_rest(text, warn)
     try:
         root = ElementTree.fromstring(text)
     except ElementTree.ParseError as error:
@@ -42,6 +47,8 @@ def load_file(path, size=None, pixels=None, rfilter=None, sampler=None, warn=Non
         raise ValueError(f"expected a scene in XML, found the element <{root.tag}>")
     places = dict(zip(root.iter(), _start_tags(text), strict=True))
     _replace_unknown_integrators(root, warn)
+    _check_aovs(root)
+    renew_parts_of_sensors(root, warn)
     _replace_texture_filters(root, warn)
     _renew_skies(root)
     if size or pixels or rfilter or sampler:
@@ -57,6 +64,28 @@ def load_file(path, size=None, pixels=None, rfilter=None, sampler=None, warn=Non
     if not isinstance(scene, mi.Scene):
         raise ValueError("expected one scene")
     return scene
+
+
+def _without_rest(text, warn):
+    """The bytes of a file up to the end of its first element."""
+    parser = expat.ParserCreate()
+    try:
+        parser.Parse(text, True)
+    except expat.ExpatError as error:
+        if error.code == expat.errors.codes[expat.errors.XML_ERROR_JUNK_AFTER_DOC_ELEMENT]:
+            warn(f"what follows </scene> (line {error.lineno}) is left out")
+            return text[:parser.ErrorByteIndex]
+    return text
+
+
+def _check_aovs(root):
+    """Refuses what Mitsuba's integrator `aov` would crash at."""
+    defaults = defaults_of(root)
+    for node in root.iter("integrator"):
+        for child in node.findall("string"):
+            value = value_of(child.get("value", ""), defaults)
+            if name_of(child) == "aovs" and value:
+                check_aovs(value)
 
 
 def _load(root, places, warn):
@@ -83,10 +112,6 @@ def _culprit(root, text, error):
     return next((node for place, node in zip(_start_tags(text), root.iter(), strict=True) if place == at), None), match
 
 
-def _snake_case(name):
-    return re.sub(r"([A-Z]+)", lambda m: "_" + m.group(1).lower(), name)
-
-
 def _start_tags(text):
     """Line and column of the names of all elements, in their order."""
     parser, found = expat.ParserCreate(), []
@@ -110,24 +135,12 @@ def _drop_unreferenced(root, culprit, error):
     dropped = set()
     for node in alike:
         for child in list(node):
-            if {child.get("name"), _snake_case(child.get("name", ""))} & unknown:
+            if {child.get("name"), name_of(child)} & unknown:
                 node.remove(child)
                 dropped.add(child.get("name"))
     if not dropped:
         return None
     return f"dropped of {culprit.tag} {culprit.get('type')}, which does not know them: " + ", ".join(sorted(dropped))
-
-
-def _defaults(root):
-    return {node.get("name"): node.get("value") for node in root.iter("default")}
-
-
-def _value(text, defaults):
-    """An attribute's value with its variables (`$name`) replaced; None if one has no default."""
-    try:
-        return re.sub(r"\$(\w+)", lambda m: defaults[m[1]], text)
-    except KeyError:
-        return None
 
 
 def _is_integrator(kind):
@@ -141,15 +154,15 @@ def _is_integrator(kind):
 
 
 def _replace_unknown_integrators(root, warn):
-    defaults = _defaults(root)
+    defaults = defaults_of(root)
     for node in root.findall("integrator"):
-        kind = _value(node.get("type", ""), defaults)
+        kind = value_of(node.get("type", ""), defaults)
         if kind and _is_integrator(kind):
             continue
         warn(f"the integrator {kind or node.get('type')} is not known here; path takes its place")
         node.set("type", "path")
         for child in list(node):
-            name, value = _snake_case(child.get("name", "")), _value(child.get("value", ""), defaults)
+            name, value = name_of(child), value_of(child.get("value", ""), defaults)
             if name not in KEPT or not value:
                 node.remove(child)
 
@@ -164,29 +177,30 @@ def _replace_texture_filters(root, warn):
 
 def _renew_skies(root):
     """Turns skies of Mitsuba 0.6 into those of Mitsuba 3."""
-    defaults = _defaults(root)
+    defaults = defaults_of(root)
     before_2 = root.get("version", "3").startswith(("0.", "1."))
     for node in root.iter("emitter"):
-        kind = _value(node.get("type", ""), defaults)
-        given = {_snake_case(child.get("name", "")): _value(child.get("value", ""), defaults) for child in node}
+        kind = value_of(node.get("type", ""), defaults)
+        given = {name_of(child): value_of(child.get("value", ""), defaults) for child in node}
         old = kind in ("sun", "sky") or kind == "sunsky" and (before_2 or OLD_SKY & set(given))
         if not old or NEW_SKY & set(given):
             continue
         node.set("type", "sunsky")
         for part in ("sun", "sky"):
             if kind not in (part, "sunsky"):
-                _set_number(node, f"{part}_scale", 0)
+                set_number(node, f"{part}_scale", 0)
             elif f"{part}_scale" not in given and given.get("scale"):
-                _set_number(node, f"{part}_scale", given["scale"])
+                set_number(node, f"{part}_scale", given["scale"])
         if given.get("sun_radius_scale"):  # 0 was a sun without a diameter
-            _set_number(node, "sun_aperture", max(SUN_DIAMETER * float(given["sun_radius_scale"]), 0.01))
-        _drop(node, {"scale", "sun_radius_scale"})
+            scale = number_of(node, given["sun_radius_scale"])
+            set_number(node, "sun_aperture", max(SUN_DIAMETER * scale, LEAST_APERTURE))
+        drop(node, {"scale", "sun_radius_scale"})
         to_world = node.find("transform")
         if to_world is None:
             to_world = ElementTree.SubElement(node, "transform", name="to_world")
         to_world.insert(0, ElementTree.Element("rotate", x="1", angle="-90"))
         if "sun_direction" not in given:
-            when = {name: float(given[name]) for name in TIME_AND_PLACE & set(given) if given[name]}
+            when = {name: number_of(node, given[name]) for name in TIME_AND_PLACE & set(given) if given[name]}
             to_world.insert(0, ElementTree.Element("rotate", z="1", angle=repr(_turn_of_the_sun(when))))
 
 
@@ -199,17 +213,6 @@ def _turn_of_the_sun(when):
     return float(np.degrees(np.arctan2(-south, -west) - np.arctan2(west, south)))
 
 
-def _set_number(node, name, value):
-    _drop(node, {name})
-    ElementTree.SubElement(node, "float", name=name, value=str(value))
-
-
-def _drop(node, names):
-    for child in list(node):
-        if _snake_case(child.get("name", "")) in names:
-            node.remove(child)
-
-
 def _set_sensors(root, size, pixels, rfilter, sampler):
     sensors = list(root.iter("sensor"))
     if not sensors:
@@ -219,7 +222,7 @@ def _set_sensors(root, size, pixels, rfilter, sampler):
         if film is None:
             film = ElementTree.SubElement(sensor, "film", type="hdrfilm")
         if size or pixels:
-            _set_size(film, size or _scaled_size(film, pixels, _defaults(root)))
+            _set_size(film, size or _scaled_size(film, pixels, defaults_of(root)))
         if rfilter:
             for child in film.findall("rfilter"):
                 film.remove(child)
@@ -232,7 +235,7 @@ def _scaled_size(film, pixels, defaults):
     """About so many pixels with a film's proportions."""
     size = {"width": 768, "height": 576}  # Mitsuba's own
     for child in film.findall("integer"):
-        value = _value(child.get("value", ""), defaults)
+        value = value_of(child.get("value", ""), defaults)
         if child.get("name") in size and value:
             size[child.get("name")] = int(value)
     scale = (pixels / (size["width"] * size["height"])) ** 0.5
