@@ -38,7 +38,8 @@ class Intersector {
   };
 
   Hit resolve(unsigned geometry, unsigned instance, const RawHit& hit) const;
-  RTCSceneTy* makeScene(const std::vector<ShapePtr>& shapes, ShapeArray& array);
+  // Triangles of more than this extent are met in double precision.
+  RTCSceneTy* makeScene(const std::vector<ShapePtr>& shapes, float largeExtent, ShapeArray& array);
   void release();
 
   std::atomic<int64_t> m_bytes = 0;

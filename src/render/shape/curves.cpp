@@ -86,17 +86,18 @@ Curves::Axis Curves::axisAt(uint32_t piece, double v) const {
 
 SurfacePoint Curves::surfacePoint(const Ray& ray, const RawHit& hit) const {
   const Ray inObject = toObject(ray, hit);
-  const Vec3d p = Vec3d(inObject.origin) + Vec3d(inObject.direction) * double(hit.t);
   const Axis axis = axisAt(hit.primitive, hit.u);
   const double squared = axis.d.dot(axis.d);
-  const Vec3d outward = p - axis.p;
+  Vec3d outward = Vec3d(inObject.origin) + Vec3d(inObject.direction) * double(hit.t) - axis.p;
+  // t is rounded, so the point is moved onto the tube.
+  if (const double length = outward.length(); length > 0) outward *= axis.radius / length;
   const Vec3d along = squared > 0 ? axis.d / std::sqrt(squared) : Vec3d(1, 0, 0);
 
   SurfacePoint at;
   at.shape = this;
   at.primitive = hit.primitive;
-  at.p = Vec3(p);
-  at.pError = positionError(maxAbs(at.p) + std::abs(hit.t) * maxAbs(inObject.direction));
+  at.p = Vec3(axis.p + outward);
+  at.pError = positionError(maxAbs(axis.p) + float(axis.radius));
   // Embree takes the place on the axis of a straight piece such that the normal points away from it.
   Vec3d normal = outward;
   if (m_basis == CurveBasis::bspline)

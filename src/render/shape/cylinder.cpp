@@ -64,7 +64,7 @@ SurfacePoint Cylinder::pointAt(double cosPhi, double sinPhi, double z) const {
   SurfacePoint at;
   at.shape = this;
   at.p = Vec3(m_start + m_axis * z + outward * m_radius);
-  at.pError = positionError(maxAbs(Vec3(m_start)) + maxAbs(Vec3(m_axis)) + float(m_radius));
+  at.pError = preciseError(maxAbs(m_start) + maxAbs(m_axis) + m_radius);
   at.uv = {float(phi / (2 * M_PI)), float(z)};
   at.dpdu = Vec3((m_y * cosPhi - m_x * sinPhi) * (2 * M_PI * m_radius));
   at.dpdv = Vec3(m_axis);

@@ -48,7 +48,7 @@ SurfacePoint Disk::pointAt(double x, double y) const {
   at.shape = this;
   const Vec3d p = m_center + m_x * x + m_y * y;
   at.p = Vec3(p);
-  at.pError = positionError(maxAbs(Vec3(m_center)) + maxAbs(Vec3(m_x)) + maxAbs(Vec3(m_y)));
+  at.pError = preciseError(maxAbs(m_center) + maxAbs(m_x) + maxAbs(m_y));
   at.uv = {float(r), float(phi / (2 * M_PI))};
   at.dpdu = Vec3(m_x * cosPhi + m_y * sinPhi);
   at.dpdv = Vec3((m_y * x - m_x * y) * (2 * M_PI));
@@ -59,7 +59,9 @@ SurfacePoint Disk::pointAt(double x, double y) const {
 
 SurfacePoint Disk::surfacePoint(const Ray& ray, const RawHit& hit) const {
   const Ray inObject = toObject(ray, hit);
-  const Imath::V2d on = local(Vec3d(inObject.origin) + Vec3d(inObject.direction) * double(hit.t) - m_center);
+  // t is rounded, so the point is found again.
+  const Vec3d fromCenter = Vec3d(inObject.origin) - m_center, direction(inObject.direction);
+  const Imath::V2d on = local(fromCenter - direction * (fromCenter.dot(m_normal) / direction.dot(m_normal)));
   SurfacePoint at = pointAt(on.x, on.y);
   toWorld(at, hit);
   return at;

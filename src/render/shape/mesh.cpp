@@ -142,18 +142,67 @@ Mesh::Mesh(MeshData data, const MeshOptions& options) {
     for (size_t i = 0; i < sums.size(); ++i) m_cdf[i + 1] = float(sums[i] / sum);
 }
 
+float Mesh::sideOf(const Face& face) const {
+  const auto& [c0, c1, c2] = face.corners;
+  const Vec3 &a = m_vertices[c0].position, &b = m_vertices[c1].position, &c = m_vertices[c2].position;
+  return std::max({maxAbs(b - a), maxAbs(c - b), maxAbs(a - c)});
+}
+
+float Mesh::detail() const {
+  PrimitiveExtent whole{Vec3(kInfinity), Vec3(-kInfinity)};
+  for (const Vertex& vertex : m_vertices) whole.extendBy({vertex.position, vertex.position});
+  // Triangles by the power of two that their size is.
+  constexpr int kLeast = -149, kGreatest = 150;
+  std::array<size_t, kGreatest - kLeast + 1> counts{};
+  for (const Face& face : m_faces)
+    ++counts[size_t(std::clamp(std::ilogb(sideOf(face)), kLeast, kGreatest) - kLeast)];
+  size_t below = 0, power = 0;
+  for (; 2 * (below + counts[power]) < m_faces.size(); ++power) below += counts[power];
+  const double median = std::ldexp(2.0, int(power) + kLeast);
+  return float(std::min(double(whole.longestSide()), median * std::sqrt(double(m_faces.size()))));
+}
+
+RTCGeometryTy* Mesh::makeLargeGeometry(RTCDeviceTy* device, float extent) {
+  m_large = {};
+  m_isLarge.clear();
+  for (uint32_t i = 0; i < m_faces.size(); ++i) {
+    if (!(sideOf(m_faces[i]) > extent)) continue;
+    m_isLarge.resize(m_faces.size());
+    m_isLarge[i] = true;
+    m_large.add(i, corners(i));
+  }
+  return m_large.count() > 0 ? makeUserGeometry(device, m_large, m_large.count()) : nullptr;
+}
+
 RTCGeometryTy* Mesh::makeGeometry(RTCDeviceTy* device) const {
   RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
   rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, m_vertices.data(),
                              offsetof(Vertex, position), sizeof(Vertex), m_vertices.size());
-  rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, m_faces.data(),
-                             offsetof(Face, corners), sizeof(Face), m_faces.size());
+  if (m_isLarge.empty()) {
+    rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, m_faces.data(),
+                               offsetof(Face, corners), sizeof(Face), m_faces.size());
+  } else {
+    // The others keep their numbers: in the place of a large one is one without area, which no ray meets.
+    auto* triangles = static_cast<Triangle*>(rtcSetNewGeometryBuffer(
+        geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, sizeof(Triangle), m_faces.size()));
+    for (uint32_t i = 0; i < m_faces.size(); ++i) {
+      triangles[i] = m_faces[i].corners;
+      if (isLarge(i)) triangles[i].fill(m_faces[i].corners[0]);
+    }
+  }
   rtcCommitGeometry(geometry);
   return geometry;
 }
 
-SurfacePoint Mesh::surfacePoint(const Ray&, const RawHit& hit) const {
+SurfacePoint Mesh::surfacePoint(const Ray& ray, const RawHit& hit) const {
   SurfacePoint at = pointOn(hit.primitive, {hit.u, hit.v});
+  if (isLarge(hit.primitive)) {
+    // Barycentric coordinates are rounded, so the point is found again.
+    const Ray inObject = toObject(ray, hit);
+    const auto [a, b, c] = corners(hit.primitive);
+    const Vec3d origin(inObject.origin), direction(inObject.direction), normal = areaVector(a, b, c);
+    at.p = Vec3(origin + direction * ((Vec3d(a) - origin).dot(normal) / direction.dot(normal)));
+  }
   toWorld(at, hit);
   return at;
 }
@@ -168,7 +217,9 @@ SurfacePoint Mesh::placeOn(uint32_t triangle, const Vec2& barycentric) const {
   at.shape = this;
   at.primitive = triangle;
   at.barycentric = barycentric;
-  at.p = v0.position * b0 + v1.position * b1 + v2.position * b2;
+  at.p = isLarge(triangle) ? Vec3(Vec3d(v0.position) * double(b0) + Vec3d(v1.position) * double(b1) +
+                                  Vec3d(v2.position) * double(b2))
+                           : v0.position * b0 + v1.position * b1 + v2.position * b2;
   at.ng = face.normal;
   at.uv = m_hasUvs ? v0.uv * b0 + v1.uv * b1 + v2.uv * b2 : barycentric;
   at.shading.n = at.ng;
@@ -182,7 +233,7 @@ SurfacePoint Mesh::placeOn(uint32_t triangle, const Vec2& barycentric) const {
 SurfacePoint Mesh::pointOn(uint32_t triangle, const Vec2& barycentric) const {
   SurfacePoint at = placeOn(triangle, barycentric);
   const Face& face = m_faces[triangle];
-  at.pError = positionError(face.magnitude);
+  at.pError = isLarge(triangle) ? preciseError(face.magnitude) : positionError(face.magnitude);
   at.shading = CoordinateFrame(at.shading.n);
   if (tangents()) findTangents(at, face.corners);
   return at;
@@ -317,7 +368,7 @@ uint64_t Mesh::bytes() const {
   for (const MeshAttribute& attribute : m_attributes)
     attributes += attribute.values.capacity() * sizeof(float);
   return attributes + m_vertices.capacity() * sizeof(Vertex) + m_faces.capacity() * sizeof(Face) +
-         m_cdf.capacity() * sizeof(float);
+         m_cdf.capacity() * sizeof(float) + m_isLarge.capacity() / 8 + m_large.bytes();
 }
 
 }  // namespace odis::render

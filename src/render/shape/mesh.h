@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "render/shape/large_triangles.h"
 #include "render/shape/shape.h"
 #include "render/xml/error.h"
 
@@ -48,6 +49,9 @@ class Mesh final : public Shape {
   static std::shared_ptr<Mesh> make(MeshData data, const MeshOptions& options, const SourceLocation& at,
                                     Warnings& warnings);
 
+  // Of the mesh as a whole or, for those of many parts, what triangles as large as half of it are cover.
+  float detail() const override;
+  RTCGeometryTy* makeLargeGeometry(RTCDeviceTy* device, float extent) override;
   RTCGeometryTy* makeGeometry(RTCDeviceTy* device) const override;
   SurfacePoint surfacePoint(const Ray& ray, const RawHit& hit) const override;
   float area() const override { return m_area; }
@@ -66,6 +70,8 @@ class Mesh final : public Shape {
   // Draws a triangle by area, of a mesh that has any; u.x is stretched to [0, 1) again.
   uint32_t drawTriangle(Vec2& u) const;
   std::array<Vec3, 3> corners(uint32_t triangle) const;
+  // Whether a triangle is one of those in makeLargeGeometry().
+  bool isLarge(uint32_t triangle) const { return !m_isLarge.empty() && m_isLarge[triangle]; }
   // Whether all over each triangle the shading normal is the geometric one, but for rounding.
   bool isFlat() const;
   float triangleArea(uint32_t triangle) const { return m_faces[triangle].area; }
@@ -98,11 +104,15 @@ class Mesh final : public Shape {
   Mesh(MeshData data, const MeshOptions& options);
   const MeshAttribute* findAttribute(const std::string& name) const;
   Draw drawOverArea(Vec2 u) const;  // as drawTriangle()
+  // The longest side of a triangle's box.
+  float sideOf(const Face& face) const;
   void findTangents(SurfacePoint& at, const Triangle& corners) const;
 
   std::vector<Vertex> m_vertices;
   std::vector<Face> m_faces;
   std::vector<MeshAttribute> m_attributes;
+  std::vector<bool> m_isLarge;  // of each triangle; empty if none is
+  LargeTriangles m_large;
   bool m_hasNormals = false;  // else face normals
   bool m_hasUvs = false;      // else barycentric coordinates stand in for them
   std::vector<float> m_cdf;   // of the triangles by area, size n + 1

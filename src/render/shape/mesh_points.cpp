@@ -24,7 +24,8 @@ void findAlone(const Hit& hit, const Ray& ray, Vertex& vertex) {
 }  // namespace
 
 void MeshPoints::add(const Hit& hit, const Ray& ray, Vertex& vertex) {
-  if (!knows(hit) || hit.raw.instance || hit.shape->tangents()) {
+  if (!knows(hit) || hit.raw.instance || hit.shape->tangents() ||
+      hit.shape->mesh()->isLarge(hit.raw.primitive)) {
     findAlone(hit, ray, vertex);
     return;
   }

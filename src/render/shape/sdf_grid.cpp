@@ -183,14 +183,34 @@ Vec3d SdfGrid::smoothNormal(const Vec3d& p) const {
   return sum;
 }
 
+bool SdfGrid::moveOntoSurface(const Cell& cell, double most, Vec3d& p) const {
+  Vec3d nearest = p;
+  for (int step = 0; step < 2; ++step) {  // of Newton's method
+    Vec3d slope = gradient(nearest, cell);
+    for (int axis = 0; axis < 3; ++axis) slope[axis] /= m_grid.size[axis] - 1.0;
+    nearest -= slope * (value(nearest) / slope.dot(slope));
+  }
+  if (!((nearest - p).length() <= most)) return false;
+  p = nearest;
+  return true;
+}
+
 SurfacePoint SdfGrid::surfacePoint(const Ray& ray, const RawHit& hit) const {
   const Ray inObject = toObject(ray, hit);
-  const Vec3d p = Vec3d(inObject.origin) + Vec3d(inObject.direction) * double(hit.t);
-  Vec3d inGrid;
+  Vec3d p = Vec3d(inObject.origin) + Vec3d(inObject.direction) * double(hit.t);
+  Vec3d inGrid, alongRay;
   m_toGrid.multVecMatrix(p, inGrid);
+  m_toGrid.multDirMatrix(Vec3d(inObject.direction), alongRay);
+  const Affine& m = m_toWorld;
+  double error = positionError(maxAbs(Vec3(p)) + std::abs(hit.t) * maxAbs(inObject.direction));
+  // t is rounded, so the point is moved onto the surface.
+  if (moveOntoSurface(m_cells[hit.primitive], alongRay.length() * hit.t * 0x1p-22, inGrid)) {
+    p = m.point({inGrid.x / (m_grid.size[0] - 1.0), inGrid.y / (m_grid.size[1] - 1.0),
+                 inGrid.z / (m_grid.size[2] - 1.0)});
+    error = preciseError(maxAbs(m.origin) + maxAbs(m.x) + maxAbs(m.y) + maxAbs(m.z));
+  }
   // Normals turn by the inverse transposed: by the cross products of the axes.
   const auto normalToWorld = [&](const Vec3d& n) {
-    const Affine& m = m_toWorld;
     const Vec3d turned = m.y.cross(m.z) * n.x + m.z.cross(m.x) * n.y + m.x.cross(m.y) * n.z;
     return m.mirrors() ? -turned : turned;
   };
@@ -198,7 +218,7 @@ SurfacePoint SdfGrid::surfacePoint(const Ray& ray, const RawHit& hit) const {
   at.shape = this;
   at.primitive = hit.primitive;
   at.p = Vec3(p);
-  at.pError = positionError(maxAbs(at.p) + std::abs(hit.t) * maxAbs(inObject.direction));
+  at.pError = float(error);
   at.ng =
       normalizeOr(normalToWorld(gradient(inGrid, m_cells[hit.primitive])), -normalize(inObject.direction));
   Vec3 n = at.ng;

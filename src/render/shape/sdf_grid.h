@@ -54,6 +54,9 @@ class SdfGrid final : public Shape {
   // The change of value from one side of a cell to the other along each axis, elsewhere as at the point.
   Vec3d gradient(const Vec3d& p, const Cell& cell) const;
   Vec3d smoothNormal(const Vec3d& p) const;
+  // The point of the surface nearest to a point in cells that is at most `most` cells off it; false if there
+  // is no such point along the gradient.
+  bool moveOntoSurface(const Cell& cell, double most, Vec3d& p) const;
 
   DistanceGrid m_grid;
   Affine m_toWorld;

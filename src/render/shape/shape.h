@@ -51,12 +51,25 @@ struct PrimitiveExtent {
   Vec3 axis{0, 0, 1};  // unit
   float theta = kPi;   // radians
   float area = 0;
+
+  void extendBy(const PrimitiveExtent& other) {
+    for (int axis = 0; axis < 3; ++axis) {
+      min[axis] = std::min(min[axis], other.min[axis]);
+      max[axis] = std::max(max[axis], other.max[axis]);
+    }
+  }
+  float longestSide() const { return std::max({max.x - min.x, max.y - min.y, max.z - min.z}); }
 };
 
 class Shape {
  public:
   virtual ~Shape() = default;
 
+  // The size of the smallest thing that the shape may be, in its own space.
+  virtual float detail() const;
+  // Creates and commits the Embree geometry of triangles larger than this, which are then not part of what
+  // makeGeometry() makes; null if there are none.
+  virtual RTCGeometryTy* makeLargeGeometry(RTCDeviceTy* /*device*/, float /*extent*/) { return nullptr; }
   // Creates and commits the Embree geometry. Shapes in world space unless they belong to a shape group.
   virtual RTCGeometryTy* makeGeometry(RTCDeviceTy* device) const = 0;
   // The point in world space that `ray` met at `hit`.
@@ -112,6 +125,12 @@ class Shape {
   BsdfPtr m_bsdf;
   std::shared_ptr<SurfaceEmitter> m_emitter;
 };
+
+inline float Shape::detail() const {
+  PrimitiveExtent whole{Vec3(kInfinity), Vec3(-kInfinity)};
+  for (uint64_t i = 0; i < primitiveCount(); ++i) whole.extendBy(extent(uint32_t(i)));
+  return whole.longestSide();
+}
 
 inline SurfacePoint Hit::surfacePoint(const Ray& ray) const {
   SurfacePoint at = motion ? movingPoint(ray, *this) : shape->surfacePoint(ray, raw);

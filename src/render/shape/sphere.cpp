@@ -65,8 +65,7 @@ SurfacePoint Sphere::placeToward(const Vec3d& unit) const {
 
 SurfacePoint Sphere::pointToward(const Vec3d& unit) const {
   SurfacePoint at = placeToward(unit);
-  at.pError = positionError(
-      float(std::max({std::abs(m_center.x), std::abs(m_center.y), std::abs(m_center.z)}) + m_radius));
+  at.pError = preciseError(maxAbs(m_center) + m_radius);
   const Vec3d local = toLocal(unit);
   at.uv = uvToward(local);
   at.shading = CoordinateFrame(at.ng);

@@ -11,7 +11,14 @@ inline float positionError(float magnitude) {
   return magnitude * (64 * 0x1p-24f);
 }
 
-inline float maxAbs(const Vec3& v) {
+// The same of points that are found in double precision from numbers up to `magnitude`, and of shapes that
+// are met in it. What rounding to single precision adds hangs on the point alone; spawnRay() knows of that.
+inline float preciseError(double magnitude) {
+  return float(magnitude * (64 * 0x1p-53));
+}
+
+template <class T>
+T maxAbs(const Imath::Vec3<T>& v) {
   return std::max(std::max(std::abs(v.x), std::abs(v.y)), std::abs(v.z));
 }
 
@@ -59,14 +66,19 @@ inline Ray toObject(const Ray& ray, const RawHit& hit) {
           transformVector(hit.instance->toInstance, ray.direction), ray.tMax, ray.time};
 }
 
-// Takes a point from the space of the instance that was hit to world space.
+// Takes a point from the space of the instance that was hit to world space. Each term of the sum that a
+// coordinate is has its rounding, on this way and on that of the ray into the instance.
 inline void toWorld(SurfacePoint& at, const RawHit& hit) {
   if (!hit.instance) return;
   const auto& [m, inverse] = *hit.instance;
   float scale = 0;
-  for (int row = 0; row < 3; ++row) scale += sqr(m[row][0]) + sqr(m[row][1]) + sqr(m[row][2]);
+  Vec3 terms(std::abs(m[3][0]), std::abs(m[3][1]), std::abs(m[3][2]));
+  for (int row = 0; row < 3; ++row) {
+    scale += sqr(m[row][0]) + sqr(m[row][1]) + sqr(m[row][2]);
+    for (int axis = 0; axis < 3; ++axis) terms[axis] += std::abs(at.p[row] * m[row][axis]);
+  }
   at.p = transformPoint(m, at.p);
-  at.pError = at.pError * std::sqrt(scale) + positionError(maxAbs(at.p));
+  at.pError = at.pError * std::sqrt(scale) + positionError(maxAbs(terms));
   at.dpdu = transformVector(m, at.dpdu);
   at.dpdv = transformVector(m, at.dpdv);
   at.ng = normalize(transformNormal(inverse, at.ng));

@@ -21,6 +21,13 @@ struct PreciseRay {
   bool contains(double t) const { return t > tMin && t < tMax; }
 };
 
+// Where a ray meets a shape; of triangles, with their number in the mesh and barycentric coordinates.
+struct PreciseHit {
+  double t;
+  double u = 0, v = 0;
+  unsigned primitive;
+};
+
 inline Vec3 roundedDown(const Imath::V3d& v) {
   constexpr float infinity = std::numeric_limits<float>::infinity();
   return {std::nextafter(float(v.x), -infinity), std::nextafter(float(v.y), -infinity),
@@ -50,12 +57,15 @@ Imath::Box3d boundsOf(const void* shape, unsigned primitive) {
     return analytic.bounds();
 }
 template <class Analytic>
-bool hit(const void* shape, unsigned primitive, const PreciseRay& ray, double& t) {
+bool hit(const void* shape, unsigned primitive, const PreciseRay& ray, PreciseHit& hit) {
   const auto& analytic = *static_cast<const Analytic*>(shape);
-  if constexpr (requires { analytic.hit(primitive, ray, t); })
-    return analytic.hit(primitive, ray, t);
+  hit.primitive = primitive;
+  if constexpr (requires { analytic.hit(primitive, ray, hit); })
+    return analytic.hit(primitive, ray, hit);
+  else if constexpr (requires { analytic.hit(primitive, ray, hit.t); })
+    return analytic.hit(primitive, ray, hit.t);
   else
-    return analytic.hit(ray, t);
+    return analytic.hit(ray, hit.t);
 }
 
 template <class Analytic>
@@ -78,14 +88,15 @@ void intersectCallback(const RTCIntersectFunctionNArguments* arguments) {
   RTCRayN* rays = RTCRayHitN_RayN(arguments->rayhit, n);
   RTCHitN* hits = RTCRayHitN_HitN(arguments->rayhit, n);
   for (unsigned i = 0; i < n; ++i) {
-    double t;
+    PreciseHit found;
     if (!arguments->valid[i] ||
-        !hit<Analytic>(arguments->geometryUserPtr, arguments->primID, preciseRay(rays, n, i), t))
+        !hit<Analytic>(arguments->geometryUserPtr, arguments->primID, preciseRay(rays, n, i), found))
       continue;
-    RTCRayN_tfar(rays, n, i) = float(t);
-    RTCHitN_u(hits, n, i) = RTCHitN_v(hits, n, i) = 0;
+    RTCRayN_tfar(rays, n, i) = float(found.t);
+    RTCHitN_u(hits, n, i) = float(found.u);
+    RTCHitN_v(hits, n, i) = float(found.v);
     RTCHitN_Ng_x(hits, n, i) = RTCHitN_Ng_y(hits, n, i) = RTCHitN_Ng_z(hits, n, i) = 0;
-    RTCHitN_primID(hits, n, i) = arguments->primID;
+    RTCHitN_primID(hits, n, i) = found.primitive;
     RTCHitN_geomID(hits, n, i) = arguments->geomID;
     RTCHitN_instID(hits, n, i, 0) = arguments->context->instID[0];
   }
@@ -95,9 +106,9 @@ template <class Analytic>
 void occludedCallback(const RTCOccludedFunctionNArguments* arguments) {
   const unsigned n = arguments->N;
   for (unsigned i = 0; i < n; ++i) {
-    double t;
+    PreciseHit found;
     if (arguments->valid[i] &&
-        hit<Analytic>(arguments->geometryUserPtr, arguments->primID, preciseRay(arguments->ray, n, i), t))
+        hit<Analytic>(arguments->geometryUserPtr, arguments->primID, preciseRay(arguments->ray, n, i), found))
       RTCRayN_tfar(arguments->ray, n, i) = -std::numeric_limits<float>::infinity();
   }
 }
@@ -105,7 +116,8 @@ void occludedCallback(const RTCOccludedFunctionNArguments* arguments) {
 }  // namespace detail
 
 // `Analytic` has `Imath::Box3d bounds() const` and `bool hit(const PreciseRay&, double& t) const`, the
-// nearest hit; both with the number of the primitive as the first argument if there are several.
+// nearest hit; both with the number of the primitive as the first argument if there are several. Triangles
+// tell more of a hit.
 template <class Analytic>
 RTCGeometry makeUserGeometry(RTCDevice device, const Analytic& shape, unsigned primitives = 1) {
   RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_USER);
