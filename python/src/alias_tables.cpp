@@ -143,6 +143,8 @@ nb::tuple aliasTables(const Guide& guide, const Array& array, bool bothSides) {
     refuseArray("normals", "as many rows for each of 6 orientations", describe(array));
   std::vector<Float3> normals;
   for (size_t i = 0; i < rows.size(); ++i) normals.push_back(vectorAt(rows, i));
+  for (const Float3& n : normals)
+    if (!(n.x * n.x + n.y * n.y + n.z * n.z < 2)) refuseArray("normals", "unit vectors", "a longer one");
   const GuideView view = guide.view();
   const size_t cells = view.cellCount, slots = normals.size() / kOrientations, sides = bothSides ? 2 : 1;
   const BlockTables blocks = newArray<BlockTables>({cells, slots * sides, kEntries});

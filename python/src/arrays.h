@@ -6,6 +6,7 @@
 
 #include <cstring>
 #include <string>
+#include <type_traits>
 
 #include "bindings.h"
 
@@ -40,9 +41,10 @@ class Rows {
   }
   size_t size() const { return m_count; }
   T operator()(size_t row, int column = 0) const {
-    T value;
+    // A flag may be any byte; what is neither 0 nor 1 is no value of a bool in C++.
+    std::conditional_t<std::is_same_v<T, bool>, uint8_t, T> value;
     std::memcpy(&value, m_data + int64_t(row) * m_rowStride + column * m_columnStride, sizeof value);
-    return value;
+    return T(value);
   }
 
  private:

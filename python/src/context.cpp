@@ -26,6 +26,10 @@ void tellLogger(void*, OdisLogLevel level, const char* message) {
 }
 
 ContextOptions contextOptions(uint32_t threads, uint64_t memoryLimit) {
+  constexpr uint32_t kMostThreads = 4096;
+  if (threads > kMostThreads)
+    throw Error(ODIS_ERROR_INVALID_ARGUMENT,
+                "Context.threads: expected at most " + std::to_string(kMostThreads));
   ContextOptions options;
   options.threads = threads;
   options.memoryLimit = memoryLimit;
@@ -51,7 +55,7 @@ void bindContext(nb::module_& module) {
 Objects that are told of no context share one with the defaults. What there is to tell of (a guide that
 became coarser to keep to the limit of memory, say) goes to logging.getLogger("odis").)")
       .def(nb::init<uint32_t, uint64_t>(), nb::kw_only(), "threads"_a = 0, "memory_limit"_a = 0,
-           R"(threads: the library's own work is spread over this many; 0: one a core.
+           R"(threads: the library's own work is spread over this many, at most 4096; 0: one a core.
 memory_limit: the most bytes that all objects of the context may hold together; 0: no limit.)")
       .def_prop_ro("threads", &LoggingContext::threads,
                    "Number of threads that the library's work is spread over.")

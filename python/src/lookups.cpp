@@ -4,6 +4,7 @@
 #include <nanobind/stl/variant.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "arrays.h"
 #include "calls.h"
@@ -30,6 +31,16 @@ class FlagAt {
   std::vector<Rows<bool>> m_rows;
 };
 
+// Random numbers, two for each of `count` rows; raises ValueError for one outside of [0, 1).
+Rows<float> randomNumbers(const Array& uv, size_t count) {
+  const Rows<float> rows(uv, "uv", 2, count);
+  for (size_t i = 0; i < count; ++i)
+    for (const int column : {0, 1})
+      if (const float u = rows(i, column); !(u >= 0 && u < 1))
+        refuseArray("uv", "numbers in [0, 1)", std::to_string(u));
+  return rows;
+}
+
 Cells findCells(const Guide& guide, const Array& positions, const Array& normals) {
   const Rows<float> at(positions, "positions", 3), normal(normals, "normals", 3, at.size());
   const Cells result = newArray<Cells>({at.size()});
@@ -50,7 +61,7 @@ std::pair<Vectors, Numbers> sample(const Guide& guide, const Array& cells, const
                                    const Array& uv, const Flags& bothSides) {
   const Rows<uint32_t> cell(cells, "cells");
   const size_t count = cell.size();
-  const Rows<float> normal(normals, "normals", 3, count), random(uv, "uv", 2, count);
+  const Rows<float> normal(normals, "normals", 3, count), random = randomNumbers(uv, count);
   const FlagAt both(bothSides, "both_sides", count);
   const Vectors directions = newArray<Vectors>({count, 3});
   const Numbers pdfs = newArray<Numbers>({count});
@@ -79,7 +90,8 @@ Numbers pdf(const Guide& guide, const Array& cells, const Array& normals, const 
     const GuideView view = guide.view();
     for (size_t i = 0; i < count; ++i) {
       const Float3 n = vectorAt(normal, i), wi = vectorAt(direction, i);
-      result.data()[i] = odisGetMapPdf(&view, cell(i), &n, both(i), &wi);
+      const bool finite = std::isfinite(wi.x) && std::isfinite(wi.y) && std::isfinite(wi.z);
+      result.data()[i] = finite ? odisGetMapPdf(&view, cell(i), &n, both(i), &wi) : 0;
     }
   });
   return result;
@@ -130,13 +142,14 @@ positions, normals: float32 of shape (count, 3); shading normals, unit, on wo's 
       .def("sample", sample, "cells"_a, "normals"_a, "uv"_a, "both_sides"_a = false,
            R"(Samples the cells' maps times the cosine: directions (count, 3), densities (count,), float32.
 
-cells: uint32 of shape (count,). normals: float32 of shape (count, 3), unit. uv: float32 of shape (count, 2),
-uniform in [0, 1). both_sides: bool, or bool of shape (count,): whether the surface scatters to both sides.
+cells: uint32 of shape (count,); numbers that are no cell's are as NO_CELL. normals: float32 of shape
+(count, 3), unit. uv: float32 of shape (count, 2), uniform in [0, 1). both_sides: bool, or bool of shape
+(count,): whether the surface scatters to both sides.
 Densities are with respect to solid angle; 0, with the direction 0, where there is no map to sample.)")
       .def("pdf", pdf, "cells"_a, "normals"_a, "directions"_a, "both_sides"_a = false,
            R"(The densities of `sample`, with respect to solid angle: (count,), float32; 0 without a map.
 
-directions: float32 of shape (count, 3), unit.)")
+directions: float32 of shape (count, 3), unit; 0 also where they are not finite.)")
       .def("bsdf_fraction", bsdfFraction, "cells"_a, "roughness"_a,
            R"(Probabilities that draws that may be guided stay with the BSDF: (count,), float32 in (0, 1].
 

@@ -15,18 +15,19 @@ struct Field {
   const char* name;
   OdisVertexField OdisPathVertices::*described;
   Elements elements;
+  bool required = false;
 };
 
 using V = OdisPathVertices;
 constexpr Field kFields[] = {
-    {"position", &V::position, Elements::vectors},
-    {"normal", &V::normal, Elements::vectors},
+    {"position", &V::position, Elements::vectors, true},
+    {"normal", &V::normal, Elements::vectors, true},
     {"wo", &V::wo, Elements::vectors},
-    {"wi", &V::wi, Elements::vectors},
-    {"radiance", &V::radiance, Elements::vectors},
+    {"wi", &V::wi, Elements::vectors, true},
+    {"radiance", &V::radiance, Elements::vectors, true},
     {"weight", &V::weight, Elements::vectors},
     {"direct", &V::direct, Elements::vectors},
-    {"pdf", &V::pdf, Elements::floats},
+    {"pdf", &V::pdf, Elements::floats, true},
     {"survival", &V::survival, Elements::floats},
     {"guidable_pdf", &V::guidablePdf, Elements::floats},
     {"guidable_probability", &V::guidableProbability, Elements::floats},
@@ -49,7 +50,7 @@ constexpr Field kFields[] = {
     {"time", &V::time, Elements::floats},
     {"pixel", &V::pixel, Elements::whole32},
     {"sample", &V::sample, Elements::whole32},
-    {"depth", &V::depth, Elements::whole16},
+    {"depth", &V::depth, Elements::whole16, true},
     {"discrete", &V::discrete, Elements::flags},
     {"scatters_both_sides", &V::scattersBothSides, Elements::flags},
 };
@@ -136,8 +137,9 @@ Of shape (count,):
     discrete                 bool: a delta lobe (False)
     scatters_both_sides      bool: the BSDF scatters to both sides of the surface (False)
 
-Raises ValueError, naming the field, for another name, type, shape or length. Vertices that lack what is
-required, or whose numbers are not finite, are left out and counted when they are used (VertexCounts).)";
+Raises ValueError, naming the field, for another name, type, shape or length, and where a required field
+lacks. Vertices whose numbers are not finite or out of their range are left out and counted when they are used
+(VertexCounts).)";
 
 }  // namespace
 
@@ -160,6 +162,9 @@ VertexArrays::VertexArrays(const nb::dict& fields) {
     const Field& field = fieldNamed(nb::str(name).c_str());
     if (&field != &kFields[0]) add(field, value);
   }
+  for (const Field& field : kFields)
+    if (field.required && m_described.count > 0 && !fields.contains(field.name))
+      refuseArray(field.name, "an array", "none");
 }
 
 VertexArrays vertexArrays(const VerticesArgument& vertices) {

@@ -58,6 +58,16 @@ class Arrays(unittest.TestCase):
             odis.PathVertices(**self.fields, radience=self.fields["radiance"])
         with self.assertRaisesRegex(ValueError, "^position: "):
             odis.PathVertices(normal=self.fields["normal"])
+        with self.assertRaisesRegex(ValueError, "^position: "):
+            odis.PathVertices()
+
+    def test_fields_that_lack(self):
+        for name in ("position", "normal", "wi", "radiance", "pdf", "depth"):
+            fields = {other: array for other, array in self.fields.items() if other != name}
+            for call in (lambda: odis.PathVertices(**fields), lambda: odis.GuideBuilder().add(fields)):
+                with self.assertRaisesRegex(ValueError, f"^{name}: expected an array, found none"):
+                    call()
+        self.assertEqual(len(odis.PathVertices(position=np.zeros((0, 3), np.float32))), 0)
 
     def test_lookups(self):
         builder = odis.GuideBuilder()
@@ -77,6 +87,24 @@ class Arrays(unittest.TestCase):
             guide.pdf(cells, normal, normal, np.zeros(10, np.uint8))
         with self.assertRaisesRegex(ValueError, "^pixel_values: expected float32"):
             builder.build(self.fields, np.ones(10))
+
+    def test_values_in_lookups(self):
+        builder = odis.GuideBuilder()
+        builder.add(self.fields)
+        guide = builder.build(self.fields)
+        normal, uv = self.fields["normal"][:2], np.full((2, 2), 0.5, np.float32)
+        known = np.array([0, odis.NO_CELL], np.uint32)
+        self.assertEqual(guide.sample(known, normal, uv)[1][1], 0)
+        for wrong in (1, -0.1, np.nan, np.inf):
+            with self.assertRaisesRegex(ValueError, r"^uv: expected numbers in \[0, 1\), found"):
+                guide.sample(known, normal, np.array([[0.5, 0.5], [0.5, wrong]], np.float32))
+            if wrong != -0.1:
+                with self.assertRaisesRegex(ValueError, "^normals: expected unit vectors"):
+                    guide.alias_tables(np.full((6, 3), wrong, np.float32))
+        self.assertEqual(guide.pdf(known, normal, np.full((2, 3), np.nan, np.float32)).tolist(), [0, 0])
+        # Any byte but 0 is a flag that is set.
+        flags = np.array([2, 0], np.uint8).view(bool)
+        np.testing.assert_array_equal(guide.pdf(known, normal, -normal, flags), guide.pdf(known, normal, -normal, flags != 0))
 
 
 class Library(unittest.TestCase):
@@ -104,6 +132,9 @@ class Library(unittest.TestCase):
         options = odis.GuideOptions()
         options.prior_samples, options.light_parts = (1, 2, 3, 4), [(5, 6)]
         self.assertEqual((options.prior_samples, options.light_parts), ([1, 2, 3, 4], [(5, 6)]))
+
+    def test_context(self):
+        self.expect_error(odis.ErrorCode.INVALID_ARGUMENT, odis.Context, threads=10**6)
 
     def test_models(self):
         self.expect_error(odis.ErrorCode.FILE, odis.Model.from_file, "there is no such file")

@@ -171,6 +171,15 @@ class Command(InFolder):
                  ((scene, "-o", self.folder / "a.exr", "--aovs", "a:depth,a:depth"), "found a twice"),
                  ((self.write("aov.xml", scene_text("aov", '<string name="aovs" value="foo"/>')), "-o",
                    self.folder / "a.exr"), "aovs: expected NAME:TYPE"),
+                 ((scene, "-o", ""), "expected the name of a file"), ((scene, "--stats-json", scene), "a file of its own"),
+                 ((scene, "-o", self.folder / "a.exr", "--stats-json", self.folder / "a.exr"), "a file of its own"),
+                 ((scene, "--resolution", "100000x100000"), "at most 2147483647 pixels"),
+                 ((self.write("e.xml", scene_text().replace('"12"', '"65536"').replace('"8"', '"65536"')), "-o",
+                   self.folder / "a.exr"), "pixels, found 65536x65536"),
+                 ((self.write("f.xml", scene_text().replace('"4"/></s', '"0"/></s')), "-o", self.folder / "a.exr"),
+                  "a sampler of at least one sample"),
+                 ((self.write("g.xml", scene_text(more="<include filename='g.xml'/>")), "-o", self.folder / "a.exr"),
+                  "g.xml: Exceeded maximum include"),
                  ((self.write("text.xml", "hello"), "-o", self.folder / "a.exr"), "expected a scene in XML"),
                  ((self.write("b.xml", "<bsdf/>"), "-o", self.folder / "a.exr"), "found the element <bsdf>"),
                  ((self.write("c.xml", "<scene version='3.0.0'/>"), "-o", self.folder / "a.exr"), "expected a sensor"),
@@ -183,6 +192,7 @@ class Command(InFolder):
                 self.assertEqual(code, 2, said)
                 self.assertIn(expected, said)
                 self.assertTrue(said.splitlines()[-1].startswith("odis-mitsuba"), said)
+                self.assertNotIn("odis: ", said.splitlines()[-1])
         self.assertFalse((self.folder / "a.exr").exists())
 
     def test_rendering_that_fails(self):
@@ -272,6 +282,15 @@ class SceneFiles(InFolder):
                 smaller = scene_files.load_file(path, size=(4, 3), warn=warnings.append).sensors()[0]
                 self.assertEqual(list(smaller.film().size()), [4, 3])
         self.assertEqual(found.sampler().sample_count(), 9)
+
+    def test_further_and_nested_integrators(self):
+        warnings = []
+        aov = '<string name="aovs" value="d:depth"/><integrator type="erpt"/>'
+        self.scene.write_text(scene_text("aov", aov, "<integrator type='path'/>").replace(
+            '<integer name="max_depth" value="4"/><integer name="rr_depth" value="3"/>', ""))
+        scene = scene_files.load_file(self.scene, warn=warnings.append)
+        self.assertIn("AOV", str(scene.integrator()))
+        self.assertEqual(["one integrator only" in text or "erpt is not known" in text for text in warnings], [True, True])
 
     def test_elements_behind_the_scene(self):
         warnings = []

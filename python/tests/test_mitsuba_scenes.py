@@ -126,6 +126,11 @@ class Scenes(unittest.TestCase):
                                        crop_offset_y=7)
         self.check(scene)
 
+    def test_irradiance_meter(self):
+        scene = base.box()
+        scene["floor"]["meter"] = {"type": "irradiancemeter", "film": scene.pop("sensor")["film"]}
+        self.check(scene, 0.1)
+
     def test_thin_lens(self):
         scene = base.box()
         scene["sensor"].update(type="thinlens", aperture_radius=0.3, focus_distance=3.0)

@@ -6,7 +6,6 @@ import os
 import re
 import shlex
 import sys
-import tempfile
 import time
 from collections import defaultdict
 
@@ -19,11 +18,13 @@ from . import from_scene, scene_files
 from .aovs import check_aovs
 from .integrator import check_variant
 from .kernel_history import compile_seconds
+from .outputs import check_outputs, is_special, write_whole
 from .progress import ProgressLine
 from .settings import PRESETS
 
 NAME = "odis-mitsuba"
 DONE, FAILED, BAD_INPUT, INTERRUPTED = 0, 1, 2, 130
+MOST_PIXELS = 2**31 - 1
 FORMATS = {".exr": mi.Bitmap.FileFormat.OpenEXR, ".png": mi.Bitmap.FileFormat.PNG, ".jpg": mi.Bitmap.FileFormat.JPEG,
            ".jpeg": mi.Bitmap.FileFormat.JPEG, ".bmp": mi.Bitmap.FileFormat.BMP, ".tga": mi.Bitmap.FileFormat.TGA,
            ".ppm": mi.Bitmap.FileFormat.PPM, ".pfm": mi.Bitmap.FileFormat.PFM, ".hdr": mi.Bitmap.FileFormat.RGBE}
@@ -54,9 +55,16 @@ def number_from(least, most=2**31 - 1):
 def resolution(text):
     match = re.fullmatch(r"(\d+)x(\d+)", text)
     size = tuple(int(group) for group in match.groups()) if match else (0, 0)
-    if min(size) < 1:
-        raise argparse.ArgumentTypeError(f"expected WIDTHxHEIGHT, such as 640x360, found {text}")
+    if not 1 <= size[0] * size[1] <= MOST_PIXELS:
+        raise argparse.ArgumentTypeError(f"expected at most {MOST_PIXELS} pixels and WIDTHxHEIGHT, such as 640x360, "
+                                         f"found {text}")
     return size
+
+
+def file_name(text):
+    if not text:
+        raise argparse.ArgumentTypeError("expected the name of a file, found nothing")
+    return text
 
 
 def aovs(text):
@@ -75,8 +83,8 @@ def make_parser():
         "render", help="renders a scene file", description="Renders a scene file (XML) of Mitsuba. Depth, roulette and "
         "hidden emitters are as the scene's own integrator has them, if that traces paths.",
         epilog="Exit codes: 0 done, 1 rendering failed, 2 wrong usage or input, 130 interrupted.")
-    render.add_argument("scene", metavar="SCENE.xml")
-    render.add_argument("-o", "--output", metavar="IMAGE", help="image file; its ending says the format: "
+    render.add_argument("scene", type=file_name, metavar="SCENE.xml")
+    render.add_argument("-o", "--output", type=file_name, metavar="IMAGE", help="image file; its ending says the format: "
                         f"{', '.join(sorted(FORMATS))} (the scene's name with .exr, in the current folder)")
     render.add_argument("--spp", type=number_from(1), metavar="N", help="samples per pixel (the scene's)")
     render.add_argument("--seed", type=number_from(0, 2**32 - 1), default=0, metavar="N",
@@ -103,53 +111,9 @@ def make_parser():
     render.add_argument("--aovs", type=aovs, metavar="LIST",
                         help="further channels, as of Mitsuba's integrator aov, such as dd:depth,nn:sh_normal (the "
                         "scene's with odis, none with path)")
-    render.add_argument("--stats-json", metavar="FILE", help="writes times, rays and settings there")
+    render.add_argument("--stats-json", type=file_name, metavar="FILE", help="writes times, rays and settings there")
     render.add_argument("--quiet", action="store_true", help="says nothing but errors")
     return parser
-
-
-def check_target(path):
-    """A file to write, before there is anything to write."""
-    folder = os.path.dirname(os.path.realpath(path))
-    if os.path.isdir(path):
-        raise Problem(BAD_INPUT, f"{path}: expected a file, found a folder")
-    if not os.path.isdir(folder):
-        raise Problem(BAD_INPUT, f"{path}: expected that its folder exists")
-    if not os.access(path if is_special(path) else folder, os.W_OK):
-        raise Problem(BAD_INPUT, f"{path}: expected a place that may be written to")
-
-
-def is_special(path):
-    """Whether it is written straight into: a device, a pipe, or an open file of a process, which is what /dev/stdout
-    leads to and may be a plain file."""
-    while True:
-        folder = os.path.realpath(os.path.dirname(os.path.abspath(path)))
-        if f"{folder}/".startswith("/proc/"):
-            return True
-        path = os.path.join(folder, os.path.basename(path))
-        if not os.path.islink(path):
-            return os.path.exists(path) and not os.path.isfile(path)
-        path = os.path.join(folder, os.readlink(path))
-
-
-def write_whole(path, data):
-    """Writes bytes so that under this name there is all or nothing."""
-    if is_special(path):
-        with open(path, "ab") as file:
-            file.write(data)
-        return
-    path = os.path.realpath(path)  # A link stays, and leads to the new file.
-    handle, beside = tempfile.mkstemp(prefix=f".{os.path.basename(path)}.", dir=os.path.dirname(path))
-    try:
-        with open(handle, "wb") as file:
-            file.write(data)
-        mask = os.umask(0)
-        os.umask(mask)
-        os.chmod(beside, 0o666 & ~mask)
-        os.replace(beside, path)
-    except BaseException:
-        os.unlink(beside)
-        raise
 
 
 def format_of(path):
@@ -199,6 +163,16 @@ def cause_of(error):
     return error
 
 
+def sentence_of(error):
+    """What an error says in one line. Mitsuba tells of places in its own sources, and of each file that includes the
+    one with the mistake."""
+    text = getattr(error, "strerror", None) or str(error)
+    lines = [line.strip() for line in text.splitlines() if line.strip()]
+    if any(line.endswith("while processing <include>:") for line in lines[:-1]):
+        lines = lines[-1:]
+    return re.sub(r"\[[\w.]*(parser|properties)\.(cpp|h):\d+\] |^odis: |^\w*Error: ", "", " ".join(lines))
+
+
 class Rendering:
     """A rendering by the command, stage by stage; `seconds` has their times."""
 
@@ -220,8 +194,10 @@ class Rendering:
             if given and args.integrator != "odis":
                 raise Problem(BAD_INPUT, f"{option}: expected --integrator odis, path has no such thing")
         format_of(self.output)
-        for path in filter(None, (self.output, self.args.stats_json)):
-            check_target(path)
+        try:
+            check_outputs(args.scene, filter(None, (self.output, args.stats_json)))
+        except ValueError as error:
+            raise Problem(BAD_INPUT, str(error)) from None
         set_variant(self.args.variant)
         mi.set_log_level(mi.LogLevel.Error if self.args.quiet else mi.LogLevel.Warn)
 
@@ -229,15 +205,23 @@ class Rendering:
         path, begin = self.args.scene, time.perf_counter()
         try:
             scene = scene_files.load_file(path, self.args.resolution, warn=lambda text: self.say(f"{path}: {text}"))
-            if not scene.sensors():
-                raise ValueError("expected a sensor")
+            self.check_scene(scene)
         except (OSError, ValueError, RuntimeError) as error:
-            text = getattr(error, "strerror", None) or str(error)
-            raise Problem(BAD_INPUT, f"{path}: {re.sub(r'^.parser.cpp:[0-9]*. ', '', text)}") from None
+            raise Problem(BAD_INPUT, f"{path}: {sentence_of(error)}") from None
         compiling = compile_seconds()
         self.seconds["compile"] += compiling
         self.seconds["load"] += time.perf_counter() - begin - compiling
         return scene
+
+    def check_scene(self, scene):
+        if not scene.sensors():
+            raise ValueError("expected a sensor")
+        sensor = scene.sensors()[0]
+        width, height = sensor.film().crop_size()
+        if not 1 <= width * height <= MOST_PIXELS:
+            raise ValueError(f"expected an image of 1 to {MOST_PIXELS} pixels, found {width}x{height}")
+        if not self.args.spp and sensor.sampler().sample_count() < 1:
+            raise ValueError("expected a sampler of at least one sample, found none; --spp says how many to take")
 
     def make_integrator(self, scene):
         """The integrator that was asked for, with the scene's settings where the command line has no others."""
@@ -251,8 +235,7 @@ class Rendering:
             path = {"type": "path", **from_scene.settings_of_scene(scene), **given}
             return mi.load_dict({"type": "aov", "aovs": args.aovs, "image": path} if args.aovs else path)
         except (RuntimeError, TypeError, ValueError) as error:
-            last = re.sub(r"^\w*Error: |\[parser.cpp:\d+\] ", "", str(error).strip().splitlines()[-1])
-            raise Problem(BAD_INPUT, last) from None
+            raise Problem(BAD_INPUT, sentence_of(error)) from None
 
     def render(self, scene):
         """The film's image, a mi.Bitmap."""
@@ -290,11 +273,14 @@ class Rendering:
             scene = self.load()
             try:
                 bitmap = self.render(scene)
-            except (RuntimeError, ValueError, MemoryError, odis.Error) as error:
+            except Problem:
+                raise
+            except Exception as error:
                 cause = cause_of(error)
                 if isinstance(cause, KeyboardInterrupt):
                     raise KeyboardInterrupt from None
-                raise Problem(FAILED, f"{self.args.scene}: rendering failed: {str(cause) or repr(cause)}") from error
+                text = sentence_of(cause) or repr(cause)
+                raise Problem(FAILED, f"{self.args.scene}: rendering failed: {text}") from error
             begin = time.perf_counter()
             versions = {"odis": odis.__version__, "mitsuba": mi.__version__, "drjit": dr.__version__}
             metadata = {"generatedBy": ", ".join(f"{name} {version}" for name, version in versions.items()),

@@ -40,6 +40,7 @@ MANY_RAYS = 5
 FILTER_STEPS = 256
 # Side of the tiles that odis.Frame takes samples by, in pixels: it is fastest if all of a tile come at once.
 TILE = 16
+METER = "IrradianceMeter"
 
 
 def filter_quantiles(rfilter):
@@ -88,7 +89,10 @@ class Camera:
         if sensor.shutter_open_time() > 0:
             moment += rng.next() * sensor.shutter_open_time()
         wavelength = rng.next() if mi.is_spectral else mi.Float(0.5)
-        ray, weight = sensor.sample_ray(moment, wavelength, position / mi.ScalarVector2f(width, height), aperture)
+        # The irradiance meter has rays with differentials alone.
+        sample_ray = sensor.sample_ray_differential if sensor.class_name() == METER else sensor.sample_ray
+        ray, weight = sample_ray(moment, wavelength, position / mi.ScalarVector2f(width, height), aperture)
+        ray = mi.Ray3f(ray)
         return rng, ray, weight * filter_weight
 
 

@@ -155,7 +155,10 @@ def _is_integrator(kind):
 
 def _replace_unknown_integrators(root, warn):
     defaults = defaults_of(root)
-    for node in root.findall("integrator"):
+    for further in root.findall("integrator")[1:]:
+        root.remove(further)
+        warn(f"a scene has one integrator only, the further integrator {further.get('type')} is left out")
+    for node in root.iter("integrator"):
         kind = value_of(node.get("type", ""), defaults)
         if kind and _is_integrator(kind):
             continue
