@@ -53,11 +53,12 @@ Reference cachedReference(const Scene& scene, const std::string& name, uint64_t 
                           RenderOptions options, const std::string& folder, Progress& progress) {
   const int spp = options.spp;
   const FilmSettings& film = scene.film();
+  const bool onFilmOnly = !film.sampleBorder && film.filter->reach() > 0;
   const auto settingsAt = [&](int samples) {
-    return fmt::format("scene {} size {}x{} crop {},{},{},{} depth {} roulette {} filter {} {} spp {}",
+    return fmt::format("scene {} size {}x{} crop {},{},{},{} depth {} roulette {} filter {} {}{} spp {}",
                        hexText(sceneHash), film.width, film.height, film.crop.x, film.crop.y, film.crop.width,
                        film.crop.height, options.maxDepth, options.rrDepth, film.filter->name(),
-                       film.filter->radius(), samples);
+                       film.filter->radius(), onFilmOnly ? " on the film" : "", samples);
   };
   const auto pathOf = [&](const std::string& settings) {
     return fmt::format("{}/{}-{}.exr", folder, name, hexText(hashText(settings)));

@@ -195,6 +195,61 @@ TEST(Filter, PositiveFiltersHaveUnitWeights) {
   }
 }
 
+// The filter over the offsets between two places of an axis, times g, by the midpoint rule; but for a factor.
+template <class G>
+double integrateAxis(const Filter& filter, double from, double to, G&& g) {
+  constexpr int n = 4000;
+  double sum = 0;
+  for (int i = 0; i < n; ++i) {
+    const double x = from + (i + 0.5) / n * (to - from);
+    sum += filter.value({float(x), 0.0f}) * g(x);
+  }
+  return sum * (to - from) / n;
+}
+
+// On films of few pixels, from even numbers: what lies beyond the film is not drawn, and what lies on it
+// counts as the filter says, over the filter's integral on the film.
+TEST(Filter, KeepsToTheFilm) {
+  using Function = std::function<double(double)>;
+  const Function functions[] = {[](double) { return 1.0; }, [](double x) { return x; },
+                                [](double x) { return x > 0.2 ? 1.0 : 0.0; }};
+  constexpr int n = 4000;
+  for (const Case& c : cases()) {
+    const auto filter = c.make();
+    const float other = 0.4f;  // draws the place along the other axis, whose weight is divided by
+    double otherWeight = 0;
+    for (int i = 0; i < n; ++i) otherWeight += filter->sample({(float(i) + 0.5f) / n, other}).weight / n;
+    for (const auto& [before, after] : std::vector<std::pair<int, int>>{
+             {0, 0}, {0, 1}, {1, 0}, {0, 2}, {1, 1}, {2, 0}, {0, 7}, {1, 6}, {2, 5}, {5, 2}, {7, 0}}) {
+      SCOPED_TRACE(c.name + " between " + std::to_string(before) + " and " + std::to_string(after));
+      const FilterPart part = filter->part(before, after);
+      const double from = -std::min(before + 0.5, double(filter->radius())),
+                   to = std::min(after + 0.5, double(filter->radius()));
+      double sums[3] = {};
+      for (int i = 0; i < n; ++i) {
+        const FilterSample s = filter->sample({part.number((float(i) + 0.5f) / n), other});
+        ASSERT_GE(s.offset.x, from - 1e-5);
+        ASSERT_LE(s.offset.x, to + 1e-5);
+        for (int k = 0; k < 3; ++k)
+          sums[k] += part.weight * s.weight / otherWeight * functions[k](s.offset.x) / n;
+      }
+      const double integral = integrateAxis(*filter, from, to, functions[0]);
+      for (int k = 0; k < 3; ++k)
+        EXPECT_NEAR(sums[k], integrateAxis(*filter, from, to, functions[k]) / integral, 2e-3);
+    }
+  }
+}
+
+TEST(Filter, IsWholeAwayFromBorders) {
+  for (const Case& c : cases()) {
+    const auto filter = c.make();
+    const FilterPart part = filter->part(filter->reach(), filter->reach());
+    EXPECT_EQ(part.weight, 1.0f) << c.name;
+    for (const float u : {0.0f, 1e-8f, 0.3f, 0.5f, kOneMinusEpsilon}) EXPECT_EQ(part.number(u), u) << c.name;
+    EXPECT_LT(filter->radius(), float(filter->reach()) + 0.5f + 1e-6f);
+  }
+}
+
 TEST(Filter, ExtremeRandomNumbersStayFinite) {
   for (const Case& c : cases()) {
     const auto filter = c.make();

@@ -6,6 +6,7 @@
 #include <array>
 #include <stdexcept>
 #include <utility>
+#include <vector>
 
 namespace odis::render {
 
@@ -33,6 +34,11 @@ class BoxFilter final : public Filter {
   std::string name() const override { return "box"; }
 
  private:
+  Side side(int pixels) const override {
+    const double share = 0.5 * std::min(1.0, (pixels + 0.5) / m_radius);
+    return {share, share};
+  }
+
   float m_radius;
 };
 
@@ -58,6 +64,10 @@ class TentFilter final : public Filter {
       samples.y[i] = filter.invert(v[i]);
       samples.weight[i] = 1;
     }
+  }
+  Side side(int pixels) const override {
+    const double x = std::min(1.0, (pixels + 0.5) / m_radius), share = x - 0.5 * x * x;
+    return {share, share};
   }
   float profile(float x) const { return std::max(0.0f, 1 - std::abs(x) / m_radius) / m_radius; }
   float invert(float u) const {
@@ -86,6 +96,11 @@ class TabulatedFilter final : public Filter {
     for (float& node : m_density) node = float(node / sum);
     for (float& node : m_cdf) node = float(node / sum);
     m_cdf[kCells] = 1;
+    double integral = 0;
+    for (int i = 0; i < reach(); ++i) {
+      integral += integrate(std::max(float(i) - 0.5f, 0.0f), float(i) + 0.5f);
+      m_sides.push_back({0.5 * cdf(float(i) + 0.5f), integral});
+    }
   }
 
   FilterSample sample(const Vec2& u) const override {
@@ -99,6 +114,24 @@ class TabulatedFilter final : public Filter {
 
  private:
   static constexpr int kCells = 512;
+
+  Side side(int pixels) const override {
+    return size_t(pixels) < m_sides.size() ? m_sides[size_t(pixels)] : Side{0.5, 0.5};
+  }
+  // How probable it is that an offset is below x, 0 to the radius, without its sign.
+  double cdf(float x) const {
+    const int cell = std::min(int(x / cellWidth()), kCells - 1);
+    const double a = m_density[cell], b = m_density[cell + 1], t = x / cellWidth() - float(cell);
+    return m_cdf[cell] + cellWidth() * (a * t + (b - a) * t * t / 2);
+  }
+  // Midpoint rule.
+  double integrate(float from, float to) const {
+    constexpr int kSteps = 1000;
+    const float step = (to - from) / kSteps;
+    double sum = 0;
+    for (int i = 0; i < kSteps; ++i) sum += m_profile(from + (float(i) + 0.5f) * step);
+    return sum * step;
+  }
   float cellWidth() const { return m_profile.radius / kCells; }
   float profileAt(float x) const { return std::abs(x) < m_profile.radius ? m_profile(std::abs(x)) : 0.0f; }
 
@@ -122,6 +155,7 @@ class TabulatedFilter final : public Filter {
   std::string m_name;
   std::array<float, kCells + 1> m_density;  // of |x| over [0, radius]
   std::array<float, kCells + 1> m_cdf;
+  std::vector<Side> m_sides;  // behind 0, 1, ... pixels, up to the radius
 };
 
 // exp(-x^2 / (2 stddev^2)) less its value at the radius of four standard deviations, so that it ends at zero.

@@ -30,6 +30,16 @@ struct FilterSamples {
   }
 };
 
+// A part of an axis of a filter, between two places around the pixel's centre: the numbers that draw it, and
+// what weights are multiplied by, so that their expectation is 1 over the part.
+struct FilterPart {
+  float first = 0, width = 1;
+  float weight = 1;
+
+  // The number that draws a place in the part; as it is where the part is the whole axis.
+  float number(float u) const { return std::min(first + u * width, kOneMinusEpsilon); }
+};
+
 class Filter {
  public:
   virtual ~Filter() = default;
@@ -42,6 +52,24 @@ class Filter {
   virtual float value(const Vec2& offset) const = 0;
   virtual float radius() const = 0;  // in pixels
   virtual std::string name() const = 0;
+
+  // The filter reaches over the border of this many pixels, counted from the border.
+  int reach() const { return int(std::ceil(radius() - 0.5f)); }
+  // What lies on a film that has so many pixels before this one and so many after it.
+  FilterPart part(int before, int after) const {
+    const Side a = side(before), b = side(after);
+    const double drawn = a.drawn + b.drawn;
+    return {float(0.5 - a.drawn), float(drawn), float(drawn / (a.integral + b.integral))};
+  }
+
+ protected:
+  // From the pixel's centre to the border behind so many pixels, on one axis and to one side; 0.5 each where
+  // the border is beyond the radius.
+  struct Side {
+    double drawn;     // how probable an offset is there
+    double integral;  // of the normalised filter
+  };
+  virtual Side side(int pixels) const = 0;
 };
 
 // In pixels: narrower filters have no place in single precision, wider ones blur everything.

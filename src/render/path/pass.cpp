@@ -122,16 +122,32 @@ Path pathWithoutRay(const Pass& pass, uint32_t pixel, Vec2i at, uint32_t sample)
   return path;
 }
 
+// Near the film's border, makes the numbers of samples draw places on it. Sets weights to what those of the
+// filter are to be multiplied by.
+void keepOnFilm(const FilmSettings& film, std::span<const Vec2i> pixels, CameraSamples& samples) {
+  const int reach = film.sampleBorder ? 0 : film.filter->reach();
+  for (size_t i = 0; i < pixels.size(); ++i) {
+    samples.weights[i] = 1;
+    const Vec2i before = pixels[i], after(film.width - 1 - before.x, film.height - 1 - before.y);
+    if (std::min({before.x, before.y, after.x, after.y}) >= reach) continue;
+    const FilterPart x = film.filter->part(before.x, after.x), y = film.filter->part(before.y, after.y);
+    samples.u[i] = x.number(samples.u[i]);
+    samples.v[i] = y.number(samples.v[i]);
+    samples.weights[i] = x.weight * y.weight;
+  }
+}
+
 // Finds the rays of samples, whose numbers are drawn and whose pixels lie there on the film.
 void findCameraRays(const Scene& scene, std::span<const Vec2i> pixels, CameraSamples& samples) {
   const Sensor& sensor = scene.sensor();
   CameraPlaces& places = samples.places;
+  keepOnFilm(scene.film(), pixels, samples);
   FilterSamples offsets;
   scene.film().filter->sampleEach(pixels.size(), samples.u, samples.v, offsets);
   for (size_t i = 0; i < pixels.size(); ++i) {
     places.filmX[i] = float(pixels[i].x) + 0.5f + offsets.x[i];
     places.filmY[i] = float(pixels[i].y) + 0.5f + offsets.y[i];
-    samples.weights[i] = offsets.weight[i] * sensor.weight(places.film(i));
+    samples.weights[i] *= offsets.weight[i] * sensor.weight(places.film(i));
   }
   sensor.rays(pixels.size(), places, samples.rays);
 }

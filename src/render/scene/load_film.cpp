@@ -72,6 +72,7 @@ FilmSettings loadFilm(const Properties* node, const LoadOptions& options, Warnin
   const Properties* filter = film.child("rfilter");
   result.filter = loadFilter(filter, warnings);
   if (filter) warnOfMisspelt(*filter, warnings);
+  result.sampleBorder = film.boolean("sample_border", false);
   std::optional<Vec2i> resolution = options.resolution;
   if (!resolution && options.pixels > 0) {
     const double aspect = double(result.width) / result.height;

@@ -26,6 +26,7 @@ struct FilmSettings {
   int width = 768, height = 576;
   Crop crop;  // the whole image unless told otherwise
   std::shared_ptr<const Filter> filter;
+  bool sampleBorder = false;  // whether pixels at the border see as far beyond it as their filter reaches
 };
 
 // The axis-aligned box and the sphere around everything that a ray can hit.
