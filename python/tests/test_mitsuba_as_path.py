@@ -108,6 +108,28 @@ class UnevenLights(AsPath):
         self.assertFalse(is_uneven(mi.load_dict({"type": "constant"})))
 
 
+class FilmBorder(unittest.TestCase):
+    def test_nothing_beyond_it_shows(self):
+        """A wall of 1 fills the picture, one of 100 begins where it ends."""
+        def walls(**film):
+            sensor = {"type": "orthographic", "film": {"type": "hdrfilm", "width": 8, "height": 8, **film},
+                      "to_world": mi.ScalarTransform4f().look_at([0, 0, 5], [0, 0, 0], [0, 1, 0])}
+            glow = lambda radiance: {"type": "area", "radiance": {"type": "rgb", "value": radiance}}
+            return mi.load_dict({"type": "scene", "sensor": sensor, "wall": {"type": "rectangle", "emitter": glow(1.0)},
+                                 "beside": {"type": "rectangle", "to_world": at(-2, 0, 0), "emitter": glow(100.0)}})
+        crop = {"crop_width": 3, "crop_height": 4, "crop_offset_x": 5, "crop_offset_y": 2}
+        for kind in ("gaussian", "tent", "mitchell"):
+            for more in ({}, crop):
+                image = base.render(walls(rfilter={"type": kind}, **more), "odis", 1, 1024, max_depth=1)
+                # The filter's weights vary by 1 to 5 % of the mean of 1024.
+                np.testing.assert_allclose(image, 1, atol=0.25 if kind == "mitchell" else 0.1)
+                self.assertAlmostEqual(image.mean(), 1, delta=0.02)
+        scene = walls(rfilter={"type": "gaussian"}, sample_border=True)
+        ours, theirs = (base.render(scene, kind, 1, 4096, max_depth=1).mean((0, 2)) for kind in ("odis", "path"))
+        self.assertGreater(theirs[0], 10)
+        np.testing.assert_allclose(ours, theirs, rtol=0.1)
+
+
 class SunsDisk(unittest.TestCase):
     def test_light_is_that_of_sample_direction(self):
         """Without a sky, means over the same grid; `eval` sees a disk that is up to .5 % larger or smaller."""

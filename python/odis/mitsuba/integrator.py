@@ -15,6 +15,7 @@ import odis
 from . import checks, path, recording
 from .aovs import make_aovs, nested_integrators
 from .arrays import array_of
+from .film_filter import make_film_filter
 from .guide_tables import make_guide_tables
 from .kernel_history import compile_seconds
 from .lights import make_light_table
@@ -37,51 +38,24 @@ PATHS = 1 << 22
 # paths are about as long then, and packets of neighbours are coherent.
 SAMPLES_PER_LANE, LEAST_LANES = 32, 4096
 MANY_RAYS = 5
-FILTER_STEPS = 256
 # Side of the tiles that odis.Frame takes samples by, in pixels: it is fastest if all of a tile come at once.
 TILE = 16
 METER = "IrradianceMeter"
 
 
-def filter_quantiles(rfilter):
-    """Offsets that divide the absolute value of a reconstruction filter into equal parts, [FILTER_STEPS + 1]; None for
-    the box filter; and the filter's integral."""
-    if rfilter.is_box_filter():
-        return None, 1.0
-    x = np.linspace(-rfilter.radius(), rfilter.radius(), 4097)
-    values = np.array(rfilter.eval(mi.Float(x.astype(np.float32))), np.float64)
-    middle = (np.abs(values[1:]) + np.abs(values[:-1])) / 2
-    cdf = np.concatenate([[0], np.cumsum(middle)]) + 1e-9 * np.arange(x.size)
-    quantiles = np.interp(np.linspace(0, cdf[-1], FILTER_STEPS + 1), cdf, x)
-    return array_of(mi.Float, quantiles.astype(np.float32)), float(values.sum() * (x[1] - x[0]))
-
-
-def sample_filter(rfilter, quantiles, integral, rng):
-    """An offset from a pixel's centre, and its weight: the filter over the density of the offset."""
-    if quantiles is None:
-        return rng.next_2d() - 0.5, mi.Float(1)
-    offset, weight = mi.Vector2f(0), mi.Float(1)
-    for axis in range(2):
-        u = rng.next() * FILTER_STEPS
-        step = dr.minimum(mi.UInt32(u), FILTER_STEPS - 1)
-        low, high = dr.gather(mi.Float, quantiles, step), dr.gather(mi.Float, quantiles, step + 1)
-        offset[axis] = dr.lerp(low, high, u - mi.Float(step))
-        weight *= rfilter.eval(offset[axis]) * (high - low) * (FILTER_STEPS / integral)
-    return offset, weight
-
-
 class Camera:
     """Rays of the samples of a sensor's film."""
 
-    def __init__(self, sensor, seed, quantiles, integral):
-        self.sensor, self.seed, self.quantiles, self.integral = sensor, seed, quantiles, integral
+    def __init__(self, sensor, seed, film_filter):
+        self.sensor, self.seed, self.film_filter = sensor, seed, film_filter
 
     def __call__(self, pixel, number):
         sensor, film = self.sensor, self.sensor.film()
         rng = generator_of(self.seed, pixel, number)
         width, height = film.crop_size()
-        offset, filter_weight = sample_filter(film.rfilter(), self.quantiles, self.integral, rng)
-        position = mi.Point2f(mi.Float(pixel % width), mi.Float(pixel // width)) + 0.5 + offset
+        at = mi.Point2u(pixel % width, pixel // width)
+        offset, filter_weight = self.film_filter.sample(at, rng)
+        position = mi.Point2f(at) + 0.5 + offset
         aperture = mi.Point2f(0.5)
         if sensor.needs_aperture_sample():
             aperture = rng.next_2d()
@@ -197,7 +171,7 @@ def make_integrator():
 
         # Dr.Jit traverses __dict__, also of an integrator that a scene holds, and would compile kernels anew whenever
         # something in there changes: all is kept out of it.
-        __slots__ = ("settings", "scene", "known", "pixel_filter", "frame", "rays", "seconds",
+        __slots__ = ("settings", "scene", "known", "film_filter", "frame", "rays", "seconds",
                      "progress", "separate_compile", "aovs", "given", "cached", "unguided", "said_unguided",
                      "samples_per_lane")
 
@@ -269,7 +243,7 @@ def make_integrator():
         def _render(self, sensor, seed, spp):
             """The image as the film stores it: colour, alpha if it has it, and weight."""
             film = sensor.film()
-            self.pixel_filter = filter_quantiles(film.rfilter())
+            self.film_filter = make_film_filter(film)
             width, height = film.crop_size()
             cached = self.cached and not 0 <= self.settings.max_depth < LEAST_CACHED_MAX_DEPTH
             self.frame = frame = odis.Frame(
@@ -309,7 +283,7 @@ def make_integrator():
                                        result=dr.zeros(mi.Float, 4 * part.pixel.size))
                 # An opaque number, so that the same kernel serves all seeds.
                 seed = dr.opaque(mi.UInt64, hash_seed(frame_pass.seed))
-                vertices = self._trace(Camera(sensor, seed, *self.pixel_filter), tables, samples, part.recorded)
+                vertices = self._trace(Camera(sensor, seed, self.film_filter), tables, samples, part.recorded)
             with self._timed("add"):
                 result = np.asarray(samples.result).reshape(-1, 4)
                 tags = result[:, 3].view(np.uint32)
