@@ -142,7 +142,7 @@ Traced trace(const Scene& scene, const Settings& settings, const Sample& of) {
     float survival = depth >= kRouletteDepth ? std::min(maxComponent(throughput), 0.95f) : 1;
     if (cell != odis::kNoCell && depth > 1)
       survival = odis::survivalProbability(of.guide.rules, told.survivalFactor,
-                                           luminance(throughput) / of.pixelValues[of.pixel]);
+                                           luminance(throughput) / of.pixelValues[of.pixel], depth);
     if (random.next() >= survival) break;
     throughput = throughput / survival;
     recorder.survived(path, survival);

@@ -4,13 +4,16 @@
 //
 //   const uint32_t cell = odis::findCell(view, {position, normal, pixel, sample, first});
 //   if (cell != odis::kNoCell) {
-//     ... roulette on arrival: odis::survivalProbability(view, cell, throughput / pixelValue)
+//     ... roulette on arrival:
+//         odis::survivalProbability(view.rules, decisions.survivalFactor, throughput / pixelValue, depth)
 //     ... direction: odis::VertexMap<float> with odis::bsdfFraction(view, cell, roughness),
 //         mixed as odis/mixture.h shows
 //     ... light: odis::learnedLights(view, cell)
 //     ... an end, if the image may be biased: odis::cachedRadiance(view, place, cell, throughput, footprint)
 //   }
 #pragma once
+
+#include "odis/cpp17.h"  // first of all
 
 #include "odis/cell_grid.h"
 #include "odis/sampling_map.h"
@@ -60,7 +63,7 @@ inline void findAround(const GuideView& view, const uint64_t* keys, const uint64
 
 // Fetches the slot at which the search for a key begins.
 inline void prefetchSlot(const GuideView& view, uint64_t hash) {
-  if (view.slots) __builtin_prefetch(&view.slots[hash & view.slotMask]);
+  if (view.slots) fetchAhead(&view.slots[hash & view.slotMask]);
 }
 
 // Finds the cells of many vertices, which is faster: cells lie all over memory, and here no look-up waits
@@ -90,8 +93,7 @@ inline void findCells(const GuideView& view, const Place* places, size_t count, 
 inline void prefetchCell(const GuideView& view, uint32_t cell) {
   constexpr size_t kLine = 64;
   const auto fetch = [](const void* data, size_t bytes) {
-    for (size_t byte = 0; byte < bytes; byte += kLine)
-      __builtin_prefetch(static_cast<const char*>(data) + byte);
+    for (size_t byte = 0; byte < bytes; byte += kLine) fetchAhead(static_cast<const char*>(data) + byte);
   };
   fetch(view.decisions + cell, sizeof(CellDecisions));
   fetch(view.maps.sums + size_t(cell) * kSumsPerMap, kSumsPerMap * sizeof(float));
@@ -122,14 +124,21 @@ ODIS_HOST_DEVICE inline bool guidesDirections(const CellDecisions& cell) {
   return cell.bsdfFraction[0] < 1 || cell.bsdfFraction[1] < 1 || cell.bsdfFraction[2] < 1;
 }
 
+// Paths of this depth and deeper go on with at most this probability, so that each ends, where a host has no
+// other limit: nothing else ends those between walls that lose nothing.
+inline constexpr uint32_t kDeepPath = 32;
+inline constexpr float kMostDeepSurvival = 0.95f;
+
 // The probability, in (0, 1], with which a path should go on from a vertex in this cell, instead of ending
 // before its next-event estimation (docs/guiding.md; Rath et al. 2022, EARS). `throughput` is the path's up
-// to the vertex over (an estimate of) its pixel's value, both as luminance; 1 for what is not a number.
+// to the vertex over (an estimate of) its pixel's value, both as luminance. `depth` is the vertex's, 1 for
+// the first one of the path: a host with another limit may leave it out. Without a cell, on mirrors, say,
+// the factor is INFINITY. Where the product is not a number the path is as likely to go on as can be.
 template <class Real>
 ODIS_HOST_DEVICE inline Real survivalProbability(const GuideRules& rules, Real survivalFactor,
-                                                 Real throughput) {
-  const Real survival = throughput * survivalFactor;
-  return select(survival < Real(1), max(survival, Real(rules.leastSurvival)), Real(1));
+                                                 Real throughput, uint32_t depth = 1) {
+  const Real survival = throughput * survivalFactor, most(depth < kDeepPath ? 1.0f : kMostDeepSurvival);
+  return select(survival < most, max(survival, Real(rules.leastSurvival)), most);
 }
 
 // The probability, in (0, 1], with which a shadow ray should be traced for light that, if nothing hides it,

@@ -69,7 +69,7 @@ class Mixture {
     const Real mapFraction = Real(1) - m_fraction;
     const Real begin = select(fromMap, m_fraction, Real(0)),
                length = select(fromMap, mapFraction, m_fraction);
-    return min((u - begin) / length, Real(0x1.fffffep-1f));
+    return min((u - begin) / length, Real(0.99999994f));
   }
 
   // Samples the mixture, for one path. `map` has sample(u, v), with the fields wi and pdf, and pdf(wi),

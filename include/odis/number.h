@@ -25,6 +25,13 @@
 
 namespace odis {
 
+// Fetches memory that is read soon, where the compiler knows how to.
+inline void fetchAhead([[maybe_unused]] const void* address) {
+#if defined(__GNUC__)
+  __builtin_prefetch(address);
+#endif
+}
+
 // The integer type that belongs to a number type.
 template <class Real>
 struct IntegerOf;

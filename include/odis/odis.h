@@ -94,6 +94,8 @@ ODIS_API void odisReleaseModel(OdisModel model);
 // ---- recorder: from the events of paths to vertices ----
 
 // One for each thread or tile. 250 bytes a vertex while paths are open; memory is kept for the next ones.
+// From odisBeginPath to odisFinishPaths a recorder belongs to the thread that began: calls of others are
+// errors.
 // Many paths may be open at once, their events in any order as long as each path's own are in order:
 //
 //   for each ray of the path:
@@ -106,6 +108,9 @@ ODIS_API void odisReleaseModel(OdisModel model);
 //   odisFinishPaths                closes all paths
 //
 // A surface without a bounce (the path ended there by its depth, or by roulette on arrival) leaves no vertex.
+// Another order is an error: what follows an escape, cached radiance or a bounce without being about the next
+// ray, roulette after the shadow ray, and a second roulette or light event of one surface. Numbers out of
+// their range are counted where the vertices are used (OdisVertexCounts).
 ODIS_API OdisRecorder odisNewRecorder(OdisContext context);
 ODIS_API void odisRetainRecorder(OdisRecorder recorder);
 ODIS_API void odisReleaseRecorder(OdisRecorder recorder);
@@ -119,7 +124,8 @@ ODIS_API void odisInitEmissionEvent(OdisEmissionEvent* event, size_t size);
 ODIS_API bool odisRecordEmission(OdisRecorder recorder, uint32_t path, const OdisEmissionEvent* event);
 // The path ended at its last surface, with this radiance of the cell in place of what it would have found.
 ODIS_API bool odisRecordCachedRadiance(OdisRecorder recorder, uint32_t path, const OdisFloat3* radiance);
-// Roulette on arrival let the path go on with this probability, in (0, 1].
+// Roulette on arrival let the path go on with this probability, in (0, 1]. That of a bounce is told by
+// OdisBounceEvent.survival.
 ODIS_API bool odisRecordSurvival(OdisRecorder recorder, uint32_t path, float probability);
 ODIS_API void odisInitLightEvent(OdisLightEvent* event, size_t size);
 ODIS_API bool odisRecordLight(OdisRecorder recorder, uint32_t path, const OdisLightEvent* event);
@@ -147,7 +153,8 @@ ODIS_API void odisInitFrameOptions(OdisFrameOptions* options, size_t size);
 ODIS_API OdisFrame odisNewFrame(OdisContext context, const OdisFrameOptions* options);
 ODIS_API void odisRetainFrame(OdisFrame frame);
 ODIS_API void odisReleaseFrame(OdisFrame frame);
-// Begins the next pass; false when the image is complete or a pass was interrupted, which is no error.
+// Begins the next pass; false when the image is complete or a pass was interrupted, which is no error:
+// odisGetError answers ODIS_ERROR_NONE, if no call before left an error.
 ODIS_API bool odisBeginPass(OdisFrame frame, OdisFramePass* pass);
 // The samples of a pixel in the pass under way, none where all of its tile of 16 x 16 pixels are in. They do
 // not depend on what samples of that pixel brought. Thread-safe.
@@ -158,12 +165,13 @@ ODIS_API const float* odisGetPixelValues(OdisFrame frame);
 // Hands over samples of the pass, with their vertices (may be NULL) if the pass wants them. Thread-safe, in
 // any order and in portions of any size, with the same result: whole tiles of 16 x 16 pixels are handled on
 // the spot, whatever comes in parts is kept until its tile is complete or the pass ends. A sample that the
-// pass did not ask for, or that comes twice where that can be told, is an error. Vertices of samples that are
-// not due are left out and counted.
+// pass did not ask for, or that comes twice, is an error. Vertices of samples that are not due and vertices
+// that come twice are left out and counted.
 ODIS_API bool odisAddSamples(OdisFrame frame, const OdisFrameSample* samples, size_t count,
                              const OdisPathVertices* vertices);
 // Ends the pass: learns, builds the guide, settles what there is to settle. An interrupted pass may lack
 // samples; nothing is learned from it, and it is the last one. So is a pass whose learning is cancelled.
+// Samples that another pass lacks are counted (OdisFrameStatistics) and told to the log.
 ODIS_API bool odisEndPass(OdisFrame frame, bool interrupted);
 // The same on another thread: the host goes on with other things and calls odisWaitForPass before anything
 // else of this frame, which answers what odisEndPass would have.
@@ -172,7 +180,8 @@ ODIS_API bool odisWaitForPass(OdisFrame frame);
 // Whether all further samples will be guided by the guide of today.
 ODIS_API bool odisGuideIsFinal(OdisFrame frame);
 // Weight of a sample in the mean of its pixel's samples, in units of a guided sample's. To be asked for after
-// the last pass. 1 for the pilot's, too, in a pixel that has no others.
+// the last pass. 1 for the pilot's, too, in a pixel that has no others. Here and below, a pixel outside of
+// the frame is an error.
 ODIS_API float odisGetSampleWeight(OdisFrame frame, uint32_t pixel, uint32_t sample);
 // The weighted mean of the samples that a pixel has by now, and that mean's variance.
 ODIS_API bool odisGetPixelMean(OdisFrame frame, uint32_t pixel, OdisPixelMean* mean);
@@ -272,9 +281,11 @@ ODIS_API float odisGetMapPdf(const OdisGuideView* view, uint32_t cell, const Odi
 ODIS_API float odisGetMixturePdf(float bsdfPdf, float guidablePdf, float guidableProbability,
                                  float bsdfFraction, float mapPdf);
 // The probability, in (0, 1], with which a path should go on from a vertex in this cell; `throughput` is that
-// of the path over the pixel's value, both as luminance. Not to be asked for at vertices with delta lobes
-// only (mirrors, glass), of which cells know nothing.
-ODIS_API float odisGetSurvivalProbability(const OdisGuideView* view, uint32_t cell, float throughput);
+// of the path over the pixel's value, both as luminance. `depth` is that of the vertex, 1 for the first: from
+// 32 on the answer is at most .95, so that every path ends. At vertices with delta lobes only (mirrors,
+// glass), of which cells know nothing, it is to be asked for with ODIS_NO_CELL.
+ODIS_API float odisGetSurvivalProbability(const OdisGuideView* view, uint32_t cell, float throughput,
+                                          uint32_t depth ODIS_DEFAULT(1));
 // The probability, in (0, 1], with which a shadow ray should be traced for light that, if nothing hides it,
 // adds `contribution` to the pixel, over the pixel's value, as luminance.
 ODIS_API float odisGetShadowRayProbability(const OdisGuideView* view, float contribution);

@@ -16,6 +16,8 @@
 //   image[pixel] = frame.mean(pixel).color;
 #pragma once
 
+#include "odis/cpp17.h"  // first of all
+
 #include <memory>
 #include <optional>
 #include <stdexcept>
@@ -60,6 +62,25 @@ inline void throwError() {
   if (code != ODIS_ERROR_NONE) throw Error(code, message);
 }
 
+// The answer of a function of the library, which fails with `failed`, too; throws the function's error. An error
+// that a function in C left and nobody asked for is forgotten: it is not this function's.
+template <class Answer, class Call>
+Answer checked(Answer failed, const Call& call) {
+  odisGetError(nullptr);
+  const Answer answer = call();
+  if (answer == failed) throwError();
+  return answer;
+}
+template <class Call>
+void orThrow(const Call& call) {
+  checked(false, call);
+}
+// The pointer or the handle that a function returns, NULL where it fails.
+template <class Call>
+auto made(const Call& call) {
+  return checked(decltype(call())(nullptr), call);
+}
+
 // A reference to an object of the library: copies share it.
 template <class Object, void (*retain)(Object), void (*release)(Object)>
 class Handle {
@@ -85,7 +106,8 @@ class Handle {
 
 class Context : public Handle<OdisContext, odisRetainContext, odisReleaseContext> {
  public:
-  explicit Context(const ContextOptions& options = {}) : Handle(odisNewContext(&options)) {}
+  explicit Context(const ContextOptions& options = {})
+      : Handle(made([&] { return odisNewContext(&options); })) {}
   // The one that objects are made in which are told of none, with the defaults.
   static const Context& shared() {
     static const Context context;
@@ -99,20 +121,24 @@ class Model : public Handle<OdisModel, odisRetainModel, odisReleaseModel> {
   explicit Model(OdisModel model) : Handle(model) {}
   // The networks that come with the library.
   Model() : Model(Context::shared()) {}
-  explicit Model(const Context& context) : Handle(odisNewModel(context.get())) {}
+  explicit Model(const Context& context) : Handle(made([&] { return odisNewModel(context.get()); })) {}
   // The networks of a file of weights.
   static Model load(const std::string& path, const Context& context = Context::shared()) {
-    return Model(odisNewModelFromFile(context.get(), path.c_str()));
+    return Model(made([&] { return odisNewModelFromFile(context.get(), path.c_str()); }));
   }
   static Model parse(const void* bytes, size_t size, const Context& context = Context::shared()) {
-    return Model(odisNewModelFromMemory(context.get(), bytes, size));
+    return Model(made([&] { return odisNewModelFromMemory(context.get(), bytes, size); }));
   }
   // This model with a formula for directions, or for the choice of lights.
-  Model withDirectionFormula() const { return Model(odisNewModelWithFormulas(get(), true, false)); }
-  Model withLightFormula() const { return Model(odisNewModelWithFormulas(get(), false, true)); }
+  Model withDirectionFormula() const {
+    return Model(made([&] { return odisNewModelWithFormulas(get(), true, false); }));
+  }
+  Model withLightFormula() const {
+    return Model(made([&] { return odisNewModelWithFormulas(get(), false, true); }));
+  }
   // This model with a network for maps at pixels, by name.
   Model withPixelNetwork(const std::string& name) const {
-    return Model(odisNewModelWithPixelNetwork(get(), name.c_str()));
+    return Model(made([&] { return odisNewModelWithPixelNetwork(get(), name.c_str()); }));
   }
 };
 
@@ -141,9 +167,11 @@ inline OdisPathVertices describe(ArrayView<const PathVertex> vertices) {
 class PathRecorder : public Handle<OdisRecorder, odisRetainRecorder, odisReleaseRecorder> {
  public:
   explicit PathRecorder(const Context& context = Context::shared())
-      : Handle(odisNewRecorder(context.get())) {}
+      : Handle(made([&] { return odisNewRecorder(context.get()); })) {}
 
-  uint32_t begin(const PathIdentity& identity) { return odisBeginPath(get(), &identity); }
+  uint32_t begin(const PathIdentity& identity) {
+    return checked(UINT32_MAX, [&] { return odisBeginPath(get(), &identity); });
+  }
   void surface(uint32_t path, const SurfaceEvent& e) { require(odisRecordSurface(get(), path, &e)); }
   void escape(uint32_t path) { require(odisRecordEscape(get(), path)); }
   void emission(uint32_t path, const EmissionEvent& e) { require(odisRecordEmission(get(), path, &e)); }
@@ -172,55 +200,64 @@ class Guide : public Handle<OdisGuide, odisRetainGuide, odisReleaseGuide> {
  public:
   explicit Guide(OdisGuide guide) : Handle(guide) {}
   static Guide load(const std::string& path, const Context& context = Context::shared()) {
-    return Guide(odisLoadGuide(context.get(), path.c_str()));
+    return Guide(made([&] { return odisLoadGuide(context.get(), path.c_str()); }));
   }
   void save(const std::string& path) const {
-    if (!odisSaveGuide(get(), path.c_str())) throwError();
+    orThrow([&] { return odisSaveGuide(get(), path.c_str()); });
   }
 
   // Valid as long as a reference to the guide is held.
   GuideView view() const {
     GuideView view;
-    if (!odisGetGuideView(get(), &view)) throwError();
+    orThrow([&] { return odisGetGuideView(get(), &view); });
     return view;
   }
-  uint64_t bytes() const { return odisGetGuideBytes(get()); }
-  float predictedVarianceRatio() const { return odisGetPredictedVarianceRatio(get()); }
+  uint64_t bytes() const {
+    return checked(uint64_t(0), [&] { return odisGetGuideBytes(get()); });
+  }
+  float predictedVarianceRatio() const {
+    return checked(1.0f, [&] { return odisGetPredictedVarianceRatio(get()); });
+  }
 };
 
 class GuideBuilder : public Handle<OdisGuideBuilder, odisRetainGuideBuilder, odisReleaseGuideBuilder> {
  public:
   explicit GuideBuilder(const GuideOptions& options = {}, const Context& context = Context::shared())
-      : Handle(make(options.flat(), context)) {}
+      : Handle(made([&] { return make(options.flat(), context); })) {}
 
   void add(ArrayView<const PathVertex> vertices) { add(describe(vertices)); }
   void add(const OdisPathVertices& vertices) {
-    if (!odisAddVertices(get(), &vertices)) throwError();
+    orThrow([&] { return odisAddVertices(get(), &vertices); });
   }
   Guide build(ArrayView<const PathVertex> vertices, ArrayView<const float> pixelValues = {}) const {
     return build(describe(vertices), pixelValues);
   }
   Guide build(const OdisPathVertices& vertices, ArrayView<const float> pixelValues = {}) const {
-    return Guide(odisBuildGuide(get(), &vertices, pixelValues.data(), pixelValues.size()));
+    return Guide(
+        made([&] { return odisBuildGuide(get(), &vertices, pixelValues.data(), pixelValues.size()); }));
   }
-  Guide rebuild(const Guide& previous) const { return Guide(odisRebuildGuide(get(), previous.get())); }
+  Guide rebuild(const Guide& previous) const {
+    return Guide(made([&] { return odisRebuildGuide(get(), previous.get()); }));
+  }
 
   VertexCounts vertexCounts() const {
     VertexCounts counts;
-    if (!odisGetVertexCounts(get(), &counts)) throwError();
+    orThrow([&] { return odisGetVertexCounts(get(), &counts); });
     return counts;
   }
-  uint64_t bytes() const { return odisGetGuideBuilderBytes(get()); }
+  uint64_t bytes() const {
+    return checked(uint64_t(0), [&] { return odisGetGuideBuilderBytes(get()); });
+  }
 
   // From frame to frame.
   void fade(float weight) {
-    if (!odisFadeVertices(get(), weight)) throwError();
+    orThrow([&] { return odisFadeVertices(get(), weight); });
   }
   void forget() {
-    if (!odisForgetVertices(get())) throwError();
+    orThrow([&] { return odisForgetVertices(get()); });
   }
   void setBounds(const Float3& lower, const Float3& upper) {
-    if (!odisSetBounds(get(), &lower, &upper)) throwError();
+    orThrow([&] { return odisSetBounds(get(), &lower, &upper); });
   }
 
  private:
@@ -239,88 +276,97 @@ struct FrameOptions : OdisFrameOptions {
 class Frame : public Handle<OdisFrame, odisRetainFrame, odisReleaseFrame> {
  public:
   explicit Frame(const FrameOptions& options, const Context& context = Context::shared())
-      : Frame(make(options, context)) {}
+      : Frame(made([&] { return make(options, context); })) {}
 
   // A frame that was saved, with the model that it had; it goes on where it was.
   static Frame load(const std::string& path, const Model& model, const Context& context = Context::shared()) {
-    return Frame(odisLoadFrame(context.get(), path.c_str(), model.get()));
+    return Frame(made([&] { return odisLoadFrame(context.get(), path.c_str(), model.get()); }));
   }
   void save(const std::string& path) const {
-    if (!odisSaveFrame(get(), path.c_str())) throwError();
+    orThrow([&] { return odisSaveFrame(get(), path.c_str()); });
   }
 
   // Bytes of the host's that are saved with the frame; valid until they are set again.
   void setHostData(ArrayView<const uint8_t> bytes) {
-    if (!odisSetFrameHostData(get(), bytes.data(), bytes.size())) throwError();
+    orThrow([&] { return odisSetFrameHostData(get(), bytes.data(), bytes.size()); });
   }
   ArrayView<const uint8_t> hostData() const {
     size_t size = 0;
-    const void* bytes = odisGetFrameHostData(get(), &size);
+    const auto* bytes = made([&] { return odisGetFrameHostData(get(), &size); });
     return {static_cast<const uint8_t*>(bytes), size};
   }
 
   // Tells another function of progress from now on.
   void setProgress(OdisProgressFunction function, void* user = nullptr) {
-    if (!odisSetFrameProgress(get(), function, user)) throwError();
+    orThrow([&] { return odisSetFrameProgress(get(), function, user); });
   }
 
   // Null when the image is complete, or a pass was interrupted. Valid until the pass ends.
   const FramePass* beginPass() {
-    if (odisBeginPass(get(), m_pass.get())) return m_pass.get();
-    throwError();
-    return nullptr;
+    return checked(false, [&] { return odisBeginPass(get(), m_pass.get()); }) ? m_pass.get() : nullptr;
   }
   SampleRange samples(uint32_t pixel) const {
     SampleRange range;
-    if (!odisGetSamples(get(), pixel, &range)) throwError();
+    orThrow([&] { return odisGetSamples(get(), pixel, &range); });
     return range;
   }
   ArrayView<const float> pixelValues() const {
-    const float* values = odisGetPixelValues(get());
+    const auto* values = made([&] { return odisGetPixelValues(get()); });
     return {values, values ? m_pixels : 0};
   }
   void add(ArrayView<const FrameSample> samples, ArrayView<const PathVertex> vertices = {}) {
     add(samples, describe(vertices));
   }
   void add(ArrayView<const FrameSample> samples, const OdisPathVertices& vertices) {
-    if (!odisAddSamples(get(), samples.data(), samples.size(), &vertices)) throwError();
+    orThrow([&] { return odisAddSamples(get(), samples.data(), samples.size(), &vertices); });
   }
   void endPass(bool interrupted = false) {
-    if (!odisEndPass(get(), interrupted)) throwError();
+    orThrow([&] { return odisEndPass(get(), interrupted); });
   }
   // endPass() in two steps, which leave the host's thread free in between.
   void startEndPass(bool interrupted = false) {
-    if (!odisStartEndPass(get(), interrupted)) throwError();
+    orThrow([&] { return odisStartEndPass(get(), interrupted); });
   }
   void waitForPass() {
-    if (!odisWaitForPass(get())) throwError();
+    orThrow([&] { return odisWaitForPass(get()); });
   }
-  bool guideIsFinal() const { return odisGuideIsFinal(get()); }
+  bool guideIsFinal() const {
+    return checked(false, [&] { return odisGuideIsFinal(get()); });
+  }
 
   float sampleWeight(uint32_t pixel, uint32_t sample) const {
-    return odisGetSampleWeight(get(), pixel, sample);
+    return checked(0.0f, [&] { return odisGetSampleWeight(get(), pixel, sample); });
   }
   PixelMean mean(uint32_t pixel) const {
     PixelMean mean;
-    if (!odisGetPixelMean(get(), pixel, &mean)) throwError();
+    orThrow([&] { return odisGetPixelMean(get(), pixel, &mean); });
     return mean;
   }
-  uint32_t sampleCount(uint32_t pixel) const { return odisGetSampleCount(get(), pixel); }
+  uint32_t sampleCount(uint32_t pixel) const {
+    return checked(0u, [&] { return odisGetSampleCount(get(), pixel); });
+  }
   FrameStatistics statistics() const {
     FrameStatistics statistics;
-    if (!odisGetFrameStatistics(get(), &statistics)) throwError();
+    orThrow([&] { return odisGetFrameStatistics(get(), &statistics); });
     return statistics;
   }
   VertexCounts vertexCounts() const {
     VertexCounts counts;
-    if (!odisGetFrameVertexCounts(get(), &counts)) throwError();
+    orThrow([&] { return odisGetFrameVertexCounts(get(), &counts); });
     return counts;
   }
-  Guide guide() const { return Guide(odisGetFrameGuide(get())); }
-  ArrayView<const PixelSums> pilotImage() const { return {odisGetPilotImage(get()), m_pixels}; }
+  Guide guide() const {
+    return Guide(made([&] { return odisGetFrameGuide(get()); }));
+  }
+  ArrayView<const PixelSums> pilotImage() const {
+    return {made([&] { return odisGetPilotImage(get()); }), m_pixels};
+  }
   std::vector<PathVertex> pilotVertices() const {
-    std::vector<PathVertex> vertices(odisGetPilotVertices(get(), nullptr, 0));
-    odisGetPilotVertices(get(), vertices.data(), vertices.size());
+    const auto copy = [this](PathVertex* vertices, size_t capacity) {
+      return checked(size_t(0), [&] { return odisGetPilotVertices(get(), vertices, capacity); });
+    };
+    std::vector<PathVertex> vertices(copy(nullptr, 0));
+    if (!vertices.empty()) copy(vertices.data(), vertices.size());
     return vertices;
   }
 

@@ -17,7 +17,33 @@ inline constexpr float kUnknown = ODIS_UNKNOWN;
 using VertexParts = ArrayView<const ArrayView<const PathVertex>>;
 
 // Whether a vertex can be learned from, or why not: an entry of VertexCounts each.
-enum class VertexState : uint8_t { usable, discrete, notFinite, noDensity, notUnit, noDepth };
+enum class VertexState : uint8_t {
+  usable,
+  discrete,
+  notFinite,
+  noDensity,
+  notUnit,
+  noDepth,
+  wrongSide,
+  outOfRange,
+  guidableAbovePdf,
+  unknownLights
+};
+
+// Whether optional numbers of a vertex are unknown or what they can be. Probabilities and cosines may be a
+// little above 1, as sums of rounded numbers are.
+inline bool isWithinRange(const PathVertex& v) {
+  constexpr float kOne = 1.01f;
+  const auto isPositive = [](float x) { return x >= 0; };  // what is not a number isn't, either
+  const auto isPositiveOrUnknown = [](float x) { return !(x < 0); };
+  return isPositive(v.distance) & isPositive(v.roughness) & !(v.survival > kOne) &
+         isPositiveOrUnknown(v.cosine) & !(v.cosine > kOne) & isPositiveOrUnknown(v.guidablePdf) &
+         isPositiveOrUnknown(v.guidableProbability) & !(v.guidableProbability > kOne) &
+         isPositiveOrUnknown(v.raysAfter) & isPositive(v.emissionLightPdf) & isPositive(v.lightPdf) &
+         isPositive(v.lightBsdfPdf) & isPositive(v.lightGuidablePdf) & isPositive(v.lightGroupProbability) &
+         !(v.lightGroupProbability > kOne);
+}
+
 // The state of a vertex, whichever lobe `wi` is of.
 inline VertexState checkNumbers(const PathVertex& v) {
   // Zero if everything is finite, otherwise not a number.
@@ -31,7 +57,10 @@ inline VertexState checkNumbers(const PathVertex& v) {
     return VertexState::notFinite;
   if (!(v.pdf > 0 && v.survival > 0)) return VertexState::noDensity;
   if (!isUnit(v.normal) || !isUnit(v.wi)) return VertexState::notUnit;
-  return v.depth > 0 ? VertexState::usable : VertexState::noDepth;
+  if (v.depth == 0) return VertexState::noDepth;
+  // A `wo` that is left out is zero; half floats are a little off.
+  if (dot(v.normal, v.wo) < -1e-3f) return VertexState::wrongSide;
+  return isWithinRange(v) ? VertexState::usable : VertexState::outOfRange;
 }
 inline VertexState checkVertex(const PathVertex& v) {
   return v.discrete ? VertexState::discrete : checkNumbers(v);
@@ -42,7 +71,8 @@ inline bool isUsable(const PathVertex& vertex) {
 
 // How many vertices were refused, for any reason.
 inline uint64_t refusedVertices(const VertexCounts& c) {
-  return c.discrete + c.notFinite + c.noDensity + c.notUnit + c.noDepth + c.outsideFrame;
+  return c.discrete + c.notFinite + c.noDensity + c.notUnit + c.noDepth + c.outsideFrame + c.wrongSide +
+         c.outOfRange + c.guidableAbovePdf + c.unknownLights + c.twice;
 }
 
 }  // namespace odis

@@ -137,7 +137,7 @@ class VertexMap {
   // Fetches the texels of a block, which sampleWithin() and the density of a direction in it read. On the
   // CPU, for one vertex at a time.
   void prefetch(Int block) const {
-    __builtin_prefetch(m_maps.texels + (m_cell * Int(kMapTexels) + block * Int(kBlockTexels)));
+    fetchAhead(m_maps.texels + (m_cell * Int(kMapTexels) + block * Int(kBlockTexels)));
   }
 
   // The density of `wi`; 0 where there is nothing to sample.
@@ -173,7 +173,7 @@ class VertexMap {
     const Real target = u * (begin[3] + weights[3]);
     const auto reached = [&](int i) { return select(target >= begin[i], Int(1), Int(0)); };
     const Int i = reached(1) + reached(2) + reached(3);
-    u = max(min((target - element(begin, i)) / element(weights, i), Real(0x1.fffffep-1f)), Real(0));
+    u = max(min((target - element(begin, i)) / element(weights, i), Real(0.99999994f)), Real(0));
     return i;
   }
 

@@ -233,6 +233,18 @@ typedef struct OdisFrameStatistics {
   uint64_t guideBytes ODIS_DEFAULT(0);
   uint64_t buildingBytes ODIS_DEFAULT(0);  // held at most while guides were built
   double pilotFraction ODIS_DEFAULT(0);    // of the pilot's samples in the mean of the image's weights
+  // That passes asked for and did not get; those of an interrupted pass are none of them.
+  uint64_t missingSamples ODIS_DEFAULT(0);
+  // Passes that wanted vertices and got none, though their samples have more rays than those of the camera:
+  // nothing was learned from them.
+  uint64_t passesWithoutVertices ODIS_DEFAULT(0);
+  uint64_t guidesBuilt ODIS_DEFAULT(0);
+  // Variance of a guided sample over that of an unguided one, as the pilot predicts it for today's guide.
+  double predictedVarianceRatio ODIS_DEFAULT(1);
+  // What the first guided samples show: their variance times their cost over that of the pilot's samples.
+  // Above 1 guiding does not pay. 0: it was not measured.
+  double measuredCostRatio ODIS_DEFAULT(0);
+  bool guidingGivenUp ODIS_DEFAULT(false);  // whether samples are not guided any more because of that
 } OdisFrameStatistics;
 
 // How many vertices were taken, and how many refused by reason.
@@ -246,6 +258,14 @@ typedef struct OdisVertexCounts {
   uint64_t noDepth ODIS_DEFAULT(0);    // depth 0
   uint64_t outsideFrame
       ODIS_DEFAULT(0);  // pixel or sample that the pass did not ask for; counted by frames alone
+  uint64_t wrongSide ODIS_DEFAULT(0);  // normal on the other side of the surface than the wo that is given
+  // A number out of the range that OdisPathVertex names for it: a negative distance or density, say.
+  uint64_t outOfRange ODIS_DEFAULT(0);
+  // guidablePdf, which is a part of pdf, above it in a pass that is not guided; counted by frames alone.
+  uint64_t guidableAbovePdf ODIS_DEFAULT(0);
+  // lightGroup beyond OdisGuideOptions.lightGroups, where that is not 0.
+  uint64_t unknownLights ODIS_DEFAULT(0);
+  uint64_t twice ODIS_DEFAULT(0);  // pixel, sample and depth of a vertex before; counted by frames alone
 } OdisVertexCounts;
 
 // ---- the events of a path ----
@@ -262,7 +282,7 @@ typedef struct OdisSurfaceEvent {
   OdisFloat3 position;
   OdisFloat3 normal;                             // shading normal, on the side of wo
   OdisFloat3 wo;                                 // towards where the ray came from
-  float distance ODIS_DEFAULT(0);                // length of the ray
+  float distance ODIS_DEFAULT(0);                // >= 0: length of the ray
   uint32_t lightableGroups ODIS_DEFAULT(~(0u));  // see OdisPathVertex
   float time ODIS_DEFAULT(0);
 } OdisSurfaceEvent;

@@ -25,14 +25,15 @@ typedef struct OdisPathVertex {
   float pdf ODIS_DEFAULT(0);  // > 0: density of wi; the probability for discrete lobes
   float survival
       ODIS_DEFAULT(1);  // optional, in (0, 1]: with which roulette let the path go on in direction wi
-  // Optional: the part of pdf that comes from lobes that may be guided, and how often the BSDF draws from
-  // such lobes, in [0, 1]. Unknown: all of the BSDF may be guided.
+  // Optional: the part of pdf that comes from lobes that may be guided (where directions are not guided, at
+  // most pdf), and how often the BSDF draws from such lobes, in [0, 1]. Unknown: all of the BSDF may be
+  // guided.
   float guidablePdf ODIS_DEFAULT(ODIS_UNKNOWN);
   float guidableProbability ODIS_DEFAULT(ODIS_UNKNOWN);
-  // Optional, > 0: to the next vertex; infinity if the ray left the scene. Unknown is infinity: what is near
+  // Optional, >= 0: to the next vertex; infinity if the ray left the scene. Unknown is infinity: what is near
   // is then seen in the same direction from all of a cell.
   float distance ODIS_DEFAULT(INFINITY);
-  // Optional, in [0, 1]: alpha of the microfacet lobe that matters most, 1 for diffuse.
+  // Optional, >= 0: alpha of the microfacet lobe that matters most, 1 for diffuse and for what is above.
   float roughness ODIS_DEFAULT(1);
   // Optional, in [0, 1]: |cos| between wi and the normal. Unknown: computed from the two.
   float cosine ODIS_DEFAULT(ODIS_UNKNOWN);

@@ -180,7 +180,18 @@ void bindPass(nb::module_& module) {
       .def_ro("guide_bytes", &FrameStatistics::guideBytes)
       .def_ro("building_bytes", &FrameStatistics::buildingBytes, "Held at most while guides were built.")
       .def_ro("pilot_fraction", &FrameStatistics::pilotFraction,
-              "Of the pilot's samples in the mean of the image's weights.");
+              "Of the pilot's samples in the mean of the image's weights.")
+      .def_ro("missing_samples", &FrameStatistics::missingSamples,
+              "That passes asked for and did not get, interrupted ones not included.")
+      .def_ro("passes_without_vertices", &FrameStatistics::passesWithoutVertices,
+              "Passes that wanted vertices and got none, though their samples had been at surfaces.")
+      .def_ro("guides_built", &FrameStatistics::guidesBuilt)
+      .def_ro("predicted_variance_ratio", &FrameStatistics::predictedVarianceRatio,
+              "Variance of a guided sample over that of an unguided one, as the pilot predicts it.")
+      .def_ro("measured_cost_ratio", &FrameStatistics::measuredCostRatio,
+              "Variance times cost of the first guided samples over the pilot's; 0: not measured.")
+      .def_ro("guiding_given_up", &FrameStatistics::guidingGivenUp,
+              "Whether samples are not guided any more, because that does not pay.");
 }
 
 void bindPasses(nb::class_<ImageFrame>& frame) {

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "arrays.h"
 #include "calls.h"
@@ -108,14 +109,22 @@ Numbers bsdfFraction(const Guide& guide, const Array& cells, const Array& roughn
   return result;
 }
 
-Numbers survivalProbability(const Guide& guide, const Array& cells, const Array& throughput) {
+// For all vertices alike, or for each.
+using Depths = std::variant<uint32_t, Array>;
+
+Numbers survivalProbability(const Guide& guide, const Array& cells, const Array& throughput,
+                            const Depths& depths) {
   const Rows<uint32_t> cell(cells, "cells");
   const Rows<float> relative(throughput, "throughput", 0, cell.size());
+  std::optional<Rows<uint32_t>> depthAt;
+  if (const Array* array = std::get_if<Array>(&depths)) depthAt.emplace(*array, "depth", 0, cell.size());
+  const uint32_t* same = std::get_if<uint32_t>(&depths);
   const Numbers result = newArray<Numbers>({cell.size()});
   withoutLock([&] {
     const GuideView view = guide.view();
     for (size_t i = 0; i < cell.size(); ++i)
-      result.data()[i] = odisGetSurvivalProbability(&view, cell(i), relative(i));
+      result.data()[i] =
+          odisGetSurvivalProbability(&view, cell(i), relative(i), same ? *same : (*depthAt)(i));
   });
   return result;
 }
@@ -154,10 +163,12 @@ directions: float32 of shape (count, 3), unit; 0 also where they are not finite.
            R"(Probabilities that draws that may be guided stay with the BSDF: (count,), float32 in (0, 1].
 
 roughness: float32 of shape (count,): alpha of a microfacet distribution, 1 for diffuse. 1 without a cell.)")
-      .def("survival_probability", survivalProbability, "cells"_a, "throughput"_a,
+      .def("survival_probability", survivalProbability, "cells"_a, "throughput"_a, "depth"_a = 1u,
            R"(Probabilities with which paths should go on: (count,), float32 in (0, 1].
 
-throughput: float32 of shape (count,): of the path over the pixel's value, both as luminance.)")
+throughput: float32 of shape (count,): of the path over the pixel's value, both as luminance.
+depth: uint32, or uint32 of shape (count,): of the vertices, 1 for the first. From 32 on at most .95 is
+answered, without a cell as well, so that every path ends.)")
       .def("shadow_ray_probability", shadowRayProbability, "contribution"_a,
            R"(Probabilities with which shadow rays should be traced: (count,), float32 in (0, 1].
 

@@ -187,7 +187,14 @@ void bindVertices(nb::module_& module) {
       .def_ro("not_unit", &VertexCounts::notUnit, "normal or wi.")
       .def_ro("no_depth", &VertexCounts::noDepth, "Depth 0.")
       .def_ro("outside_frame", &VertexCounts::outsideFrame,
-              "Pixel or sample that the pass did not ask for; counted by frames alone.");
+              "Pixel or sample that the pass did not ask for; counted by frames alone.")
+      .def_ro("wrong_side", &VertexCounts::wrongSide, "normal on the other side than the wo that is given.")
+      .def_ro("out_of_range", &VertexCounts::outOfRange, "A negative distance or density, say.")
+      .def_ro("guidable_above_pdf", &VertexCounts::guidableAbovePdf,
+              "guidable_pdf above pdf in a pass that is not guided; counted by frames alone.")
+      .def_ro("unknown_lights", &VertexCounts::unknownLights, "light_group beyond GuideOptions.light_groups.")
+      .def_ro("twice", &VertexCounts::twice,
+              "pixel, sample and depth of a vertex before; counted by frames alone.");
 }
 
 }  // namespace odis::python

@@ -124,6 +124,8 @@ class Lookups(unittest.TestCase):
         ones = np.ones(2, np.float32)
         self.assertEqual(self.guide.bsdf_fraction(cells, ones).tolist(), [1, 1])
         self.assertEqual(self.guide.survival_probability(cells, ones).tolist(), [1, 1])
+        deep = self.guide.survival_probability(cells, ones, np.array([31, 32], np.uint32))
+        self.assertEqual(deep.tolist(), [1, float(np.float32(0.95))])
 
     def test_decisions(self):
         cells = self.cells[:3000]
@@ -134,6 +136,8 @@ class Lookups(unittest.TestCase):
         survival = self.guide.survival_probability(cells, throughput)
         expected = np.clip(throughput * self.guide.survival_factors[cells], np.float32(0.3), 1)
         np.testing.assert_array_equal(survival, expected)
+        deep = self.guide.survival_probability(cells, throughput, depth=32)
+        np.testing.assert_array_equal(deep, np.minimum(expected, np.float32(0.95)))
         shadow = self.guide.shadow_ray_probability(np.array([0, 0.01, 0.02, 0.1, np.nan], np.float32))
         np.testing.assert_allclose(shadow, [0.2, 0.2, 0.4, 1, 1], rtol=1e-6)
         tables = self.guide.light_tables[self.guide.learned_light_fractions > 0]

@@ -115,10 +115,23 @@ SampleRange Frame::Data::samples(uint32_t pixel) const {
   return schedule.remaining(pixel, done, end);
 }
 
+void Frame::Data::requirePixel(uint32_t pixel, const char* function) const {
+  if (pixel >= pilot.size())
+    throw std::out_of_range(std::string(function) + ": expected a pixel of the frame, found " +
+                            std::to_string(pixel) + " of " + std::to_string(pilot.size()));
+}
+
+// Whether vertices were forgotten: a sample with more than the camera's ray has been at a surface. Hosts that
+// do not count rays are taken to have been at one.
+bool Frame::Data::lacksVertices() const {
+  return pass.wantsVertices && passVerticesCame == 0 && passSamplesCame > 0 &&
+         (passRaysCame == 0 || passRaysCame > passSamplesCame);
+}
+
 void Frame::Data::describePass() {
   const size_t pixels = pilot.size();
   pass = {};
-  passVertexCount = 0;
+  passVertexCount = passSamplesCame = passRaysCame = passVerticesCame = 0;
   pass.kind = next;
   pass.seed = options.seed;
   view = guide.view();
@@ -157,6 +170,11 @@ void Frame::Data::take(uint32_t tile, ArrayView<const FrameSample> samples, Tile
     for (const FrameSample& s : samples) addSample(sums[s.pixel], finiteOrBlack(s.value, notFinite), s.rays);
   }
   if (!pass.wantsVertices) return;
+  uint64_t rays = 0;
+  for (const FrameSample& s : samples) rays += s.rays;
+  passSamplesCame += samples.size();
+  passRaysCame += rays;
+  passVerticesCame += vertices.size();
   if (pixelsPerLearned > 1)
     vertices.filter([this](const PathVertex& v) {
       return (v.pixel % options.width + 2 * (v.pixel / options.width)) % pixelsPerLearned == 0;
@@ -295,7 +313,7 @@ Frame& Frame::operator=(Frame&&) noexcept = default;
 const FramePass* Frame::beginPass() {
   Data& d = *m_data;
   requireOrder(!d.inPass, "odisBeginPass: expected odisEndPass before the next pass");
-  if (d.finished || (d.next == ODIS_PASS_GUIDED && d.done >= d.schedule.mostRemaining())) return nullptr;
+  if (isComplete()) return nullptr;
   d.describePass();
   d.tiles.beginPass([&d](uint32_t pixel) { return d.samples(pixel); },
                     [&d](uint32_t tile, ArrayView<const FrameSample> samples, TileVertices& vertices) {
@@ -306,9 +324,15 @@ const FramePass* Frame::beginPass() {
   return &d.pass;
 }
 
+bool Frame::isComplete() const {
+  const Data& d = *m_data;
+  const bool isDone = d.next == ODIS_PASS_GUIDED && d.done >= d.schedule.mostRemaining();
+  return !d.inPass && (d.finished || isDone);
+}
+
 SampleRange Frame::samples(uint32_t pixel) const {
   requireOrder(m_data->inPass, "odisGetSamples: expected a pass under way");
-  if (pixel >= m_data->pilot.size()) throw std::out_of_range("odisGetSamples: expected a pixel of the frame");
+  m_data->requirePixel(pixel, "odisGetSamples");
   return m_data->tiles.isDone(pixel) ? SampleRange() : m_data->samples(pixel);
 }
 
@@ -331,7 +355,11 @@ void Frame::add(ArrayView<const FrameSample> samples, ArrayView<const PathVertex
 void Frame::endPass(bool interrupted) {
   Data& d = *m_data;
   requireOrder(d.inPass, "odisEndPass: expected a pass under way");
-  d.outsideFrame += d.tiles.endPass();
+  if (!interrupted) d.missingSamples += d.tiles.missing();
+  const TileCollector::LeftOut leftOut = d.tiles.endPass();
+  d.outsideFrame += leftOut.notDue;
+  d.twice += leftOut.twice;
+  if (!interrupted && d.lacksVertices()) ++d.passesWithoutVertices;
   d.inPass = false;
   d.finished = true;  // unless what follows succeeds
   const OdisPassKind kind = d.next;
@@ -379,78 +407,6 @@ uint64_t Frame::bytes() const {
 
 bool Frame::guideIsFinal() const {
   return m_data->next == ODIS_PASS_GUIDED && !m_data->learns();
-}
-
-// All that comes after the pilot depends on it, how many samples a pixel has included. The pilot's share in
-// its pixel must not: it stays what it would be if all pixels had as many samples.
-float pilotWeight(const FrameOptions& options, const Schedule& schedule, uint32_t pixel,
-                  const PixelSums& later) {
-  return later.count > 0 ? options.pilotWeight * schedule.remainingRatio(pixel) : 1;
-}
-
-float Frame::sampleWeight(uint32_t pixel, uint32_t sample) const {
-  const Data& d = *m_data;
-  if (sample >= d.schedule.pilotCount(pixel)) return 1;
-  return pilotWeight(d.options, d.schedule, pixel, d.later[pixel]);
-}
-
-PixelMean Frame::mean(uint32_t pixel) const {
-  const WeightedSums parts[] = {{&m_data->pilot[pixel], sampleWeight(pixel, 0)}, {&m_data->later[pixel], 1}};
-  return weightedMean({parts, 2});
-}
-
-uint32_t Frame::sampleCount(uint32_t pixel) const {
-  return m_data->pilot[pixel].count + m_data->later[pixel].count;
-}
-
-FrameStatistics Frame::statistics() const {
-  const Data& d = *m_data;
-  FrameStatistics result;
-  double pilot = 0, all = 0;
-  for (uint32_t pixel = 0; pixel < d.pilot.size(); ++pixel) {
-    const double weight = d.pilot[pixel].count * double(sampleWeight(pixel, 0));
-    pilot += weight;
-    all += weight + d.later[pixel].count;
-    result.samples += sampleCount(pixel);
-    result.pilotSamples += d.pilot[pixel].count;
-  }
-  result.width = d.options.width;
-  result.height = d.options.height;
-  result.pilotFraction = all > 0 ? pilot / all : 0;
-  result.notFinite = d.notFinite;
-  result.pilotVertices = d.pilotVertexCount;
-  result.cells = d.guide.view().cellCount;
-  result.guideBytes = d.guide.bytes();
-  result.buildingBytes = d.buildingBytes;
-  return result;
-}
-
-VertexCounts Frame::vertexCounts() const {
-  VertexCounts counts = m_data->vertexCounts;
-  counts.outsideFrame += m_data->outsideFrame;
-  return counts;
-}
-
-const Guide& Frame::guide() const {
-  return m_data->guide;
-}
-
-ArrayView<const PixelSums> Frame::pilotImage() const {
-  return m_data->pilot;
-}
-
-size_t Frame::pilotVertexCount() const {
-  size_t count = 0;
-  for (const std::vector<PathVertex>& tile : m_data->pilotVertices) count += tile.size();
-  return count;
-}
-
-std::vector<PathVertex> Frame::pilotVertices() const {
-  std::vector<PathVertex> vertices;
-  vertices.reserve(pilotVertexCount());
-  for (const std::vector<PathVertex>& tile : m_data->pilotVertices)
-    vertices.insert(vertices.end(), tile.begin(), tile.end());
-  return vertices;
 }
 
 }  // namespace odis::core

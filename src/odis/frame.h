@@ -63,18 +63,21 @@ class Frame {
   // order and in portions of any size, with the same result: whole tiles of 16 x 16 pixels are handled on
   // the spot, whatever comes in parts is kept until its tile is complete or the pass ends. Throws
   // std::out_of_range for a sample that the pass did not ask for, and std::logic_error for one that comes
-  // twice, where that can be told. Vertices of samples that are not due are left out
-  // and counted (VertexCounts::outsideFrame), those of a pass that wants none are ignored.
+  // twice. Vertices of samples that are not due and vertices that come twice are left out and counted
+  // (VertexCounts::outsideFrame, twice), those of a pass that wants none are ignored.
   void add(ArrayView<const FrameSample> samples, const VertexSource& vertices);
   void add(ArrayView<const FrameSample> samples, ArrayView<const PathVertex> vertices = {});
   // Ends the pass: learns, builds the guide, settles what there is to settle. An interrupted pass may lack
-  // samples; nothing is learned from it, and it is the last one.
+  // samples; nothing is learned from it, and it is the last one. What another pass lacks is counted.
   void endPass(bool interrupted = false);
+  // Whether there is no pass any more.
+  bool isComplete() const;
   // Whether all further samples will be guided by the guide of today.
   bool guideIsFinal() const;
 
   // Weight of a sample in the mean of its pixel's samples, in units of a guided sample's. To be asked for
-  // after the last pass. 1 for the pilot's, too, in a pixel that has no others.
+  // after the last pass. 1 for the pilot's, too, in a pixel that has no others. Here and below
+  // std::out_of_range is thrown for a pixel outside of the frame, here for a sample that it never has, too.
   float sampleWeight(uint32_t pixel, uint32_t sample) const;
   // The weighted mean of the samples that a pixel has by now, and that mean's variance.
   PixelMean mean(uint32_t pixel) const;
@@ -82,6 +85,8 @@ class Frame {
   uint32_t sampleCount(uint32_t pixel) const;
 
   FrameStatistics statistics() const;
+  // The part of it that is known without looking at each pixel.
+  FrameStatistics summary() const;
   VertexCounts vertexCounts() const;
   const Guide& guide() const;
   // Sums over the pilot's samples of each pixel.

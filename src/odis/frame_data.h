@@ -55,7 +55,7 @@ struct Frame::Data {
   void buildGuide();
   void endGuidedPass();
   void spreadSamples();
-  bool guidingDoesNotPay() const;
+  bool guidingDoesNotPay();
   void giveUpGuiding();
   void refineGuide();
   void countKept();
@@ -63,6 +63,9 @@ struct Frame::Data {
 
   bool learns() const { return done < schedule.lastRefinement(); }
   SampleRange samples(uint32_t pixel) const;
+  void requirePixel(uint32_t pixel, const char* function) const;
+  bool lacksVertices() const;
+  float pilotWeightOf(uint32_t pixel) const { return pilotWeight(options, schedule, pixel, later[pixel]); }
 
   // Goes on with the pass that was under way when the frame was saved.
   void resume();
@@ -98,7 +101,12 @@ struct Frame::Data {
   std::atomic<uint64_t> notFinite{0};
   std::atomic<uint64_t> passVertexCount{0};  // vertices of the pass that are learned from, so far
   std::atomic<uint64_t> keptBytes{0};  // of vertices, of what was taken from them, and of maps at pixels
-  uint64_t outsideFrame = 0, buildingBytes = 0, pilotVertexCount = 0;
+  // Of the pass, so far: all that came, learned from or not.
+  std::atomic<uint64_t> passSamplesCame{0}, passRaysCame{0}, passVerticesCame{0};
+  uint64_t outsideFrame = 0, twice = 0, buildingBytes = 0, pilotVertexCount = 0;
+  uint64_t missingSamples = 0, passesWithoutVertices = 0;
+  double measuredCostRatio = 0;  // of guided samples over unguided ones; 0: not measured
+  bool guidingGivenUp = false;
   VertexCounts vertexCounts;
   std::unique_ptr<ResumedPass> resumed;
   std::vector<uint8_t> hostData;

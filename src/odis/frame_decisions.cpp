@@ -43,16 +43,18 @@ void Frame::Data::settleRefinement() {
 }
 
 // Whether the first guided samples, compared with the pilot's, were not worth their time.
-bool Frame::Data::guidingDoesNotPay() const {
+bool Frame::Data::guidingDoesNotPay() {
   if (!options.guided || options.oracleSamples > 0 || options.guidedCost == 0) return false;
   if (done > 0 || end >= schedule.mostRemaining()) return false;
   const std::optional<double> ratio = guidedOverUnguided(*tasks, pilot, later, options.width);
-  return ratio && *ratio * options.guidedCost > 1;
+  if (ratio) measuredCostRatio = *ratio * options.guidedCost;
+  return ratio && measuredCostRatio > 1;
 }
 
 // Goes on without a guide. No sample's weight changes, nor how many there are: only samples that are still to
 // be drawn know of it, and their mean is the same in any case.
 void Frame::Data::giveUpGuiding() {
+  guidingGivenUp = true;
   guide = cells = Guide();
   ++guidesBuilt;
   schedule.endRefinement();

@@ -115,20 +115,21 @@ GuideBuilder& GuideBuilder::operator=(GuideBuilder&&) noexcept = default;
 
 void GuideBuilder::add(VertexParts parts) {
   if (m_data->options.cellsPerDiagonal == 0) return;
-  m_data->store.add(parts, m_data->options.cellsPerDiagonal);
+  m_data->store.add(parts, m_data->options.cellsPerDiagonal, m_data->rules(false));
 }
 VertexSamples GuideBuilder::take(ArrayView<const PathVertex> vertices) const {
   if (m_data->options.cellsPerDiagonal == 0) return {};
   VertexSamples result;
-  result.m_data =
-      std::make_unique<VertexSamples::Data>(VertexSamples::Data{m_data->store.take({vertices}), {}});
+  result.m_data = std::make_unique<VertexSamples::Data>(
+      VertexSamples::Data{m_data->store.take({vertices}, m_data->rules(false)), {}});
   return result;
 }
 VertexSamples GuideBuilder::takeUnguided(ArrayView<const PathVertex> vertices, uint64_t seen) const {
   if (m_data->options.cellsPerDiagonal == 0) return {};
   VertexSamples result;
-  result.m_data = std::make_unique<VertexSamples::Data>(
-      VertexSamples::Data{takeSamples({vertices}), takeFractionSamples(vertices, fractionStride(seen))});
+  const VertexRules rules = m_data->rules(true);
+  result.m_data = std::make_unique<VertexSamples::Data>(VertexSamples::Data{
+      takeSamples({vertices}, rules), takeFractionSamples(vertices, fractionStride(seen), rules)});
   return result;
 }
 void GuideBuilder::add(ArrayView<VertexSamples> samples) {
@@ -233,7 +234,8 @@ Guide GuideBuilder::build(VertexParts parts, ArrayView<const float> pixelValues)
   std::vector<std::vector<FractionSample>> samples(batches.size());
   m_data->store.tasks().forEach(batches.size(), [&](size_t b) {
     for (const ArrayView<const PathVertex>& piece : batches[b]) {
-      const std::vector<FractionSample> taken = takeFractionSamples(piece, fractionStride(seen));
+      const std::vector<FractionSample> taken =
+          takeFractionSamples(piece, fractionStride(seen), m_data->rules(true));
       samples[b].insert(samples[b].end(), taken.begin(), taken.end());
     }
   });

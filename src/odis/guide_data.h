@@ -82,6 +82,7 @@ struct GuideBuilder::Data {
     options.lightParts = lightParts.data();
   }
 
+  VertexRules rules(bool unguided) const { return {options.lightGroups, unguided}; }
   Guide build(FractionParts unguided, uint64_t seen, ArrayView<const float> pixelValues);
   Guide buildMaps(const std::vector<CellStatistics>& cells,
                   std::vector<DirectionDistribution>& distributions) const;

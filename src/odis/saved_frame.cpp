@@ -169,10 +169,12 @@ void Frame::save(ArchiveWriter& file) const {
   file.add("frame.lightParts", d.lightParts);
   file.addValue("frame.model", d.modelId);
   file.add("frame.hostData", d.hostData);
-  file.addValue("frame.position",
-                FramePosition{d.guidesBuilt, d.notFinite, d.outsideFrame, d.buildingBytes, d.pilotVertexCount,
-                              d.schedule.pilotSamples(), d.schedule.passEnd(d.done), d.schedule.spreadAfter(),
-                              uint32_t(d.next), d.oraclePasses, d.done, d.finished, d.builder != nullptr});
+  file.addValue(
+      "frame.position",
+      FramePosition{d.guidesBuilt, d.notFinite, d.outsideFrame, d.twice, d.buildingBytes, d.pilotVertexCount,
+                    d.missingSamples, d.passesWithoutVertices, d.measuredCostRatio, d.schedule.pilotSamples(),
+                    d.schedule.passEnd(d.done), d.schedule.spreadAfter(), uint32_t(d.next), d.oraclePasses,
+                    d.done, d.finished, d.builder != nullptr, d.guidingGivenUp});
   file.addValue("frame.vertexCounts", d.vertexCounts);
   file.add("frame.counts", d.schedule.counts());
   file.add("frame.pilot", d.pilot);
@@ -298,6 +300,11 @@ void Frame::Data::moveTo(const FramePosition& at) {
   guidesBuilt = at.guidesBuilt;
   notFinite = at.notFinite;
   outsideFrame = at.outsideFrame;
+  twice = at.twice;
+  missingSamples = at.missingSamples;
+  passesWithoutVertices = at.passesWithoutVertices;
+  measuredCostRatio = at.measuredCostRatio;
+  guidingGivenUp = at.guidingGivenUp != 0;
   buildingBytes = at.buildingBytes;
   pilotVertexCount = at.pilotVertices;
   next = OdisPassKind(at.next);

@@ -8,12 +8,14 @@ namespace odis::core {
 
 // Where a frame is between its first sample and its last.
 struct FramePosition {
-  uint64_t guidesBuilt, notFinite, outsideFrame, buildingBytes, pilotVertices;
+  uint64_t guidesBuilt, notFinite, outsideFrame, twice, buildingBytes, pilotVertices;
+  uint64_t missingSamples, passesWithoutVertices;
+  double measuredCostRatio;
   // What the schedule says. One of the same options has to say it again, or other samples would be taken from
   // here on.
   uint64_t pilotSamples;
   uint32_t passEnd, spreadAfter;
-  uint32_t next, oraclePasses, done, finished, builder;
+  uint32_t next, oraclePasses, done, finished, builder, guidingGivenUp;
 };
 
 // The options of a saved frame, and what they point to.

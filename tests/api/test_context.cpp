@@ -5,6 +5,7 @@
 #include <thread>
 
 #include "api/api_scene.h"
+#include "api/listening.h"
 
 namespace odis::test {
 namespace {
@@ -144,30 +145,6 @@ TEST(ApiContext, MemoryThatEndsIsAnError) {
     ++failures;
   }
   EXPECT_GT(failures, 50);
-}
-
-struct Heard {
-  std::vector<std::string> messages, errors;
-  std::atomic<int64_t> held{0}, most{0};
-};
-void hearLog(void* user, OdisLogLevel, const char* message) {
-  static_cast<Heard*>(user)->messages.emplace_back(message);
-}
-void hearError(void* user, OdisError, const char* message) {
-  static_cast<Heard*>(user)->errors.emplace_back(message);
-}
-void hearMemory(void* user, int64_t change) {
-  Heard& heard = *static_cast<Heard*>(user);
-  heard.held += change;
-  heard.most = std::max(heard.most.load(), heard.held.load());
-}
-ContextOptions heardBy(Heard& heard) {
-  ContextOptions options;
-  options.logFunction = hearLog;
-  options.errorFunction = hearError;
-  options.memoryFunction = hearMemory;
-  options.logUser = options.errorUser = options.memoryUser = &heard;
-  return options;
 }
 
 TEST(ApiContext, MemoryIsCounted) {

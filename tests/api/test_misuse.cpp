@@ -149,6 +149,8 @@ TEST(ApiMisuse, LookUpsWithoutAGuideAnswerThatThereIsNone) {
     EXPECT_FALSE(odisSampleMap(view, 0, &up, false, uv, &sample));
     EXPECT_EQ(odisGetMapPdf(view, 0, &up, false, &up), 0);
     EXPECT_EQ(odisGetSurvivalProbability(view, 0, 0.1f), 1);
+    EXPECT_EQ(odisGetSurvivalProbability(view, ODIS_NO_CELL, 0.1f, 31), 1);
+    EXPECT_EQ(odisGetSurvivalProbability(view, ODIS_NO_CELL, 0.1f, 32), 0.95f);
     EXPECT_FALSE(odisGetCachedRadiance(view, &place, 0, 0, INFINITY, &radiance));
     EXPECT_EQ(odisGetLearnedLights(view, 0, &cdf), 0);
     EXPECT_EQ(cdf, nullptr);

@@ -153,8 +153,8 @@ class ToyHost {
   }
 
   bool playRoulette(State& s, const CellDecisions& cell) const {
-    const float survival =
-        survivalProbability(s.pass.guide->rules, cell.survivalFactor, s.throughput / s.pixelValue);
+    const float survival = survivalProbability(s.pass.guide->rules, cell.survivalFactor,
+                                               s.throughput / s.pixelValue, uint32_t(s.depth));
     const float standIn = s.throughput * cell.outgoingRadiance.x;
     if (s.numbers.next() >= survival) {
       s.radiance += standIn;

@@ -44,6 +44,21 @@ TEST(Roulette, SurvivalFollowsThroughputAndNeverEndsAll) {
   EXPECT_EQ(survivalIn(cell, INFINITY), 1);
 }
 
+// A host without a limit of its own plays this roulette alone: each path must end.
+TEST(Roulette, DeepPathsEndWhateverCellsKnow) {
+  for (const float factor : {0.0f, 0.5f, 2.0f, 1e30f, INFINITY})
+    for (const float throughput : {0.0f, 0.25f, 1.0f, 1e20f, INFINITY, NAN}) {
+      const auto survivalAt = [&](uint32_t depth) {
+        return survivalProbability(GuideRules(), factor, throughput, depth);
+      };
+      const float shallow = survivalProbability(GuideRules(), factor, throughput);
+      EXPECT_EQ(survivalAt(1), shallow);
+      EXPECT_EQ(survivalAt(31), shallow);
+      for (const uint32_t depth : {32u, 33u, 1000u, UINT32_MAX})
+        EXPECT_EQ(survivalAt(depth), std::min(shallow, 0.95f));
+    }
+}
+
 TEST(Roulette, SurvivalFollowsTheRootOfWhatComesBackOverItsRays) {
   // Two cells, of which one sends back four times the radiance for as many rays.
   std::vector<CellStatistics> cells = coarsestCells(2);

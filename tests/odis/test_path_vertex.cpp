@@ -74,7 +74,9 @@ std::vector<Defect> defects() {
           notUnit([](PathVertex& v) {
             v.wi = {0, 6, 8};
           }),
-          {[](PathVertex& v) { v.depth = 0; }, VertexState::noDepth, &VertexCounts::noDepth}};
+          {[](PathVertex& v) { v.depth = 0; }, VertexState::noDepth, &VertexCounts::noDepth},
+          {[](PathVertex& v) { v.wo = v.normal * -1.0f; }, VertexState::wrongSide, &VertexCounts::wrongSide},
+          {[](PathVertex& v) { v.distance = -1; }, VertexState::outOfRange, &VertexCounts::outOfRange}};
 }
 
 TEST(PathVertex, IsUsableWithWhatIsRequired) {
@@ -121,10 +123,10 @@ TEST(VertexCounts, EachReasonIsCountedByBuilders) {
 }
 
 TEST(VertexCounts, AddUp) {
-  const VertexCounts one{sizeof one, 1, 2, 3, 4, 5, 6, 7};
+  const VertexCounts one{sizeof one, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12};
   VertexCounts sum = one;
   addCounts(sum, one);
-  EXPECT_EQ(refusedVertices(one), 27u);
+  EXPECT_EQ(refusedVertices(one), 77u);
   EXPECT_EQ(sum.accepted, 2u);
   EXPECT_EQ(sum.discrete, 4u);
   EXPECT_EQ(sum.notFinite, 6u);
@@ -132,6 +134,11 @@ TEST(VertexCounts, AddUp) {
   EXPECT_EQ(sum.notUnit, 10u);
   EXPECT_EQ(sum.noDepth, 12u);
   EXPECT_EQ(sum.outsideFrame, 14u);
+  EXPECT_EQ(sum.wrongSide, 16u);
+  EXPECT_EQ(sum.outOfRange, 18u);
+  EXPECT_EQ(sum.guidableAbovePdf, 20u);
+  EXPECT_EQ(sum.unknownLights, 22u);
+  EXPECT_EQ(sum.twice, 24u);
 }
 
 TEST(VertexCounts, AreNothingBeforeAnythingIsAdded) {

@@ -24,6 +24,7 @@ ONE_MINUS_EPSILON = float(np.nextafter(np.float32(1), np.float32(0)))
 # most vertices lie in; places outside are not guided. 4 bytes an entry.
 MOST_ENTRIES = 1 << 21
 MARGIN = 16
+DEEP_PATH, MOST_DEEP_SURVIVAL = 32, 0.95  # as in odis/guide_view.h
 # The normals of the six orientations of cells, in the order of the grid: +x, -x, +y, -y, +z, -z.
 ORIENTATIONS = np.array([[1, 0, 0], [-1, 0, 0], [0, 1, 0], [0, -1, 0], [0, 0, 1], [0, 0, -1]], np.float32)
 
@@ -197,10 +198,10 @@ def decisions_of(tables, cell, roughness, active):
                      learned_light_fraction=dr.select(known, row[7], 0))
 
 
-def survival_probability(tables, survival_factor, throughput):
-    """The probability that a path goes on; `throughput` over the pixel's value, as luminance."""
-    survival = throughput * survival_factor
-    return dr.select(survival < 1, dr.maximum(survival, tables.least_survival), 1)
+def survival_probability(tables, survival_factor, throughput, depth):
+    """The probability that a path goes on (odis::survivalProbability); `throughput` over the pixel's value."""
+    survival, most = throughput * survival_factor, dr.select(depth < DEEP_PATH, 1, MOST_DEEP_SURVIVAL)
+    return dr.select(survival < most, dr.maximum(survival, tables.least_survival), most)
 
 
 def shadow_ray_probability(tables, contribution):

@@ -237,7 +237,7 @@ def trace(scene, camera, settings, known, tables, recorder, samples):
                 active &= ~ends_here
             decisions = guide_tables.decisions_of(tables, cell, roughness, active)
             if dr.hint(settings.learned_roulette, mode="scalar"):
-                survival = guide_tables.survival_probability(tables, decisions.survival_factor, relative)
+                survival = guide_tables.survival_probability(tables, decisions.survival_factor, relative, depth + 1)
                 survival_on_arrival = dr.select(active & (depth > 0) & valid & (cell != odis.NO_CELL), survival, 1)
                 stand_in = throughput * (decisions.outgoing_radiance if not mi.is_spectral
                                          else mi.Spectrum(mi.luminance(decisions.outgoing_radiance)))

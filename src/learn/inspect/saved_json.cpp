@@ -14,9 +14,18 @@ Json jsonBounds(const Bounds& box) {
   return {{"low", jsonVector(box.low)}, {"high", jsonVector(box.high)}};
 }
 Json jsonCounts(const VertexCounts& c) {
-  return {{"accepted", c.accepted},        {"discrete", c.discrete}, {"notFinite", c.notFinite},
-          {"noDensity", c.noDensity},      {"notUnit", c.notUnit},   {"noDepth", c.noDepth},
-          {"outsideFrame", c.outsideFrame}};
+  return {{"accepted", c.accepted},
+          {"discrete", c.discrete},
+          {"notFinite", c.notFinite},
+          {"noDensity", c.noDensity},
+          {"notUnit", c.notUnit},
+          {"noDepth", c.noDepth},
+          {"outsideFrame", c.outsideFrame},
+          {"wrongSide", c.wrongSide},
+          {"outOfRange", c.outOfRange},
+          {"guidableAbovePdf", c.guidableAbovePdf},
+          {"unknownLights", c.unknownLights},
+          {"twice", c.twice}};
 }
 
 Json jsonGuide(const GuideSummary& guide) {

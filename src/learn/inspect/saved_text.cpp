@@ -31,9 +31,17 @@ std::string levelsText(const std::array<uint32_t, kCellLevels>& cells) {
 // Counts with their reasons; those that are 0 are left out.
 std::string countsText(const VertexCounts& c) {
   std::string text = fmt::format("{} taken", c.accepted);
-  const std::pair<const char*, uint64_t> reasons[] = {
-      {"discrete", c.discrete}, {"not finite", c.notFinite},  {"without density", c.noDensity},
-      {"not unit", c.notUnit},  {"without depth", c.noDepth}, {"outside the frame", c.outsideFrame}};
+  const std::pair<const char*, uint64_t> reasons[] = {{"discrete", c.discrete},
+                                                      {"not finite", c.notFinite},
+                                                      {"without density", c.noDensity},
+                                                      {"not unit", c.notUnit},
+                                                      {"without depth", c.noDepth},
+                                                      {"outside the frame", c.outsideFrame},
+                                                      {"on the wrong side", c.wrongSide},
+                                                      {"out of range", c.outOfRange},
+                                                      {"guidable above pdf", c.guidableAbovePdf},
+                                                      {"of unknown lights", c.unknownLights},
+                                                      {"twice", c.twice}};
   for (const auto& [name, count] : reasons)
     if (count > 0) text += fmt::format(", {} {}", count, name);
   return text;

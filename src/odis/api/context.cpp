@@ -9,7 +9,7 @@ OdisContextImpl::OdisContextImpl(const OdisContextOptions& given)
                                : odis::core::libraryTasks(given.threads)) {}
 
 void OdisContextImpl::log(OdisLogLevel level, const std::string& message) {
-  if (!options.logFunction || level > options.logLevel) return;
+  if (!hears(level)) return;
   const std::lock_guard lock(m_logMutex);
   options.logFunction(options.logUser, level, message.c_str());
 }

@@ -48,7 +48,7 @@ using odis::core::guardedFor;
 using odis::core::guardedForFrame;
 
 OdisFrameImpl::OdisFrameImpl(OdisContext owner, odis::core::Frame content, OdisGuideBuilder learnsInto)
-    : memory(owner), builder(learnsInto), frame(std::move(content)) {
+    : memory(owner), builder(learnsInto), frame(std::move(content)), report(frame.summary()) {
   if (frame.bytes() > owner->memoryLeft()) throw std::bad_alloc();
   memory.set(frame.bytes());
 }
@@ -66,6 +66,8 @@ void OdisFrameImpl::endPass(bool interrupted) {
     builder->takeStock();
   else
     warnings.report(context, frame.coarsening(), frame.samplesLeftOut());
+  (builder ? builder->refusals : refusals).report(context, frame.vertexCounts());
+  report.report(context, frame, verticesLeftOut);
 }
 
 // Whether the memory limit leaves room for this many vertices; warns the first time that it does not.

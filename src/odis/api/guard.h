@@ -51,12 +51,18 @@ inline void requireArgument(const void* pointer, const char* name) {
 // Complains of a struct whose size is none that there ever was.
 [[noreturn]] void refuseSize(const char* name, size_t found, size_t expected);
 
+// A struct that may grow has had fewer fields once, but never none, nor a size that compilers don't give it.
+template <class Struct>
+void requireSize(size_t size, const char* name) {
+  if (size <= sizeof(size_t) || size > sizeof(Struct) || size % alignof(Struct) != 0)
+    refuseSize(name, size, sizeof(Struct));
+}
+
 // A struct of the host's, which may have been compiled with fewer fields: those have their defaults.
 template <class Struct>
 Struct adopt(const Struct& given, const char* name) {
   Struct result;
-  if (given.size < sizeof(size_t) || given.size > sizeof(Struct))
-    refuseSize(name, given.size, sizeof(Struct));
+  requireSize<Struct>(given.size, name);
   std::memcpy(static_cast<void*>(&result), &given, given.size);
   result.size = sizeof(Struct);
   return result;
@@ -65,7 +71,7 @@ Struct adopt(const Struct& given, const char* name) {
 // Fills in as many fields as the host knows.
 template <class Struct>
 void fillIn(Struct& host, Struct value, const char* name) {
-  if (host.size < sizeof(size_t) || host.size > sizeof(Struct)) refuseSize(name, host.size, sizeof(Struct));
+  requireSize<Struct>(host.size, name);
   value.size = host.size;
   std::memcpy(static_cast<void*>(&host), &value, host.size);
 }
@@ -75,11 +81,12 @@ template <class Struct>
 void initialize(Struct* host, size_t size, const char* name) noexcept {
   guarded(nullptr, false, [&] {
     requireArgument(host, name);
-    if (size > sizeof(Struct)) refuseSize(name, size, sizeof(Struct));
     Struct value;
     if constexpr (requires { value.size; }) {
-      if (size < sizeof(size_t)) refuseSize(name, size, sizeof(Struct));
+      requireSize<Struct>(size, name);
       value.size = size;
+    } else if (size != sizeof(Struct)) {
+      refuseSize(name, size, sizeof(Struct));
     }
     std::memcpy(static_cast<void*>(host), &value, size);
     return true;

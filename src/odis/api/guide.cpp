@@ -15,8 +15,6 @@ OdisGuideOptions adoptGuideOptions(const OdisGuideOptions& given) {
 OdisGuideImpl::OdisGuideImpl(OdisContext owner, odis::core::Guide content)
     : memory(owner), guide(std::move(content)) {
   memory.set(guide.bytes());
-  owner->log(ODIS_LOG_INFO, "a guide of " + std::to_string(guide.view().cellCount) + " cells, " +
-                                std::to_string(guide.bytes()) + " bytes");
 }
 
 OdisGuideBuilderImpl::OdisGuideBuilderImpl(OdisContext owner, const OdisGuideOptions& options)
@@ -55,25 +53,41 @@ bool odisAddVertices(OdisGuideBuilder builder, const OdisPathVertices* vertices)
     builder->builder.add(given.view());
     builder->memory.set(builder->builder.bytes());
     builder->takeStock();
+    builder->refusals.report(context, builder->builder.vertexCounts());
     return true;
   });
 }
+
+namespace odis::core {
+
+namespace {
+
+// A handle of a guide that a builder has built.
+OdisGuide newBuiltGuide(OdisGuideBuilder builder, Guide guide) {
+  OdisContextImpl& context = builder->memory.context();
+  reportGuide(context, guide);
+  return new OdisGuideImpl(&context, std::move(guide));
+}
+
+}  // namespace
+
+}  // namespace odis::core
 
 OdisGuide odisBuildGuide(OdisGuideBuilder builder, const OdisPathVertices* vertices, const float* pixelValues,
                          size_t pixelCount) {
   return guardedFor(builder, "odisBuildGuide", OdisGuide(nullptr), [&] {
     odis::core::requireArgument(vertices, "odisBuildGuide: vertices");
+    if (pixelCount > 0) odis::core::requireArgument(pixelValues, "odisBuildGuide: pixelValues");
     HostVertices given(vertices);
-    return new OdisGuideImpl(
-        &builder->memory.context(),
-        builder->builder.build(given.view(), {pixelValues, pixelValues ? pixelCount : 0}));
+    return odis::core::newBuiltGuide(
+        builder, builder->builder.build(given.view(), {pixelValues, pixelValues ? pixelCount : 0}));
   });
 }
 
 OdisGuide odisRebuildGuide(OdisGuideBuilder builder, OdisGuide previous) {
   return guardedFor(builder, "odisRebuildGuide", OdisGuide(nullptr), [&] {
     odis::core::requireArgument(previous, "odisRebuildGuide: previous");
-    return new OdisGuideImpl(&builder->memory.context(), builder->builder.rebuild(previous->guide));
+    return odis::core::newBuiltGuide(builder, builder->builder.rebuild(previous->guide));
   });
 }
 

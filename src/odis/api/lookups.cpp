@@ -55,10 +55,9 @@ float odisGetMixturePdf(float bsdfPdf, float guidablePdf, float guidableProbabil
   return odis::mixturePdf(bsdfPdf, guidablePdf, guidableProbability, bsdfFraction, mapPdf);
 }
 
-float odisGetSurvivalProbability(const OdisGuideView* view, uint32_t cell, float throughput) {
-  return hasCell(view, cell)
-             ? odis::survivalProbability(view->rules, view->decisions[cell].survivalFactor, throughput)
-             : 1;
+float odisGetSurvivalProbability(const OdisGuideView* view, uint32_t cell, float throughput, uint32_t depth) {
+  const float factor = hasCell(view, cell) ? view->decisions[cell].survivalFactor : INFINITY;
+  return odis::survivalProbability(view ? view->rules : odis::GuideRules(), factor, throughput, depth);
 }
 
 float odisGetShadowRayProbability(const OdisGuideView* view, float contribution) {

@@ -6,6 +6,7 @@
 #include <string>
 #include <thread>
 
+#include "odis/api/reports.h"
 #include "odis/frame.h"
 #include "odis/guide.h"
 #include "odis/models/model.h"
@@ -46,6 +47,7 @@ class Ref {
 struct OdisContextImpl : odis::core::Object {
   explicit OdisContextImpl(const OdisContextOptions& given);
 
+  bool hears(OdisLogLevel level) const { return options.logFunction && level <= options.logLevel; }
   void log(OdisLogLevel level, const std::string& message);
   // Counts bytes that are held now (change > 0) or no longer.
   void countMemory(int64_t change);
@@ -95,10 +97,12 @@ struct ContextModel : OdisModelImpl {
 }  // namespace odis::core
 
 struct OdisRecorderImpl : odis::core::Object {
-  explicit OdisRecorderImpl(OdisContext owner) : memory(owner) {}
+  explicit OdisRecorderImpl(OdisContext context) : memory(context) {}
 
   odis::core::MemoryUse memory;
   odis::core::PathRecorder recorder;
+  // The thread that has paths open; none in between.
+  std::atomic<std::thread::id> owner{std::thread::id()};
 };
 
 struct OdisGuideImpl : odis::core::Object {
@@ -131,6 +135,7 @@ struct OdisGuideBuilderImpl : odis::core::Object {
   odis::core::MemoryUse memory;
   odis::core::GuideBuilder builder;
   odis::core::MemoryWarnings warnings;
+  odis::core::RefusalWarnings refusals;
 };
 
 struct OdisFrameImpl : odis::core::Object {
@@ -145,6 +150,8 @@ struct OdisFrameImpl : odis::core::Object {
   odis::core::Ref<OdisGuideBuilderImpl> builder;  // the host's
   odis::core::Frame frame;
   odis::core::MemoryWarnings warnings;
+  odis::core::RefusalWarnings refusals;
+  odis::core::FrameReport report;
   std::atomic<bool> verticesLeftOut{false};
   std::thread ending;  // of the pass; joinable from odisStartEndPass to odisWaitForPass
   std::exception_ptr failure;

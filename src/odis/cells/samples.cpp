@@ -4,7 +4,6 @@
 #include <cmath>
 
 #include "odis/cells/cell_index.h"
-#include "odis/record/vertex_check.h"
 
 namespace odis::core {
 
@@ -21,8 +20,8 @@ float lightSquare(const PathVertex& v) {
 
 // Whether a vertex tells what its surface scatters back, though nothing of directions: its surface has other
 // lobes, and the path took a delta lobe, as of a coat. Of mirrors nothing is learned.
-bool tellsWhatReturns(const PathVertex& v) {
-  return v.discrete && v.guidableProbability > 0 && checkNumbers(v) == VertexState::usable;
+bool tellsWhatReturns(const PathVertex& v, const VertexRules& rules) {
+  return v.discrete && v.guidableProbability > 0 && checkNumbers(v, rules) == VertexState::usable;
 }
 
 }  // namespace
@@ -37,16 +36,16 @@ Float3 returnedRadiance(const PathVertex& v) {
           usable(v.direct.z + v.weight.z * v.radiance.z)};
 }
 
-BatchSamples takeSamples(const VertexBatch& batch) {
+BatchSamples takeSamples(const VertexBatch& batch, const VertexRules& rules) {
   BatchSamples result;
   size_t count = 0;
   for (const ArrayView<const PathVertex>& piece : batch) count += piece.size();
   result.samples.reserve(count);
   for (const ArrayView<const PathVertex>& piece : batch)
     for (const PathVertex& v : piece) {
-      const VertexState state = checkVertex(v);
+      const VertexState state = checkVertex(v, rules);
       countVertex(result.counts, state);
-      if (state != VertexState::usable && !tellsWhatReturns(v)) continue;
+      if (state != VertexState::usable && !tellsWhatReturns(v, rules)) continue;
       const float value = v.discrete ? 0 : sampleValue(v);
       const float rays = 1 + (std::isnan(v.raysAfter) ? 0 : v.raysAfter);
       const float square = lightSquare(v);

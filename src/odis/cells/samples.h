@@ -8,6 +8,7 @@
 #include "odis/cells/batches.h"
 #include "odis/guide_view.h"
 #include "odis/path_vertex.h"
+#include "odis/record/vertex_check.h"
 
 namespace odis::core {
 
@@ -58,7 +59,7 @@ struct BatchSamples {
   }
 };
 // Takes the samples alone.
-BatchSamples takeSamples(const VertexBatch& batch);
+BatchSamples takeSamples(const VertexBatch& batch, const VertexRules& rules = {});
 // Finds their cells.
 void assignCells(BatchSamples& batch, const CellGrid& grid);
 

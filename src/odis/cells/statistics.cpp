@@ -146,17 +146,17 @@ void accumulate(CellStatistics& cell, LightField* field, const Float3& middle, f
 
 }  // namespace
 
-void CellStore::add(VertexParts parts, int cellsPerDiagonal) {
+void CellStore::add(VertexParts parts, int cellsPerDiagonal, const VertexRules& rules) {
   const std::vector<VertexBatch> vertices = makeBatches(parts);
   std::vector<BatchSamples> samples(vertices.size());
-  m_tasks->forEach(vertices.size(), [&](size_t b) { samples[b] = take(vertices[b]); });
+  m_tasks->forEach(vertices.size(), [&](size_t b) { samples[b] = take(vertices[b], rules); });
   std::vector<BatchSamples*> batches;
   for (BatchSamples& batch : samples) batches.push_back(&batch);
   add(batches, cellsPerDiagonal);
 }
 
-BatchSamples CellStore::take(const VertexBatch& batch) const {
-  BatchSamples result = takeSamples(batch);
+BatchSamples CellStore::take(const VertexBatch& batch, const VertexRules& rules) const {
+  BatchSamples result = takeSamples(batch, rules);
   if (m_placed) assignCells(result, m_grid);
   return result;
 }

@@ -122,10 +122,10 @@ class CellStore {
   // Changes whenever cells get other numbers than they had.
   uint64_t numbering() const { return m_numbering; }
   // Sorts the vertices into cells and adds them up.
-  void add(VertexParts parts, int cellsPerDiagonal);
+  void add(VertexParts parts, int cellsPerDiagonal, const VertexRules& rules = {});
   // The same in two steps: many threads take samples, with their cells if there is a grid by then; one call
   // adds them up and finds the cells of those that have none.
-  BatchSamples take(const VertexBatch& batch) const;
+  BatchSamples take(const VertexBatch& batch, const VertexRules& rules = {}) const;
   void add(std::span<BatchSamples* const> batches, int cellsPerDiagonal);
   // The cells, with the coarser levels and what lies around filled in. They stay as they are until more is
   // added.

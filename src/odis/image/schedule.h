@@ -21,6 +21,8 @@ class Schedule {
   uint32_t pilotCount(uint32_t pixel) const { return m_pilotCounts.empty() ? 0 : m_pilotCounts[pixel]; }
   // The number of samples of all pilots together.
   uint64_t pilotSamples() const;
+  // How many samples a pixel has in all.
+  uint32_t sampleCount(uint32_t pixel) const { return m_counts.empty() ? m_spp : m_counts[pixel]; }
   // How many samples remain after the pilot in the pixel that has the most.
   uint32_t mostRemaining() const { return m_mostRemaining; }
   // The samples of a pixel among those between `begin` and `end` of what remains after the pilot.
@@ -51,7 +53,6 @@ class Schedule {
   // How many samples are left in all pixels together when `done` of those that remain are taken in each. 0
   // before it is settled how many each pixel has.
   uint64_t samplesAfter(uint32_t done) const;
-  uint32_t sampleCount(uint32_t pixel) const { return m_counts.empty() ? m_spp : m_counts[pixel]; }
 
   uint32_t m_spp;
   std::vector<uint32_t> m_pilotCounts;  // [pixel]; empty: no pilot

@@ -10,10 +10,14 @@ namespace odis::core {
 
 namespace {
 
-constexpr uint32_t kTileSize = 16;
 // Threads share the work on a call that brings at least this many tiles, and this many samples and vertices
 // together.
 constexpr size_t kTilesForThreads = 5, kWorkForThreads = 16384;
+
+[[noreturn]] void refuseTwice(const FrameSample& sample) {
+  throw std::logic_error("odisAddSamples: sample " + std::to_string(sample.sample) + " of pixel " +
+                         std::to_string(sample.pixel) + " came twice");
+}
 
 }  // namespace
 
@@ -40,20 +44,31 @@ bool TileCollector::isDue(uint32_t pixel, uint32_t sample) const {
   return sample >= range.first && sample - range.first < range.count;
 }
 
-uint64_t TileCollector::samplesDue(uint32_t tile) const {
+SamplesDue TileCollector::samplesDue(uint32_t tile) const {
   const uint32_t x0 = tile % m_columns * kTileSize, y0 = tile / m_columns * kTileSize;
-  uint64_t due = 0;
+  SamplesDue due;
   for (uint32_t y = y0; y < std::min(y0 + kTileSize, m_height); ++y)
-    for (uint32_t x = x0; x < std::min(x0 + kTileSize, m_width); ++x) due += m_due(y * m_width + x).count;
+    for (uint32_t x = x0; x < std::min(x0 + kTileSize, m_width); ++x) {
+      const uint64_t ofPixel = m_due(y * m_width + x).count;
+      due.all += ofPixel;
+      due.most = std::max(due.most, ofPixel);
+    }
   return due;
+}
+
+uint64_t TileCollector::missing() const {
+  uint64_t missing = 0;
+  for (uint32_t t = 0; t < tileCount(); ++t)
+    if (!m_tiles[t].done) missing += samplesDue(t).all - m_tiles[t].samples.size();
+  return missing;
 }
 
 void TileCollector::beginPass(Due due, Sink sink) {
   m_due = std::move(due);
   m_sink = std::move(sink);
-  m_refused = 0;
+  m_notDue = m_twice = 0;
   for (uint32_t t = 0; t < tileCount(); ++t) {
-    m_tiles[t].due = 0;
+    m_tiles[t].claims.begin({});
     m_tiles[t].done = false;
   }
 }
@@ -76,8 +91,13 @@ bool TileCollector::allIn(uint32_t tile, ArrayView<const FrameSample> samples,
 void TileCollector::add(ArrayView<const FrameSample> samples, const VertexSource& vertices) {
   // Whatever is of one tile and lies in an array needs no sorting by tile.
   if (!samples.empty() && vertices.array().size() == vertices.size())
-    if (const uint32_t tile = tileOf(samples[0].pixel); allIn(tile, samples, vertices.array()))
+    if (const uint32_t tile = tileOf(samples[0].pixel); allIn(tile, samples, vertices.array())) {
+      requireOpen(tile);
+      const size_t claimed =
+          claim(tile, samples.size(), [&](size_t i) -> const FrameSample& { return samples[i]; });
+      if (claimed < samples.size()) refuseTwice(samples[claimed]);
       return addToTile(tile, samples, vertices.array());
+    }
   addTiles(samples, vertices);
 }
 
@@ -111,6 +131,59 @@ std::vector<uint32_t> TileCollector::tilesOf(bool byThreads, size_t count,
   return tiles;
 }
 
+// Where samples belong. Neighbours are of one pixel for the most part.
+template <class SampleAt>
+struct TileCollector::SlotsOf {
+  SampleSlot operator()(size_t i) const {
+    const FrameSample& s = sampleAt(i);
+    if (s.pixel != pixel) {
+      pixel = s.pixel;
+      place = collector.placeInTile(pixel);
+      first = collector.m_due(pixel).first;
+    }
+    return {place, s.sample - first};
+  }
+
+  const TileCollector& collector;
+  const SampleAt& sampleAt;
+  mutable uint32_t pixel = ~0u, place = 0, first = 0;
+};
+
+// Claims samples of a tile for the call that brings them; answers how many come before one that another
+// call has claimed, or this one before. Where that is not `count`, none is claimed.
+template <class SampleAt>
+size_t TileCollector::claim(uint32_t index, size_t count, const SampleAt& sampleAt) {
+  if (count == 0) return 0;
+  Tile& tile = m_tiles[index];
+  const std::lock_guard lock(tile.mutex);
+  if (tile.done) return 0;
+  if (tile.claims.due().all == 0) tile.claims.begin(samplesDue(index));
+  const uint64_t before = tile.claims.bytes();
+  const size_t claimed = tile.claims.claim(count, SlotsOf<SampleAt>{*this, sampleAt});
+  m_waitingBytes += tile.claims.bytes() - before;
+  return claimed;
+}
+
+// The same for the samples of many tiles: all are claimed, or none and std::logic_error is thrown.
+template <class SampleAtOf>
+void TileCollector::claimAll(bool byThreads, ArrayView<const uint32_t> tiles, const TileOrder& order,
+                             const SampleAtOf& sampleAtOf) {
+  std::vector<size_t> claimed(tiles.size());
+  forEach(byThreads, tiles.size(),
+          [&](size_t t) { claimed[t] = claim(tiles[t], order.count(tiles[t]), sampleAtOf(tiles[t])); });
+  const auto isRefused = [&](size_t t) { return claimed[t] < order.count(tiles[t]); };
+  size_t refused = 0;
+  while (refused < tiles.size() && !isRefused(refused)) ++refused;
+  if (refused == tiles.size()) return;
+  for (size_t t = 0; t < tiles.size(); ++t) {
+    if (isRefused(t)) continue;
+    const std::lock_guard lock(m_tiles[tiles[t]].mutex);
+    const auto sampleAt = sampleAtOf(tiles[t]);
+    m_tiles[tiles[t]].claims.disclaim(claimed[t], SlotsOf<decltype(sampleAt)>{*this, sampleAt});
+  }
+  refuseTwice(sampleAtOf(tiles[refused])(claimed[refused]));
+}
+
 void TileCollector::addTiles(ArrayView<const FrameSample> samples, const VertexSource& vertices) {
   const bool isLarge = samples.size() + vertices.size() >= kWorkForThreads;
   const std::vector<uint32_t> tileOfSample =
@@ -127,7 +200,11 @@ void TileCollector::addTiles(ArrayView<const FrameSample> samples, const VertexS
        tile < std::max(sampleOrder.end(), vertexOrder.end()); ++tile)
     if (sampleOrder.count(tile) + vertexOrder.count(tile) > 0) tiles.push_back(tile);
   for (const uint32_t tile : tiles) requireOpen(tile);
-  forEach(isLarge && tiles.size() >= kTilesForThreads, tiles.size(), [&](size_t t) {
+  const bool byThreads = isLarge && tiles.size() >= kTilesForThreads;
+  claimAll(byThreads, tiles, sampleOrder, [&](uint32_t tile) {
+    return [&, tile](size_t i) -> const FrameSample& { return samples[sampleOrder.index(tile, i)]; };
+  });
+  forEach(byThreads, tiles.size(), [&](size_t t) {
     const size_t count = sampleOrder.count(tiles[t]);
     std::vector<FrameSample> sorted;
     if (!sampleOrder.isSorted())
@@ -140,7 +217,7 @@ void TileCollector::addTiles(ArrayView<const FrameSample> samples, const VertexS
                           [&](size_t k) { return vertexOrder.index(tiles[t], k); });
     addToTile(tiles[t], ofTile, copyInOrder(vertices, std::move(order)));
   });
-  m_refused += vertices.size() - vertexOrder.size();
+  m_notDue += vertices.size() - vertexOrder.size();
 }
 
 // The order in which `count` vertices of a tile are handed on, those at indexAt(0), indexAt(1), ...
@@ -159,6 +236,19 @@ TileCollector::Order TileCollector::orderOf(const VertexSource& vertices, size_t
   return order;
 }
 
+// Leaves out vertices that came before; returns how many. Depths of very long paths are cut off, and those of
+// vertices without one are all 0.
+uint64_t TileCollector::leaveOutTwice(Order& order) {
+  const auto isSame = [](const auto& a, const auto& b) {
+    const uint64_t depth = b.first & 0xffff;
+    return a.first == b.first && depth != 0 && depth != 0xffff;
+  };
+  const auto end = std::unique(order.begin(), order.end(), isSame);
+  const auto twice = uint64_t(order.end() - end);
+  order.erase(end, order.end());
+  return twice;
+}
+
 std::vector<PathVertex> TileCollector::copyInOrder(const VertexSource& vertices, Order order) {
   if (!std::is_sorted(order.begin(), order.end())) std::sort(order.begin(), order.end());
   std::vector<PathVertex> ordered;
@@ -169,16 +259,19 @@ std::vector<PathVertex> TileCollector::copyInOrder(const VertexSource& vertices,
 
 void TileCollector::requireOpen(uint32_t tile) const {
   if (m_tiles[tile].done)
-    throw std::logic_error("odisAddSamples: a sample or vertex came twice, or after its tile was complete");
+    throw std::logic_error("odisAddSamples: a sample came twice, or a vertex after all samples of its tile");
 }
 
 void TileCollector::addToTile(uint32_t index, ArrayView<const FrameSample> samples, TileVertices vertices) {
   Tile& tile = m_tiles[index];
   const std::lock_guard lock(tile.mutex);
   requireOpen(index);
-  if (tile.due == 0) tile.due = samplesDue(index);
   const bool nothingWaits = tile.samples.empty() && tile.vertices.empty();
-  tile.done = tile.samples.size() + samples.size() == tile.due;
+  tile.done = !samples.empty() && tile.samples.size() + samples.size() == tile.claims.due().all;
+  if (tile.done) {
+    m_waitingBytes -= tile.claims.bytes();
+    tile.claims.end();
+  }
   if (tile.done && nothingWaits) return handOn(index, samples, vertices);
   const uint64_t bytes = samples.size() * sizeof(FrameSample) + vertices.size() * sizeof(PathVertex);
   tile.samples.insert(tile.samples.end(), samples.begin(), samples.end());
@@ -209,13 +302,15 @@ std::vector<uint8_t> TileCollector::done() const {
   return done;
 }
 
-uint64_t TileCollector::endPass() {
+TileCollector::LeftOut TileCollector::endPass() {
   for (uint32_t t = 0; t < tileCount(); ++t) {
     Tile& tile = m_tiles[t];
+    m_waitingBytes -= tile.claims.bytes();
+    tile.claims.end();
     if (tile.samples.empty() && tile.vertices.empty()) continue;
     handOnWaiting(t);
   }
-  return m_refused;
+  return {m_notDue, m_twice};
 }
 
 void TileCollector::handOn(uint32_t tile, ArrayView<const FrameSample> samples, TileVertices& vertices) {
@@ -238,7 +333,11 @@ void TileCollector::handOn(uint32_t tile, ArrayView<const FrameSample> samples, 
   }
   const VertexArray given(vertices.view());
   Order order = orderOf(given, given.size(), [](size_t k) { return k; });
-  if (std::is_sorted(order.begin(), order.end())) return m_sink(tile, samples, vertices);
+  const bool isSorted = std::is_sorted(order.begin(), order.end());
+  if (!isSorted) std::sort(order.begin(), order.end());
+  const uint64_t twice = leaveOutTwice(order);
+  if (isSorted && twice == 0) return m_sink(tile, samples, vertices);
+  m_twice += twice;
   TileVertices ordered(copyInOrder(given, std::move(order)));
   m_sink(tile, samples, ordered);
 }

@@ -7,6 +7,7 @@
 #include <mutex>
 #include <vector>
 
+#include "odis/image/tile_claims.h"
 #include "odis/image/tile_order.h"
 #include "odis/image/tile_vertices.h"
 #include "odis/record/vertex_source.h"
@@ -33,11 +34,17 @@ class TileCollector {
   uint32_t tileCount() const { return m_columns * m_rows; }
 
   void beginPass(Due due, Sink sink);
-  // Thread-safe. Throws std::out_of_range for samples that are not due, std::logic_error for samples of a
-  // tile that is complete; nothing is taken then.
+  // Thread-safe. Throws std::out_of_range for samples that are not due, std::logic_error for samples that
+  // come twice and for vertices of a tile that is complete; nothing is taken then.
   void add(ArrayView<const FrameSample> samples, const VertexSource& vertices);
-  // Hands on the tiles that lack samples. Returns how many vertices were refused because they were not due.
-  uint64_t endPass();
+  // How many samples have not come yet.
+  uint64_t missing() const;
+  // Vertices that were left out: because their samples are not due, or because they came before.
+  struct LeftOut {
+    uint64_t notDue = 0, twice = 0;
+  };
+  // Hands on the tiles that lack samples.
+  LeftOut endPass();
 
   // Whether all samples of a pixel's tile are in.
   bool isDone(uint32_t pixel) const { return m_tiles[tileOf(pixel)].done; }
@@ -55,7 +62,7 @@ class TileCollector {
     std::mutex mutex;
     std::vector<FrameSample> samples;
     std::vector<PathVertex> vertices;
-    uint64_t due = 0;  // number of samples due in the pass; 0: not counted yet
+    TileClaims claims;  // without samples that are due: not counted yet
     std::atomic<bool> done{false};
   };
   // What vertices are sorted by: first a number made of pixel, sample and depth, then the index at which they
@@ -64,7 +71,7 @@ class TileCollector {
   uint32_t tileOf(uint32_t pixel) const;
   uint32_t placeInTile(uint32_t pixel) const;
   bool isDue(uint32_t pixel, uint32_t sample) const;
-  uint64_t samplesDue(uint32_t tile) const;
+  SamplesDue samplesDue(uint32_t tile) const;
   bool allIn(uint32_t tile, ArrayView<const FrameSample> samples, ArrayView<const PathVertex> vertices) const;
   template <class Body>
   void forEach(bool byThreads, size_t count, const Body& body) const;
@@ -72,8 +79,16 @@ class TileCollector {
   std::vector<uint32_t> tilesOf(bool byThreads, size_t count, const IdentityAt& identityAt) const;
   template <class IndexAt>
   Order orderOf(const VertexSource& vertices, size_t count, const IndexAt& indexAt) const;
+  static uint64_t leaveOutTwice(Order& order);
   static std::vector<PathVertex> copyInOrder(const VertexSource& vertices, Order order);
   void requireOpen(uint32_t tile) const;
+  template <class SampleAt>
+  struct SlotsOf;
+  template <class SampleAt>
+  size_t claim(uint32_t tile, size_t count, const SampleAt& sampleAt);
+  template <class SampleAtOf>
+  void claimAll(bool byThreads, ArrayView<const uint32_t> tiles, const TileOrder& order,
+                const SampleAtOf& sampleAtOf);
   void addTiles(ArrayView<const FrameSample> samples, const VertexSource& vertices);
   void addToTile(uint32_t tile, ArrayView<const FrameSample> samples, TileVertices vertices);
   void handOnWaiting(uint32_t tile);
@@ -84,7 +99,7 @@ class TileCollector {
   Sink m_sink;
   std::unique_ptr<Tile[]> m_tiles;
   std::shared_ptr<const Tasks> m_tasks;
-  std::atomic<uint64_t> m_refused{0};
+  std::atomic<uint64_t> m_notDue{0}, m_twice{0};
   std::atomic<uint64_t> m_waitingBytes{0};
 };
 

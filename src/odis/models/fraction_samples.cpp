@@ -3,11 +3,10 @@
 #include <algorithm>
 
 #include "odis/cells/samples.h"
-#include "odis/record/vertex_check.h"
 
 namespace odis::core {
 
-FractionSample fractionSampleOf(const PathVertex& v) {
+FractionSample fractionSampleOf(const PathVertex& v, const VertexRules& rules) {
   const GuidablePart guidable = guidablePartOf(v);
   return {.position = v.position,
           .normal = v.normal,
@@ -29,7 +28,7 @@ FractionSample fractionSampleOf(const PathVertex& v) {
           .raysAfter = v.raysAfter,
           .pixel = v.pixel,
           .isFirst = v.depth == 1,
-          .isUsable = v.discrete || isUsable(v),
+          .isUsable = v.discrete || checkVertex(v, rules) == VertexState::usable,
           .discrete = v.discrete,
           .scattersBothSides = v.scattersBothSides};
 }
@@ -44,14 +43,15 @@ bool isForFractions(uint32_t pixel, uint32_t stride) {
   return uint64_t(pixel * kGolden) * stride < (uint64_t(1) << 32);
 }
 
-std::vector<FractionSample> takeFractionSamples(ArrayView<const PathVertex> vertices, uint32_t stride) {
+std::vector<FractionSample> takeFractionSamples(ArrayView<const PathVertex> vertices, uint32_t stride,
+                                                const VertexRules& rules) {
   const auto isTaken = [stride](const PathVertex& v) {
     return isForFractions(v.pixel, stride) && knowsContributions(v);
   };
   std::vector<FractionSample> samples;
   samples.reserve(size_t(std::count_if(vertices.begin(), vertices.end(), isTaken)));
   for (const PathVertex& v : vertices)
-    if (isTaken(v)) samples.push_back(fractionSampleOf(v));
+    if (isTaken(v)) samples.push_back(fractionSampleOf(v, rules));
   return samples;
 }
 

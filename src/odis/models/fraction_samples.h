@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "odis/path_vertex.h"
+#include "odis/record/vertex_check.h"
 
 namespace odis::core {
 
@@ -26,7 +27,7 @@ struct FractionSample {
 // Samples as they lie in memory.
 using FractionParts = ArrayView<const ArrayView<const FractionSample>>;
 
-FractionSample fractionSampleOf(const PathVertex& vertex);
+FractionSample fractionSampleOf(const PathVertex& vertex, const VertexRules& rules = {});
 
 // The choice is made from a quarter of the vertices, within bounds: from one pixel in `stride`, all of its
 // path. What is chosen among more vertices is a part of what is chosen among fewer.
@@ -34,6 +35,7 @@ uint32_t fractionStride(uint64_t vertices);
 bool isForFractions(uint32_t pixel, uint32_t stride);
 
 // Those of the chosen pixels whose contributions are known.
-std::vector<FractionSample> takeFractionSamples(ArrayView<const PathVertex> vertices, uint32_t stride);
+std::vector<FractionSample> takeFractionSamples(ArrayView<const PathVertex> vertices, uint32_t stride,
+                                                const VertexRules& rules);
 
 }  // namespace odis::core

@@ -11,6 +11,12 @@ namespace {
 void requireOrder(bool holds, const char* message) {
   if (!holds) throw std::logic_error(message);
 }
+constexpr char kEnded[] = "a path that escaped or ended with cached radiance has no further rays";
+
+// Numbers that no event has.
+void requireNumber(bool holds, const char* message) {
+  if (!holds) throw std::invalid_argument(message);
+}
 
 }  // namespace
 
@@ -23,8 +29,10 @@ PathRecorder::OpenPath& PathRecorder::open(uint32_t index) {
 
 void PathRecorder::escape(uint32_t index) {
   OpenPath& path = open(index);
+  requireOrder(!path.ended, kEnded);
   ++path.rays;
   path.current = kNone;
+  path.ended = true;
 }
 
 uint64_t PathRecorder::bytes() const {
@@ -39,6 +47,8 @@ uint32_t PathRecorder::begin(const PathIdentity& identity) {
 
 void PathRecorder::surface(uint32_t index, const SurfaceEvent& event) {
   OpenPath& path = open(index);
+  requireOrder(!path.ended, kEnded);
+  requireNumber(!(event.distance < 0), "OdisSurfaceEvent.distance: expected a number from 0");
   ++path.rays;
   ++path.surfaces;
   if (path.last != kNone) m_pending[path.last].vertex.distance = event.distance;
@@ -72,11 +82,21 @@ void PathRecorder::emission(uint32_t index, const EmissionEvent& event) {
 void PathRecorder::cached(uint32_t index, const Float3& radiance) {
   OpenPath& path = open(index);
   requireOrder(path.current != kNone, "cached radiance needs a surface before it");
+  requireOrder(path.lit != path.current && path.survivalOnArrival == 1,
+               "cached radiance comes before roulette and light events of its surface");
   path.cached = radiance;
+  path.current = kNone;
+  path.ended = true;
 }
 
 void PathRecorder::survived(uint32_t index, float probability) {
   OpenPath& path = open(index);
+  requireNumber(probability > 0 && probability <= 1,
+                "odisRecordSurvival: expected a probability above 0 and up to 1");
+  requireOrder(path.current != kNone,
+               "roulette on arrival needs a surface before it, without a bounce since");
+  requireOrder(path.lit != path.current, "roulette on arrival comes before the light event of its surface");
+  requireOrder(path.survivalOnArrival == 1, "a surface has one roulette on arrival");
   path.survivalOnArrival = probability;
   path.throughput = path.throughput / probability;
 }
@@ -84,6 +104,7 @@ void PathRecorder::survived(uint32_t index, float probability) {
 void PathRecorder::light(uint32_t index, const LightEvent& event) {
   OpenPath& path = open(index);
   requireOrder(path.current != kNone, "a light event needs a surface before it");
+  requireOrder(path.lit != path.current, "a surface has one light event: tell the sum of several lights");
   ++path.rays;
   path.lit = path.current;
   PathVertex& v = m_pending[path.current].vertex;

@@ -28,7 +28,8 @@ using LightEvent = OdisLightEvent;
 using BounceEvent = OdisBounceEvent;
 
 // 250 bytes a vertex while paths are open; memory is kept for the next ones. Not thread-safe. Throws
-// std::out_of_range for a path that is not open, std::logic_error for events in an order that no path has.
+// std::out_of_range for a path that is not open, std::logic_error for events in an order that no path has,
+// std::invalid_argument for numbers that no event has.
 class PathRecorder {
  public:
   // Opens a path and returns its handle: 0, 1, 2, ... since the last finish().
@@ -51,6 +52,7 @@ class PathRecorder {
   // knows: the radiance that arrives, contributions to the pixel, rays. They stay until the next begin().
   ArrayView<const PathVertex> finish();
 
+  bool hasOpenPaths() const { return !m_paths.empty(); }
   uint64_t bytes() const;
 
  private:
@@ -74,6 +76,7 @@ class PathRecorder {
     uint32_t last = kNone, current = kNone, lit = kNone;
     uint32_t count = 0;  // of complete vertices
     uint32_t surfaces = 0, rays = 0;
+    bool ended = false;  // escaped, or ended with cached radiance
   };
   OpenPath& open(uint32_t index);
   void complete(const OpenPath& path, PathVertex* vertices) const;

@@ -4,6 +4,20 @@
 
 namespace odis::core {
 
+VertexState checkNumbers(const PathVertex& v, const VertexRules& rules) {
+  const VertexState state = odis::checkNumbers(v);
+  if (state != VertexState::usable) return state;
+  if (rules.lightGroups > 0 && v.lightGroup >= rules.lightGroups && v.lightGroup != kNoLightGroup)
+    return VertexState::unknownLights;
+  // A part is not more than the whole, but for rounding. That of a delta lobe is of the other lobes.
+  if (rules.unguided && !v.discrete && v.guidablePdf > 1.01f * v.pdf) return VertexState::guidableAbovePdf;
+  return VertexState::usable;
+}
+
+VertexState checkVertex(const PathVertex& v, const VertexRules& rules) {
+  return v.discrete ? VertexState::discrete : checkNumbers(v, rules);
+}
+
 void countVertex(VertexCounts& counts, VertexState state) {
   switch (state) {
     case VertexState::usable:
@@ -24,6 +38,18 @@ void countVertex(VertexCounts& counts, VertexState state) {
     case VertexState::noDepth:
       ++counts.noDepth;
       break;
+    case VertexState::wrongSide:
+      ++counts.wrongSide;
+      break;
+    case VertexState::outOfRange:
+      ++counts.outOfRange;
+      break;
+    case VertexState::guidableAbovePdf:
+      ++counts.guidableAbovePdf;
+      break;
+    case VertexState::unknownLights:
+      ++counts.unknownLights;
+      break;
   }
 }
 
@@ -35,6 +61,11 @@ void addCounts(VertexCounts& counts, const VertexCounts& other) {
   counts.notUnit += other.notUnit;
   counts.noDepth += other.noDepth;
   counts.outsideFrame += other.outsideFrame;
+  counts.wrongSide += other.wrongSide;
+  counts.outOfRange += other.outOfRange;
+  counts.guidableAbovePdf += other.guidableAbovePdf;
+  counts.unknownLights += other.unknownLights;
+  counts.twice += other.twice;
 }
 
 float cosineOf(const PathVertex& v) {

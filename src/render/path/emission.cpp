@@ -130,8 +130,9 @@ void playRouletteOnArrival(const PathSettings& settings, Batch& batch, Bounces& 
     if (!arrival.scatters || arrival.cell == kNoCell || bounces.depth == 1) continue;
     Path& path = *arrival.path;
     const CellDecisions& cell = settings.guide->decisions[arrival.cell];
-    const float survival = survivalProbability(settings.guide->rules, cell.survivalFactor,
-                                               luminance(path.throughput) / path.pixelValue);
+    const float survival =
+        survivalProbability(settings.guide->rules, cell.survivalFactor,
+                            luminance(path.throughput) / path.pixelValue, uint32_t(bounces.depth));
     // The mean outgoing radiance is a control variate: it leaves the expectation as it is.
     const Float3& outgoing = cell.outgoingRadiance;
     const Rgb standIn = path.throughput * Rgb(outgoing.x, outgoing.y, outgoing.z);

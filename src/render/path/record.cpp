@@ -18,9 +18,9 @@ void describeFirstHits(const PathSettings& settings, Bounces& bounces) {
     first.texels = settings.guide->maps.texels + size_t(arrival.cell) * kMapTexels;
     first.bsdfFraction = bounces.bsdfs.bsdfFraction[i];
     if (settings.learnedRoulette)
-      first.survival =
-          survivalProbability(settings.guide->rules, settings.guide->decisions[arrival.cell].survivalFactor,
-                              luminance(arrival.path->throughput) / arrival.path->pixelValue);
+      first.survival = survivalProbability(
+          settings.guide->rules, settings.guide->decisions[arrival.cell].survivalFactor,
+          luminance(arrival.path->throughput) / arrival.path->pixelValue, uint32_t(bounces.depth));
   }
 }
 

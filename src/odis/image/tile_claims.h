@@ -1,0 +1,87 @@
+// Tells whether a sample comes twice.
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+#include <vector>
+
+namespace odis::core {
+
+inline constexpr uint32_t kTileSize = 16;  // in pixels, across and down
+
+// The place of a sample's pixel in its tile, and the sample's number among those that are due there.
+struct SampleSlot {
+  uint32_t place, number;
+};
+
+// How many samples are due: in a tile, and at most in one pixel of it.
+struct SamplesDue {
+  uint64_t all = 0, most = 0;
+};
+
+// Which of a tile's samples were claimed by whoever brings them. A bit for each sample, where not all are
+// claimed at once.
+class TileClaims {
+ public:
+  void begin(const SamplesDue& due) { m_due = due, m_count = 0, m_isClaimed = {}; }
+  // Lets go of memory once all samples are in.
+  void end() { m_isClaimed = {}; }
+
+  // Claims the samples at slotAt(0), slotAt(1), ...; answers how many come before one that is claimed
+  // already. Where that is not `count`, none is claimed.
+  template <class SlotAt>
+  size_t claim(size_t count, const SlotAt& slotAt) {
+    if (m_count == 0 && areAll(count, slotAt)) {
+      m_isClaimed = {};
+      m_count = count;
+      return count;
+    }
+    if (m_count == 0) m_isClaimed.assign(kTileSize * kTileSize * m_due.most, false);
+    const size_t before = m_isClaimed.empty() ? 0 : set(true, count, slotAt);
+    if (before < count)
+      set(false, m_isClaimed.empty() ? 0 : before, slotAt);
+    else
+      m_count += count;
+    return before;
+  }
+  // Takes back what was claimed.
+  template <class SlotAt>
+  void disclaim(size_t count, const SlotAt& slotAt) {
+    if (!m_isClaimed.empty()) set(false, count, slotAt);
+    m_count -= count;
+  }
+
+  const SamplesDue& due() const { return m_due; }
+  uint64_t bytes() const { return m_isClaimed.capacity() / 8; }
+
+ private:
+  // Whether these are all samples of the tile, each once: those of a pixel in ascending order.
+  template <class SlotAt>
+  bool areAll(size_t count, const SlotAt& slotAt) const {
+    if (count != m_due.all) return false;
+    uint64_t next[kTileSize * kTileSize] = {};
+    for (size_t i = 0; i < count; ++i) {
+      const SampleSlot slot = slotAt(i);
+      if (slot.number < next[slot.place]) return false;
+      next[slot.place] = uint64_t(slot.number) + 1;
+    }
+    return true;
+  }
+  // Sets bits; answers how many there are before one that has the value already.
+  template <class SlotAt>
+  size_t set(bool value, size_t count, const SlotAt& slotAt) {
+    for (size_t i = 0; i < count; ++i) {
+      const SampleSlot slot = slotAt(i);
+      const uint64_t bit = slot.place * m_due.most + slot.number;
+      if (m_isClaimed[bit] == value) return i;
+      m_isClaimed[bit] = value;
+    }
+    return count;
+  }
+
+  SamplesDue m_due;
+  uint64_t m_count = 0;  // of claimed samples
+  std::vector<bool> m_isClaimed;  // [place][number]; empty: none is, or all are
+};
+
+}  // namespace odis::core

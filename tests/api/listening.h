@@ -1,0 +1,41 @@
+// A host that keeps what the library tells it.
+#pragma once
+
+#include <algorithm>
+#include <atomic>
+#include <odis/odis.hpp>
+#include <string>
+#include <vector>
+
+namespace odis::test {
+
+struct Heard {
+  std::vector<std::string> messages, errors;
+  std::atomic<int64_t> held{0}, most{0};
+
+  // How many messages have these words.
+  long count(const std::string& words) const {
+    return std::count_if(messages.begin(), messages.end(), [&](const std::string& message) {
+      return message.find(words) != std::string::npos;
+    });
+  }
+};
+
+inline ContextOptions heardBy(Heard& heard) {
+  ContextOptions options;
+  options.logFunction = [](void* user, OdisLogLevel, const char* message) {
+    static_cast<Heard*>(user)->messages.emplace_back(message);
+  };
+  options.errorFunction = [](void* user, OdisError, const char* message) {
+    static_cast<Heard*>(user)->errors.emplace_back(message);
+  };
+  options.memoryFunction = [](void* user, int64_t change) {
+    Heard& to = *static_cast<Heard*>(user);
+    to.held += change;
+    to.most = std::max(to.most.load(), to.held.load());
+  };
+  options.logUser = options.errorUser = options.memoryUser = &heard;
+  return options;
+}
+
+}  // namespace odis::test
