@@ -5,7 +5,7 @@
 namespace odis::core {
 
 VertexState checkNumbers(const PathVertex& v, const VertexRules& rules) {
-  const VertexState state = odis::checkNumbers(v);
+  const VertexState state = checkNumbers(v);
   if (state != VertexState::usable) return state;
   if (rules.lightGroups > 0 && v.lightGroup >= rules.lightGroups && v.lightGroup != kNoLightGroup)
     return VertexState::unknownLights;

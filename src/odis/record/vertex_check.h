@@ -11,6 +11,8 @@ struct VertexRules {
   uint32_t lightGroups = 0;  // that there are; 0: groups are not looked at
   bool unguided = false;     // whether all directions were drawn from the BSDF alone
 };
+using odis::checkNumbers;
+using odis::checkVertex;
 // The state of a vertex, of whichever lobe `wi` is, and the same for one that directions are learned from.
 VertexState checkNumbers(const PathVertex& vertex, const VertexRules& rules);
 VertexState checkVertex(const PathVertex& vertex, const VertexRules& rules);
