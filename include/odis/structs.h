@@ -261,7 +261,7 @@ typedef struct OdisVertexCounts {
   uint64_t wrongSide ODIS_DEFAULT(0);  // normal on the other side of the surface than the wo that is given
   // A number out of the range that OdisPathVertex names for it: a negative distance or density, say.
   uint64_t outOfRange ODIS_DEFAULT(0);
-  // guidablePdf, which is a part of pdf, above it in a pass that is not guided; counted by frames alone.
+  // lightGuidablePdf above lightBsdfPdf or, where frames count, guidablePdf above pdf in an unguided pass.
   uint64_t guidableAbovePdf ODIS_DEFAULT(0);
   // lightGroup beyond OdisGuideOptions.lightGroups, where that is not 0.
   uint64_t unknownLights ODIS_DEFAULT(0);

@@ -30,6 +30,11 @@ void check(const GuideOptions& options) {
     require(samples >= 0 && std::isfinite(samples), "priorSamples: expected finite numbers from 0 on");
   require(options.lightPartCount == 0 || options.lightParts, "lightParts: expected an array");
   require(options.lightGroups <= kMaxLightGroups, "lightGroups: expected at most kMaxLightGroups");
+  for (size_t i = 0; i < options.lightPartCount && options.lightGroups > 0; ++i) {
+    const auto [first, count] = options.lightParts[i];
+    require(first <= options.lightGroups && count <= options.lightGroups - first,
+            "lightParts: expected groups below lightGroups");
+  }
   require(options.floor >= 0 && options.floor <= 1, "floor: expected a number from 0 to 1");
   require(options.clamp > 0, "clamp: expected a positive number");
   require(options.fixedBsdfFraction >= 0 && options.fixedBsdfFraction <= 1,

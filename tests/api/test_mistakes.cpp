@@ -1,4 +1,5 @@
 // What hosts do wrong without noticing: each mistake is refused, or counted by its reason and told once.
+#include <optional>
 #include <thread>
 
 #include "api/api_scene.h"
@@ -49,7 +50,7 @@ std::vector<PathVertex> verticesOf(const std::vector<FrameSample>& samples) {
 using Spoil = void (*)(PathVertex& vertex);
 
 // Takes a frame to its end; `spoil` changes one vertex of each pass that wants some.
-void runSpoiled(Frame& frame, Spoil spoil) {
+void runSpoiled(Frame frame, Spoil spoil) {
   while (const FramePass* pass = frame.beginPass()) {
     const std::vector<FrameSample> samples = samplesOf(frame);
     std::vector<PathVertex> vertices = verticesOf(samples);
@@ -80,7 +81,10 @@ TEST(ApiMistakes, VerticesAreCountedByReasonAndToldOnce) {
   constexpr uint64_t kPilot = 1;
   const Mistake mistakes[] = {
       {[](PathVertex& v) { v.normal = v.normal * -1.0f; }, &VertexCounts::wrongSide, "the other side"},
-      {[](PathVertex& v) { v.wo = {0.9f, 0, -0.1f}; }, &VertexCounts::wrongSide, "the other side"},
+      {[](PathVertex& v) {
+         v.wo = {0.9f, 0, -0.1f};
+       },
+       &VertexCounts::wrongSide, "the other side"},
       {[](PathVertex& v) { v.distance = -1; }, &VertexCounts::outOfRange, "out of its range"},
       {[](PathVertex& v) { v.distance = NAN; }, &VertexCounts::outOfRange, "out of its range"},
       {[](PathVertex& v) { v.survival = 1.5f; }, &VertexCounts::outOfRange, "out of its range"},
@@ -98,6 +102,7 @@ TEST(ApiMistakes, VerticesAreCountedByReasonAndToldOnce) {
       {[](PathVertex& v) { v.survival = 0; }, &VertexCounts::noDensity, "survival is not positive"},
       {[](PathVertex& v) { v.guidablePdf = 1.02f * v.pdf; }, &VertexCounts::guidableAbovePdf, "above",
        kPilot},
+      {[](PathVertex& v) { v.lightGuidablePdf = 1; }, &VertexCounts::guidableAbovePdf, "above"},
       {[](PathVertex& v) { v.lightGroup = 2; }, &VertexCounts::unknownLights, "light group"},
       {[](PathVertex& v) { v.lightGroup = 99; }, &VertexCounts::unknownLights, "light group"},
       {[](PathVertex& v) { v.sample = 77; }, &VertexCounts::outsideFrame, "did not ask for"},
@@ -117,11 +122,15 @@ TEST(ApiMistakes, VerticesAreCountedByReasonAndToldOnce) {
 }
 
 TEST(ApiMistakes, WhatIsNoMistakeIsTaken) {
-  constexpr Spoil fine[] = {
-      [](PathVertex& v) { v.wo = {}; }, [](PathVertex& v) { v.wo = {1, 0, 0}; },
-      [](PathVertex& v) { v.guidablePdf = 1.005f * v.pdf; }, [](PathVertex& v) { v.roughness = 3; },
-      [](PathVertex& v) { v.distance = 0; }, [](PathVertex& v) { v.lightGroup = 1; },
-      [](PathVertex& v) { v.guidablePdf = v.guidableProbability = kUnknown; }};
+  constexpr Spoil fine[] = {[](PathVertex& v) { v.wo = {}; },
+                            [](PathVertex& v) {
+                              v.wo = {1, 0, 0};
+                            },
+                            [](PathVertex& v) { v.guidablePdf = 1.005f * v.pdf; },
+                            [](PathVertex& v) { v.roughness = 3; },
+                            [](PathVertex& v) { v.distance = 0; },
+                            [](PathVertex& v) { v.lightGroup = 1; },
+                            [](PathVertex& v) { v.guidablePdf = v.guidableProbability = kUnknown; }};
   for (const Spoil spoil : fine) {
     MistakenHost host;
     Frame frame = host.makeFrame();
@@ -254,6 +263,31 @@ TEST(ApiMistakes, SamplesThatTwoThreadsBringAreTakenOnce) {
   frame.endPass();
   EXPECT_EQ(refused, samples.size());
   EXPECT_EQ(frame.statistics().samples, samples.size());
+}
+
+TEST(ApiMistakes, ABuilderHasOneFrameAtATime) {
+  MistakenHost host;
+  GuideBuilder builder(host.options.guide, Context(host.contextOptions));
+  host.options.builder = builder;
+  std::optional<Frame> first(host.makeFrame());
+  Frame second = host.makeFrame();
+  first->beginPass();
+  const std::vector<PathVertex>& vertices = apiVertices();
+  const auto refuses = [&](const auto& call) { expectRefused(ODIS_ERROR_INVALID_OPERATION, call); };
+  refuses([&] { second.beginPass(); });
+  refuses([&] { builder.add(vertices); });
+  refuses([&] { builder.build(vertices); });
+  refuses([&] { builder.fade(0.5f); });
+  refuses([&] { builder.forget(); });
+  refuses([&] { builder.setBounds({}, {1, 1, 1}); });
+  first->endPass(true);
+  builder.fade(0.5f);
+  EXPECT_TRUE(second.beginPass());
+  first.reset();
+  refuses([&] { builder.forget(); });
+  second = host.makeFrame();
+  runSpoiled(second, [](PathVertex&) {});
+  builder.forget();
 }
 
 TEST(ApiMistakes, APixelOutsideOfTheFrameIsAnError) {

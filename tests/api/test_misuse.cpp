@@ -220,6 +220,12 @@ TEST(ApiMisuse, NumbersThatCannotBeAreRefused) {
   refuses([](Options&, Guides& g) { g.cellsPerDiagonal = -3; });
   refuses([](Options&, Guides& g) { g.priorSamples[2] = NAN; });
   refuses([](Options&, Guides& g) { g.lightPartCount = 2; });
+  refuses([](Options&, Guides& g) {
+    static const OdisLightParts beyond{1, 2};
+    g.lightGroups = 2;
+    g.lightParts = &beyond;
+    g.lightPartCount = 1;
+  });
 }
 
 // What is not a number in any field of vertices ends in a guide whose densities are numbers.

@@ -106,6 +106,17 @@ TEST(ApiRecorders, CachedRadianceComesFirst) {
   EXPECT_EQ(errorOf([&] { recorder.cached(path, {}); }), ODIS_ERROR_INVALID_OPERATION);
 }
 
+TEST(ApiRecorders, WeightsOfMisAreProbabilities) {
+  PathRecorder recorder;
+  const uint32_t path = beginAtSurface(recorder);
+  for (const float weight : {-0.1f, 1.5f, INFINITY})
+    EXPECT_EQ(errorOf([&] {
+                recorder.emission(path, emissionEvent({1, 1, 1}, weight, 1));
+              }),
+              ODIS_ERROR_INVALID_ARGUMENT);
+  recorder.emission(path, emissionEvent({1, 1, 1}, 1, 1));
+}
+
 TEST(ApiRecorders, DistancesAreNotNegative) {
   PathRecorder recorder;
   const uint32_t path = recorder.begin({});

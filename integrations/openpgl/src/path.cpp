@@ -91,7 +91,7 @@ void PathSegmentStorage::record(uint32_t path, size_t i) {
   if (!isZero(segment.directContribution)) {
     odis::EmissionEvent emission;
     emission.radiance = toOdis(segment.directContribution);
-    emission.misWeight = segment.miWeight;
+    emission.misWeight = std::clamp(segment.miWeight, 0.0f, 1.0f);
     m_recorder.emission(path, emission);
   }
   if (!scatters(i) && isZero(segment.scatteredContribution)) return;

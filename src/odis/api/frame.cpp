@@ -55,6 +55,13 @@ OdisFrameImpl::OdisFrameImpl(OdisContext owner, odis::core::Frame content, OdisG
 
 OdisFrameImpl::~OdisFrameImpl() {
   if (ending.joinable()) ending.join();
+  if (builder && builder->frame == this) builder->frame = nullptr;
+}
+
+void OdisFrameImpl::claimBuilder() {
+  if (!builder) return;
+  builder->requireFree("odisBeginPass", this);
+  builder->frame = this;
 }
 
 void OdisFrameImpl::endPass(bool interrupted) {
@@ -114,6 +121,7 @@ bool odisBeginPass(OdisFrame frame, OdisFramePass* pass) {
   return guardedForFrame(frame, "odisBeginPass", false, [&](Frame& f) {
     odis::core::requireArgument(pass, "odisBeginPass: pass");
     odis::core::fillIn(*pass, OdisFramePass(), "OdisFramePass");
+    frame->claimBuilder();
     const OdisFramePass* begun = f.beginPass();
     if (begun) odis::core::fillIn(*pass, *begun, "OdisFramePass");
     return begun != nullptr;

@@ -25,6 +25,12 @@ void OdisGuideBuilderImpl::takeStock() {
   warnings.report(memory.context(), builder.coarsening(), builder.samplesLeftOut());
 }
 
+void OdisGuideBuilderImpl::requireFree(const char* function, const OdisFrameImpl* of) const {
+  if (frame && frame != of && !frame->frame.isComplete())
+    throw std::logic_error(std::string(function) +
+                           ": a frame that has not ended learns into this builder, expected it to end first");
+}
+
 void odisInitGuideOptions(OdisGuideOptions* options, size_t size) {
   odis::core::initialize(options, size, "OdisGuideOptions");
 }
@@ -46,6 +52,7 @@ void odisReleaseGuideBuilder(OdisGuideBuilder builder) {
 bool odisAddVertices(OdisGuideBuilder builder, const OdisPathVertices* vertices) {
   return guardedFor(builder, "odisAddVertices", false, [&] {
     odis::core::requireArgument(vertices, "odisAddVertices: vertices");
+    builder->requireFree("odisAddVertices");
     HostVertices given(vertices);
     OdisContextImpl& context = builder->memory.context();
     if (context.options.memoryLimit > 0)
@@ -77,6 +84,7 @@ OdisGuide odisBuildGuide(OdisGuideBuilder builder, const OdisPathVertices* verti
                          size_t pixelCount) {
   return guardedFor(builder, "odisBuildGuide", OdisGuide(nullptr), [&] {
     odis::core::requireArgument(vertices, "odisBuildGuide: vertices");
+    builder->requireFree("odisBuildGuide");
     if (pixelCount > 0) odis::core::requireArgument(pixelValues, "odisBuildGuide: pixelValues");
     HostVertices given(vertices);
     return odis::core::newBuiltGuide(
@@ -87,12 +95,14 @@ OdisGuide odisBuildGuide(OdisGuideBuilder builder, const OdisPathVertices* verti
 OdisGuide odisRebuildGuide(OdisGuideBuilder builder, OdisGuide previous) {
   return guardedFor(builder, "odisRebuildGuide", OdisGuide(nullptr), [&] {
     odis::core::requireArgument(previous, "odisRebuildGuide: previous");
+    builder->requireFree("odisRebuildGuide");
     return odis::core::newBuiltGuide(builder, builder->builder.rebuild(previous->guide));
   });
 }
 
 bool odisFadeVertices(OdisGuideBuilder builder, float weight) {
   return guardedFor(builder, "odisFadeVertices", false, [&] {
+    builder->requireFree("odisFadeVertices");
     builder->builder.fade(weight);
     builder->takeStock();
     return true;
@@ -101,6 +111,7 @@ bool odisFadeVertices(OdisGuideBuilder builder, float weight) {
 
 bool odisForgetVertices(OdisGuideBuilder builder) {
   return guardedFor(builder, "odisForgetVertices", false, [&] {
+    builder->requireFree("odisForgetVertices");
     builder->builder.forget();
     builder->takeStock();
     return true;
@@ -111,6 +122,7 @@ bool odisSetBounds(OdisGuideBuilder builder, const OdisFloat3* lower, const Odis
   return guardedFor(builder, "odisSetBounds", false, [&] {
     odis::core::requireArgument(lower, "odisSetBounds: lower");
     odis::core::requireArgument(upper, "odisSetBounds: upper");
+    builder->requireFree("odisSetBounds");
     builder->builder.setBounds(*lower, *upper);
     builder->takeStock();
     return true;

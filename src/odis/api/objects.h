@@ -131,17 +131,21 @@ struct OdisGuideBuilderImpl : odis::core::Object {
 
   // Notes what the builder holds after it has learned.
   void takeStock();
+  // Complains where a frame other than `of` learns into the builder and has not ended.
+  void requireFree(const char* function, const OdisFrameImpl* of = nullptr) const;
 
   odis::core::MemoryUse memory;
   odis::core::GuideBuilder builder;
   odis::core::MemoryWarnings warnings;
   odis::core::RefusalWarnings refusals;
+  const OdisFrameImpl* frame = nullptr;  // that has begun to learn into it last, if there still is one
 };
 
 struct OdisFrameImpl : odis::core::Object {
   OdisFrameImpl(OdisContext owner, odis::core::Frame content, OdisGuideBuilder learnsInto = nullptr);
   ~OdisFrameImpl() override;
 
+  void claimBuilder();
   void endPass(bool interrupted);
   void requireNotEnding(const char* function) const;
   bool hasRoomFor(size_t vertices);

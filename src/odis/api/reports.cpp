@@ -49,7 +49,7 @@ const std::array<RefusalReason, RefusalWarnings::kReasons>& RefusalWarnings::rea
       {&VertexCounts::outsideFrame, "of pixels or samples that the pass did not ask for", true},
       {&VertexCounts::wrongSide, "whose normal is on the other side than their wo", true},
       {&VertexCounts::outOfRange, "with a number out of its range", true},
-      {&VertexCounts::guidableAbovePdf, "of unguided paths with a guidablePdf above their pdf", true},
+      {&VertexCounts::guidableAbovePdf, "whose guidablePdf is above their pdf, without guidance", true},
       {&VertexCounts::unknownLights, "of a light group that the guide does not have", true},
       {&VertexCounts::twice, "that came before", true},
   }};

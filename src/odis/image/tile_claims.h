@@ -80,7 +80,7 @@ class TileClaims {
   }
 
   SamplesDue m_due;
-  uint64_t m_count = 0;  // of claimed samples
+  uint64_t m_count = 0;           // of claimed samples
   std::vector<bool> m_isClaimed;  // [place][number]; empty: none is, or all are
 };
 

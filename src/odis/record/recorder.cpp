@@ -69,6 +69,8 @@ void PathRecorder::surface(uint32_t index, const SurfaceEvent& event) {
 
 void PathRecorder::emission(uint32_t index, const EmissionEvent& event) {
   const OpenPath& path = open(index);
+  requireNumber(!(event.misWeight < 0) && !(event.misWeight > 1.01f),
+                "OdisEmissionEvent.misWeight: expected a number from 0 to 1");
   if (path.last == kNone) return;  // what the camera sees directly is no vertex's light
   Pending& p = m_pending[path.last];
   const float before = luminance(p.emission), now = luminance(event.radiance);

@@ -10,7 +10,9 @@ VertexState checkNumbers(const PathVertex& v, const VertexRules& rules) {
   if (rules.lightGroups > 0 && v.lightGroup >= rules.lightGroups && v.lightGroup != kNoLightGroup)
     return VertexState::unknownLights;
   // A part is not more than the whole, but for rounding. That of a delta lobe is of the other lobes.
-  if (rules.unguided && !v.discrete && v.guidablePdf > 1.01f * v.pdf) return VertexState::guidableAbovePdf;
+  constexpr float kAbove = 1.01f;
+  if (v.lightGuidablePdf > kAbove * v.lightBsdfPdf) return VertexState::guidableAbovePdf;
+  if (rules.unguided && !v.discrete && v.guidablePdf > kAbove * v.pdf) return VertexState::guidableAbovePdf;
   return VertexState::usable;
 }
 

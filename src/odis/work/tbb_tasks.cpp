@@ -16,7 +16,7 @@ class TbbTasks : public Tasks {
   // More threads than cores are of no use, and oneTBB would complain of them on the console.
   explicit TbbTasks(uint32_t threads)
       : m_arena(threads > 0 ? std::make_unique<tbb::task_arena>(
-                                  std::min(int(threads), tbb::info::default_concurrency()))
+                                  int(std::min(threads, uint32_t(tbb::info::default_concurrency()))))
                             : nullptr) {}
 
  protected:
