@@ -255,6 +255,8 @@ TEST(ApiMisuse, SpoiledVerticesLeaveAGuideOfNumbers) {
     const float uv[2] = {0.3f, 0.6f};
     OdisMapSample sample;
     ASSERT_TRUE(odisSampleMap(&view, cell, &up, true, uv, &sample));
+    for (const OdisFloat3& nowhere : {OdisFloat3{NAN, 0, 1}, OdisFloat3{0, -INFINITY, 0}})
+      EXPECT_EQ(odisGetMapPdf(&view, cell, &up, true, &nowhere), 0);
     EXPECT_GT(sample.pdf, 0);
     EXPECT_LT(sample.pdf, INFINITY);
     const OdisCellDecisions& d = view.decisions[cell];

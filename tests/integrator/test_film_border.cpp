@@ -71,8 +71,7 @@ TEST(FilmBorder, IsWeighedByTheFilterOnTheFilm) {
       const auto scene = test::loadScene(lamp(size, filter, end));
       const RenderedImage image = test::renderScene(*scene, pathTracing(spp)).image;
       for (int i = 0; i < size.width * size.height; ++i) {
-        const double expected =
-            expectedShare(*scene->film().filter, i % size.width, size.width, end);
+        const double expected = expectedShare(*scene->film().filter, i % size.width, size.width, end);
         EXPECT_NEAR(image.color[size_t(i)].x, expected, bound * std::sqrt(image.variance[size_t(i)].x) + 1e-3)
             << filter << ", " << size.width << " x " << size.height << ", pixel " << i;
       }
@@ -98,8 +97,8 @@ TEST(FilmBorder, IsNotTheCrops) {
 // With `sample_border` pixels at the border see beyond it.
 TEST(FilmBorder, MayBeSampled) {
   const Film size{2, 2};
-  const auto scene = test::loadScene(
-      lamp(size, "tent", 0, "<boolean name=\"sample_border\" value=\"true\"/>"));
+  const auto scene =
+      test::loadScene(lamp(size, "tent", 0, "<boolean name=\"sample_border\" value=\"true\"/>"));
   EXPECT_NEAR(test::renderScene(*scene, pathTracing(4096)).image.color[0].x, 0.125, 0.03);
 }
 

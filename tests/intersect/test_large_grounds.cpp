@@ -50,10 +50,10 @@ Instance instanceOf(ShapePtr shape, const Matrix4& toWorld, std::shared_ptr<cons
 using AddGround = std::function<void(Scene& scene, float size, const Matrix4& turn)>;
 
 const std::pair<const char*, AddGround> kGrounds[] = {
-    {"mesh", [](Scene& scene, float size,
-                const Matrix4& turn) { scene.addShape(meshOf(squareMesh(size), {turn})); }},
-    {"grid", [](Scene& scene, float size,
-                const Matrix4& turn) { scene.addShape(meshOf(gridMesh(size), {turn})); }},
+    {"mesh",
+     [](Scene& scene, float size, const Matrix4& turn) { scene.addShape(meshOf(squareMesh(size), {turn})); }},
+    {"grid",
+     [](Scene& scene, float size, const Matrix4& turn) { scene.addShape(meshOf(gridMesh(size), {turn})); }},
     {"mesh with the cube",
      [](Scene& scene, float size, const Matrix4& turn) {
        scene.addShape(meshOf(withCube(squareMesh(size)), {turn}));
@@ -115,9 +115,7 @@ class Place {
   bool occluded(const SurfacePoint& at, const Vec3& direction) const {
     return m_scene.occluded(Scene::spawn(at, normalize(direction)));
   }
-  bool hidden(const SurfacePoint& at, const Vec3& direction) const {
-    return occluded(at, turned(direction));
-  }
+  bool hidden(const SurfacePoint& at, const Vec3& direction) const { return occluded(at, turned(direction)); }
   Random& random() { return m_random; }
 
  private:

@@ -47,7 +47,8 @@ bool odisSampleMap(const OdisGuideView* view, uint32_t cell, const OdisFloat3* n
 float odisGetMapPdf(const OdisGuideView* view, uint32_t cell, const OdisFloat3* normal, bool bothSides,
                     const OdisFloat3* wi) {
   odis::VertexMap<float> map;
-  return wi && prepareMap(view, cell, normal, bothSides, map) ? map.pdf(*wi) : 0;
+  const bool isDirection = wi && std::isfinite(odis::dot(*wi, *wi));
+  return isDirection && prepareMap(view, cell, normal, bothSides, map) ? map.pdf(*wi) : 0;
 }
 
 float odisGetMixturePdf(float bsdfPdf, float guidablePdf, float guidableProbability, float bsdfFraction,
