@@ -36,12 +36,12 @@ inline bool isWithinRange(const PathVertex& v) {
   constexpr float kOne = 1.01f;
   const auto isPositive = [](float x) { return x >= 0; };  // what is not a number isn't, either
   const auto isPositiveOrUnknown = [](float x) { return !(x < 0); };
-  return isPositive(v.distance) & isPositive(v.roughness) & !(v.survival > kOne) &
-         isPositiveOrUnknown(v.cosine) & !(v.cosine > kOne) & isPositiveOrUnknown(v.guidablePdf) &
-         isPositiveOrUnknown(v.guidableProbability) & !(v.guidableProbability > kOne) &
-         isPositiveOrUnknown(v.raysAfter) & isPositive(v.emissionLightPdf) & isPositive(v.lightPdf) &
-         isPositive(v.lightBsdfPdf) & isPositive(v.lightGuidablePdf) & isPositive(v.lightGroupProbability) &
-         !(v.lightGroupProbability > kOne);
+  return isPositive(v.distance) && isPositive(v.roughness) && !(v.survival > kOne) &&
+         isPositiveOrUnknown(v.cosine) && !(v.cosine > kOne) && isPositiveOrUnknown(v.guidablePdf) &&
+         isPositiveOrUnknown(v.guidableProbability) && !(v.guidableProbability > kOne) &&
+         isPositiveOrUnknown(v.raysAfter) && isPositive(v.emissionLightPdf) && isPositive(v.lightPdf) &&
+         isPositive(v.lightBsdfPdf) && isPositive(v.lightGuidablePdf) &&
+         isPositive(v.lightGroupProbability) && !(v.lightGroupProbability > kOne);
 }
 
 // The state of a vertex, whichever lobe `wi` is of.
