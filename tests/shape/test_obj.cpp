@@ -77,6 +77,18 @@ TEST(Obj, ContinuesLinesAndFillsWhatIsMissing) {
   EXPECT_EQ(mesh.normals[mesh.triangles[1][2]], Vec3(0, 0, 0));
 }
 
+TEST(Obj, ReadsColoursOfVertices) {
+  const MeshData mesh = parseObj(
+      "v 0 0 0 0.1 0.2 0.3\nv 1 0 0\nv 0 1 0 0.4 0.5 0.6 1\nv 1 1 0 1 # homogeneous\nvt 0 0\nvt 1 1\n"
+      "f 3/1 2/1 1/1\nf 3/2 2/2 4/2\n");
+  ASSERT_EQ(mesh.attributes.size(), 1u);
+  EXPECT_EQ(mesh.attributes[0].name, "vertex_color");
+  EXPECT_EQ(mesh.attributes[0].channels, 3u);
+  EXPECT_EQ(mesh.attributes[0].values, (std::vector<float>{0.4f, 0.5f, 0.6f, 1, 1, 1, 0.1f, 0.2f, 0.3f, 0.4f,
+                                                           0.5f, 0.6f, 1, 1, 1, 1, 1, 1}));
+  EXPECT_TRUE(parseObj("v 0 0 0 1\nv 1 0 0 1 # 2 3\nv 0 1 0 1 2\nf 1 2 3\n").attributes.empty());
+}
+
 TEST(Obj, NamesTheLineOfAnError) {
   const std::string vertices = "v 0 0 0\nv 1 0 0\nv 0 1 0\n";
   EXPECT_NE(objFailure(vertices + "f 1 2 4\n").find("mesh.obj:4: the face refers to vertex 4"),

@@ -96,7 +96,7 @@ TEST(Ply, ReadsNormals) {
 TEST(Ply, ReadsAttributes) {
   const MeshData mesh = parsePly(
       "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty float z\n"
-      "property uchar red\nproperty uchar green\nproperty uchar blue\nproperty float weight\n"
+      "property float red\nproperty float green\nproperty float blue\nproperty float weight\n"
       "property float heat_0\nproperty float pair_0\nproperty float pair_1\nelement face 2\n"
       "property float color_0\nproperty list uchar int vertex_indices\nproperty float color_1\n"
       "property float color_2\nend_header\n"
@@ -111,6 +111,107 @@ TEST(Ply, ReadsAttributes) {
   // A polygon gives its own to all triangles that it becomes.
   EXPECT_EQ(found["face_color"].values,
             (std::vector<float>{0.1f, 0.2f, 0.3f, 0.1f, 0.2f, 0.3f, 0.4f, 0.5f, 0.6f}));
+}
+
+MeshAttribute attributeOf(const MeshData& mesh, const std::string& name) {
+  for (const MeshAttribute& attribute : mesh.attributes)
+    if (attribute.name == name) return attribute;
+  return {};
+}
+
+// A triangle whose vertices and face have these properties: colours as many programs write them.
+template <class T>
+std::string colored(const std::string& type, const std::string& encoding, const std::array<T, 3>& color) {
+  const std::string channels =
+      "property " + type + " red\nproperty " + type + " green\nproperty " + type + " blue\n";
+  Bytes bytes{encoding == "binary_big_endian",
+              "ply\nformat " + encoding +
+                  " 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n" +
+                  channels + "element face 1\n" + channels +
+                  "property list uchar int vertex_indices\nend_header\n"};
+  const auto put = [&](auto value) {
+    if (encoding == "ascii")
+      bytes.text += std::to_string(value) + " ";
+    else
+      bytes << value;
+  };
+  for (int vertex = 0; vertex < 3; ++vertex) {
+    for (const float x : {float(vertex == 1), float(vertex == 2), 0.0f}) put(x);
+    for (const T channel : color) put(channel);
+  }
+  for (const T channel : color) put(channel);
+  put(uint8_t(3));
+  for (const int index : {0, 1, 2}) put(index);
+  return bytes.text;
+}
+
+template <class T>
+void expectUnit(const std::string& type, const std::array<T, 3>& color,
+                const std::array<double, 3>& expected) {
+  for (const char* encoding : {"ascii", "binary_little_endian", "binary_big_endian"}) {
+    const MeshData mesh = parsePly(colored(type, encoding, color));
+    for (const char* name : {"vertex_color", "face_color"}) {
+      const MeshAttribute attribute = attributeOf(mesh, name);
+      ASSERT_EQ(attribute.values.size(), name[0] == 'v' ? 9u : 3u) << type << " " << encoding;
+      for (size_t c = 0; c < attribute.values.size(); ++c)
+        EXPECT_FLOAT_EQ(attribute.values[c], float(expected[c % 3]))
+            << type << " " << encoding << " " << name;
+    }
+  }
+}
+
+// What MeshLab, Blender and CloudCompare mean by 51, 102, 204 of type uchar.
+TEST(Ply, ScalesColoursOfIntegersByTheirLargest) {
+  expectUnit<uint8_t>("uchar", {51, 102, 204}, {0.2, 0.4, 0.8});
+  expectUnit<uint8_t>("uint8", {0, 255, 1}, {0, 1, 1 / 255.0});
+  expectUnit<uint16_t>("ushort", {13107, 26214, 65535}, {0.2, 0.4, 1});
+  expectUnit<uint32_t>("uint", {858993459, 1717986918, 4294967295}, {0.2, 0.4, 1});
+  expectUnit<int8_t>("char", {127, 0, -127}, {1, 0, -1});
+  expectUnit<int16_t>("short", {32767, 0, -1}, {1, 0, -1 / 32767.0});
+  expectUnit<int32_t>("int", {2147483647, 0, 1073741824}, {1, 0, 1073741824 / 2147483647.0});
+  expectUnit<float>("float", {0.25f, 51, -1}, {0.25, 51, -1});
+  expectUnit<double>("double", {0.25, 51, -1}, {0.25, 51, -1});
+}
+
+TEST(Ply, KnowsColoursByTheirNames) {
+  const auto read = [](const std::string& properties, const std::string& values) {
+    std::string vertices;
+    for (const char* xyz : {"0 0 0 ", "1 0 0 ", "0 1 0 "}) vertices += xyz + values + "\n";
+    return parsePly(
+        "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n" +
+        properties + "element face 1\nproperty list uchar int vertex_indices\nend_header\n" + vertices +
+        "3 0 1 2\n");
+  };
+  const auto first = [](const MeshData& mesh, const std::string& name) {
+    const std::vector<float> values = attributeOf(mesh, name).values;
+    return std::vector<float>(values.begin(), values.begin() + ptrdiff_t(values.size() / 3));
+  };
+  using Values = std::vector<float>;
+  const auto properties = [](const std::string& type, std::initializer_list<const char*> names) {
+    std::string text;
+    for (const char* name : names) text += "property " + type + " " + name + "\n";
+    return text;
+  };
+  // Whatever their order, and without their alpha.
+  EXPECT_EQ(first(read(properties("uchar", {"alpha", "blue", "green", "red"}), "9 0 51 255"), "vertex_color"),
+            (Values{1, 0.2f, 0}));
+  EXPECT_EQ(first(read(properties("uchar", {"diffuse_red", "diffuse_green", "diffuse_blue"}), "255 51 0"),
+                  "vertex_diffuse"),
+            (Values{1, 0.2f, 0}));
+  EXPECT_EQ(
+      first(read(properties("ushort", {"color_2", "color_1", "color_0"}), "0 13107 65535"), "vertex_color"),
+      (Values{1, 0.2f, 0}));
+  EXPECT_EQ(first(read(properties("uchar", {"paint_r", "paint_g", "paint_b", "paint_a"}), "255 51 0 9"),
+                  "vertex_paint"),
+            (Values{1, 0.2f, 0}));
+  EXPECT_EQ(first(read(properties("uchar", {"BaseColor_0"}), "51"), "vertex_BaseColor"), (Values{0.2f}));
+  // Labels, counts and coordinates are what they are.
+  EXPECT_EQ(first(read(properties("int", {"label_0"}), "51"), "vertex_label"), (Values{51}));
+  EXPECT_EQ(first(read(properties("uchar", {"cell_x", "cell_y", "cell_z"}), "1 2 3"), "vertex_cell"),
+            (Values{1, 2, 3}));
+  EXPECT_EQ(read(properties("uchar", {"u", "v"}), "1 1").uvs[0], Vec2(1, 1));
+  EXPECT_EQ(read(properties("char", {"nx", "ny", "nz"}), "0 0 -127").normals[0], Vec3(0, 0, -127));
+  EXPECT_TRUE(read(properties("uchar", {"alpha"}), "1").attributes.empty());
 }
 
 TEST(Ply, RefusesWhatCannotBe) {

@@ -1,5 +1,7 @@
 #include "render/scene/load_shapes.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 
 #include "render/xml/names.h"
@@ -75,7 +77,7 @@ ShapePtr ShapeLoader::makeStill(const Properties& node, bool grouped) {
     shape->setBsdf(bsdf);
   }
   for (const Properties* emitter : emitters) setEmitter(*shape, *emitter, grouped);
-  warnOfMissingAttributes(*shape, node);
+  checkAttributes(*shape, node, node, {});
   for (const Properties* sensor : childrenOf(node, "sensor"))
     if (!m_meter.node) m_meter = {sensor, shape, nullptr};
   if (!childrenOf(node, "medium").empty()) warnOfMedia(node);
@@ -86,15 +88,46 @@ ShapePtr ShapeLoader::makeStill(const Properties& node, bool grouped) {
   return shape;
 }
 
-void ShapeLoader::warnOfMissingAttributes(const Shape& shape, const Properties& node) {
+void ShapeLoader::checkAttributes(const Shape& shape, const Properties& shapeNode, const Properties& node,
+                                  const TextureUse& use) {
   for (const Properties::Child& child : node.children) {
     const Properties& part = *child.node;
     if (part.tag != "bsdf" && part.tag != "texture" && part.tag != "emitter") continue;
-    if (part.type == "mesh_attribute" && !shape.hasAttribute(part.string("name", "")))
-      m_builder.warn(part.location, "a shape that it is used on has no attribute '" +
-                                        part.string("name", "") + "', it is black there");
-    warnOfMissingAttributes(shape, part);
+    TextureUse inside = use;
+    if (node.tag != "texture") {
+      const auto declared = node.declarations().find(child.name);
+      inside = {&node, child.name,
+                declared == node.declarations().end() ? kAnyNumber : declared->second.range};
+    } else if (node.type == "scale") {
+      const auto factor = node.parameters.find("scale");
+      const double* number =
+          factor == node.parameters.end() ? nullptr : std::get_if<double>(&factor->second.value);
+      // What colours and textures make of it is not looked into.
+      if (number) inside.factor *= *number;
+      if (!number && (node.has("scale") || node.child("texture", "scale"))) inside.range = kAnyNumber;
+    }
+    if (part.type == "mesh_attribute") checkAttribute(shape, shapeNode, part, inside);
+    checkAttributes(shape, shapeNode, part, inside);
   }
+}
+
+void ShapeLoader::checkAttribute(const Shape& shape, const Properties& shapeNode, const Properties& texture,
+                                 const TextureUse& use) {
+  const std::string name = texture.string("name", "");
+  const std::optional<Vec2> range = shape.attributeRange(name);
+  if (!range) {
+    m_builder.warn(texture.location,
+                   "a shape that it is used on has no attribute '" + name + "', it is black there");
+    return;
+  }
+  const double factor = use.factor * texture.number("scale", kAnyNumber, 1.0f);
+  const double least = range->x * factor, most = range->y * factor;
+  if (use.range.contains(least) && use.range.contains(most)) return;
+  const std::string path = m_builder.resolvePath(shapeNode.string("filename"), shapeNode.placeOf("filename"));
+  m_builder.warn(
+      {path, 0, 0},
+      fmt::format("the attribute '{}' goes from {:.6g} to {:.6g}, '{}' of the {} '{}' is clamped to {}", name,
+                  least, most, use.parameter, use.owner->tag, use.owner->type, use.range.text()));
 }
 
 void ShapeLoader::setEmitter(Shape& shape, const Properties& node, bool grouped) {
@@ -105,8 +138,7 @@ void ShapeLoader::setEmitter(Shape& shape, const Properties& node, bool grouped)
         "(in Mitsuba's `path` neither); it is left out");
   } else if (node.type != "area") {
     m_builder.warn(node.location, "the emitter '" + node.type + "' of a shape is unknown" +
-                                      suggestion(node.type, {"area", "directionalarea"}) +
-                                      ", it is left out");
+                                      suggestion(node.type, {"area"}) + ", it is left out");
   } else if (grouped) {
     m_builder.warn(node.location, "emitters can't be instanced, this one is left out");
   } else if (!shape.canEmit()) {

@@ -35,8 +35,19 @@ class ShapeLoader {
   };
   Made make(const Properties& node, bool grouped);
   ShapePtr makeStill(const Properties& node, bool grouped);
-  // Warns of textures, in a BSDF or an emitter, that name an attribute which the shape does not have.
-  void warnOfMissingAttributes(const Shape& shape, const Properties& node);
+  // What the value of a texture is used for: a parameter of `owner`, which clamps it to `range`.
+  struct TextureUse {
+    const Properties* owner = nullptr;
+    std::string parameter;
+    NumberRange range = kAnyNumber;
+    double factor = 1;  // by which the value is multiplied before
+  };
+  // Warns of textures, in a BSDF or an emitter of the shape, that name an attribute which it does not have,
+  // or one with values that are clamped.
+  void checkAttributes(const Shape& shape, const Properties& shapeNode, const Properties& node,
+                       const TextureUse& use);
+  void checkAttribute(const Shape& shape, const Properties& shapeNode, const Properties& texture,
+                      const TextureUse& use);
   void setEmitter(Shape& shape, const Properties& node, bool grouped);
   Group group(const Properties& node);
   void collect(const Properties& node, std::vector<ShapePtr>& shapes);

@@ -49,6 +49,16 @@ void dropNonFinite(MeshData& data, const SourceLocation& at, Warnings& warnings)
   if (dropped > 0) warnings.add(at, fmt::format("dropped {} triangles with non-finite vertices", dropped));
   for (Vec2& uv : data.uvs)
     if (!std::isfinite(uv.x) || !std::isfinite(uv.y)) uv = {0, 0};
+  for (MeshAttribute& attribute : data.attributes) {
+    const auto broken = std::count_if(attribute.values.begin(), attribute.values.end(),
+                                      [](float value) { return !std::isfinite(value); });
+    if (broken > 0)
+      warnings.add(at, fmt::format("{} numbers of the attribute '{}' are not finite, they count as 0", broken,
+                                   attribute.name));
+    std::replace_if(
+        attribute.values.begin(), attribute.values.end(), [](float value) { return !std::isfinite(value); },
+        0.0f);
+  }
 }
 
 void transform(MeshData& data, const Matrix4& toWorld) {
@@ -119,9 +129,6 @@ Mesh::Mesh(MeshData data, const MeshOptions& options) {
     if (m_hasUvs) m_vertices[i].uv = data.uvs[i];
   }
   m_attributes = std::move(data.attributes);
-  for (MeshAttribute& attribute : m_attributes)
-    for (float& value : attribute.values)
-      if (!std::isfinite(value)) value = 0;
 
   double sum = 0;
   std::vector<double> sums;
@@ -361,6 +368,13 @@ std::optional<Rgb> Mesh::attribute(const std::string& name, const SurfacePoint& 
   const auto& [c0, c1, c2] = m_faces[at.primitive].corners;
   const Vec2& b = at.barycentric;
   return valueOf(c0) * (1 - b.x - b.y) + valueOf(c1) * b.x + valueOf(c2) * b.y;
+}
+
+std::optional<Vec2> Mesh::attributeRange(const std::string& name) const {
+  const MeshAttribute* found = findAttribute(name);
+  if (!found) return {};
+  const auto [least, most] = std::minmax_element(found->values.begin(), found->values.end());
+  return Vec2(*least, *most);
 }
 
 uint64_t Mesh::bytes() const {

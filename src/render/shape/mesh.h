@@ -64,7 +64,7 @@ class Mesh final : public Shape {
   ShapeSample samplePrimitive(uint32_t triangle, const Vec3& ref, const Vec2& u) const override;  // by area
   float primitivePdf(const Vec3& ref, const SurfacePoint& at) const override;
   std::optional<Rgb> attribute(const std::string& name, const SurfacePoint& at) const override;
-  bool hasAttribute(const std::string& name) const override { return findAttribute(name) != nullptr; }
+  std::optional<Vec2> attributeRange(const std::string& name) const override;
   uint64_t bytes() const override;
 
   // Draws a triangle by area, of a mesh that has any; u.x is stretched to [0, 1) again.

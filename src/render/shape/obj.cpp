@@ -10,7 +10,8 @@
 //
 // Reads v, vt, vn and f; polygons become fans of triangles; groups and materials are not told apart. Corners
 // that agree in position, texture coordinate and normal share a vertex. Without normals in the file, smooth
-// ones are computed.
+// ones are computed. Numbers four to six of a v are its linear colour, which becomes the attribute
+// vertex_color, see the texture mesh_attribute; vertices without one beside others are white.
 #include <fmt/format.h>
 
 #include <array>
@@ -48,13 +49,14 @@ class ObjReader {
     // Vertices without a normal or a texture coordinate next to others that have one get zeros.
     if (m_hasNormals) m_data.normals.resize(m_data.positions.size(), Vec3(0, 0, 0));
     if (m_hasUvs) m_data.uvs.resize(m_data.positions.size(), Vec2(0, 0));
+    if (!m_colors.empty()) addColors();
     return std::move(m_data);
   }
 
  private:
   // A vertex that was made from a position: others of the same position are linked from it.
   struct Vertex {
-    uint32_t uv, normal, next;
+    uint32_t uv, normal, next, position;
   };
 
   void readLine() {
@@ -65,12 +67,24 @@ class ObjReader {
     if (command == "v") {
       m_positions.push_back(readVector<Vec3>(3));
       m_firstVertex.push_back(kNone);
+      if (!m_cursor.atLineEnd()) readColor();
     } else if (command == "vt") {
       m_uvs.push_back(readVector<Vec2>(1));
     } else if (command == "vn") {
       m_normals.push_back(readVector<Vec3>(3));
     } else if (command == "f") {
       readFace();
+    }
+  }
+
+  void addColors() {
+    m_colors.resize(m_positions.size(), Vec3(1, 1, 1));
+    MeshAttribute& attribute = m_data.attributes.emplace_back();
+    attribute = {"vertex_color", 3, {}};
+    attribute.values.reserve(3 * m_vertices.size());
+    for (const Vertex& vertex : m_vertices) {
+      const Vec3& c = m_colors[vertex.position];
+      attribute.values.insert(attribute.values.end(), {c.x, c.y, c.z});
     }
   }
 
@@ -86,6 +100,17 @@ class ObjReader {
       }
     }
     return v;
+  }
+
+  // After a position; a single number there is its homogeneous coordinate, which has no meaning here.
+  void readColor() {
+    Vec3 color;
+    for (int i = 0; i < 3; ++i) {
+      m_cursor.skipBlanks();
+      if (!m_cursor.number(color[i])) return;
+    }
+    m_colors.resize(m_positions.size(), Vec3(1, 1, 1));
+    m_colors.back() = color;
   }
 
   void readFace() {
@@ -141,7 +166,7 @@ class ObjReader {
       const auto [known, added] = m_crowded.try_emplace({position, uv, normal}, index);
       if (!added) return known->second;
     }
-    m_vertices.push_back({uv, normal, kNone});
+    m_vertices.push_back({uv, normal, kNone, position});
     m_data.positions.push_back(m_positions[position]);
     if (uv != kNone) {
       m_hasUvs = true;
@@ -163,6 +188,7 @@ class ObjReader {
   const std::string& m_path;
   TextCursor m_cursor;
   std::vector<Vec3> m_positions, m_normals;  // as in the file
+  std::vector<Vec3> m_colors;                // of the first positions, up to the last one that has any
   std::vector<Vec2> m_uvs;
   std::vector<Vertex> m_vertices;       // one for each of m_data.positions
   std::vector<uint32_t> m_firstVertex;  // one for each of m_positions

@@ -11,11 +11,18 @@
 // Reads x, y, z, nx, ny, nz and u, v (or s, t) of the vertices and the lists vertex_indices (or vertex_index)
 // of the faces; polygons become fans of triangles. Without normals in the file, smooth ones are computed.
 // Other properties become attributes for the texture mesh_attribute, if there are one or three of a name:
-// color_0, color_1, color_2 of vertices, or r, g, b, or red, green, blue, make vertex_color, weight_0 of
-// faces makes face_weight. Integers are taken as they are, as Mitsuba does. What is left is skipped.
+// color_0, color_1, color_2 of vertices, or r, g, b, or red, green, blue, make vertex_color, diffuse_red,
+// diffuse_green, diffuse_blue make vertex_diffuse, weight_0 of faces makes face_weight. What is left is
+// skipped, the alpha of colours as well.
+//
+// Colours, which are those whose channels are called r, g, b or red, green, blue, and those that have "color"
+// in their name, are linear. Where they are integers, the largest one of their type is 1: 255 of uchar, 127
+// of char, 65535 of ushort. All other integers are taken as they are: labels, counts, coordinates.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <bit>
+#include <charconv>
 #include <cmath>
 #include <cstring>
 #include <map>
@@ -25,6 +32,7 @@
 #include "render/shape/file_bytes.h"
 #include "render/shape/mesh_files.h"
 #include "render/shape/text_cursor.h"
+#include "render/xml/names.h"
 
 namespace odis::render {
 
@@ -68,7 +76,9 @@ struct Property {
   Scalar type = Scalar::float32;
   std::optional<Scalar> countType;  // of a list
   Role role = Role::none;
-  int attribute = -1;  // index among those of the mesh
+  int attribute = -1;    // index among those of the mesh
+  uint32_t channel = 0;  // of the attribute
+  double divisor = 1;    // of what stands in the file
 };
 
 struct Element {
@@ -82,14 +92,40 @@ struct Element {
   }
 };
 
-// "color_0" -> "color"; "" for what makes no attribute.
-std::string attributeOf(const Property& property) {
+// What a property is of an attribute.
+struct Channel {
+  std::string attribute;  // "" if it is of none
+  int index = 0;          // decides about the order of channels; those that are alike keep that of the file
+  bool color = false;
+};
+
+// 0, 1, 2 for the channels of a colour, 3 for its alpha, -1 for others.
+int colorIndex(std::string_view channel) {
+  static constexpr std::pair<std::string_view, int> names[] = {{"r", 0}, {"red", 0},  {"g", 1}, {"green", 1},
+                                                               {"b", 2}, {"blue", 2}, {"a", 3}, {"alpha", 3}};
+  for (const auto& [known, index] : names)
+    if (channel == known) return index;
+  return -1;
+}
+
+// "color_0" -> "color", 0.
+Channel channelOf(const Property& property) {
   const std::string& name = property.name;
-  if (property.countType || property.role != Role::none) return "";
-  for (const char* channel : {"r", "g", "b", "red", "green", "blue"})
-    if (name == channel) return "color";
+  if (property.countType || property.role != Role::none) return {};
+  if (const int index = colorIndex(name); index >= 0 && index < 3) return {"color", index, true};
   const size_t end = name.rfind('_');
-  return end == std::string::npos ? "" : name.substr(0, end);
+  if (end == std::string::npos) return {};
+  const std::string last = name.substr(end + 1);
+  Channel result{name.substr(0, end), colorIndex(last)};
+  result.color = result.index >= 0 || lowerCase(result.attribute).find("color") != std::string::npos;
+  if (result.index < 0) std::from_chars(last.data(), last.data() + last.size(), result.index);
+  return result;
+}
+
+// The largest integer of a type; 1 for other types.
+double largest(Scalar scalar) {
+  constexpr double values[] = {127, 255, 32767, 65535, 2147483647, 4294967295, 1, 1};
+  return values[size_t(scalar)];
 }
 
 class PlyReader {
@@ -159,13 +195,23 @@ class PlyReader {
   }
 
   void findAttributes(Element& element) {
-    std::map<std::string, std::vector<Property*>> named;
+    std::map<std::string, std::vector<std::pair<Channel, Property*>>> named;
     for (Property& property : element.properties)
-      if (const std::string name = attributeOf(property); !name.empty()) named[name].push_back(&property);
-    for (const auto& [name, properties] : named) {
-      if (properties.size() != 1 && properties.size() != 3) continue;
-      for (Property* property : properties) property->attribute = int(m_data.attributes.size());
-      m_data.attributes.push_back({element.name + "_" + name, uint32_t(properties.size()), {}});
+      if (const Channel channel = channelOf(property); !channel.attribute.empty())
+        named[channel.attribute].emplace_back(channel, &property);
+    for (auto& [name, channels] : named) {
+      std::stable_sort(channels.begin(), channels.end(),
+                       [](const auto& a, const auto& b) { return a.first.index < b.first.index; });
+      const bool hasAlpha = channels.size() == 4 && channels[3].first.color && channels[3].first.index == 3;
+      if (hasAlpha) channels.pop_back();
+      if (channels.size() != 1 && channels.size() != 3) continue;
+      for (size_t i = 0; i < channels.size(); ++i) {
+        const auto& [channel, property] = channels[i];
+        property->attribute = int(m_data.attributes.size());
+        property->channel = uint32_t(i);
+        if (channel.color) property->divisor = largest(property->type);
+      }
+      m_data.attributes.push_back({element.name + "_" + name, uint32_t(channels.size()), {}});
     }
   }
 
@@ -215,14 +261,18 @@ class PlyReader {
     m_data.positions.reserve(element.count);
     if (hasNormals) m_data.normals.reserve(element.count);
     if (hasUvs) m_data.uvs.reserve(element.count);
+    for (const Property& property : element.properties)
+      if (property.attribute >= 0)
+        attributeOf(property).values.reserve(attributeOf(property).channels * element.count);
     float values[9] = {};
     for (m_row = 0; m_row < element.count; ++m_row) {
       for (const Property& property : element.properties) {
         if (property.countType)
           skip(property);
+        else if (property.attribute >= 0)
+          store(property, m_row, nextOf(property));
         else
           values[int(property.role)] = float(next(property.type));
-        if (property.attribute >= 0) valuesOf(property).push_back(values[int(Role::none)]);
       }
       m_data.positions.emplace_back(values[1], values[2], values[3]);
       if (hasNormals) m_data.normals.emplace_back(values[4], values[5], values[6]);
@@ -230,12 +280,20 @@ class PlyReader {
     }
   }
 
-  std::vector<float>& valuesOf(const Property& property) {
-    return m_data.attributes[size_t(property.attribute)].values;
+  MeshAttribute& attributeOf(const Property& property) {
+    return m_data.attributes[size_t(property.attribute)];
+  }
+  float nextOf(const Property& property) { return float(next(property.type) / property.divisor); }
+  // Sets a value of the element's vertex or triangle with this number.
+  void store(const Property& property, uint64_t index, float value) {
+    MeshAttribute& attribute = attributeOf(property);
+    attribute.values.resize(std::max<size_t>(attribute.values.size(), (index + 1) * attribute.channels));
+    attribute.values[index * attribute.channels + property.channel] = value;
   }
 
   void readFaces(const Element& element) {
     std::vector<std::pair<const Property*, float>> attributes;  // of the face
+    const size_t before = m_data.triangles.size();
     for (m_row = 0; m_row < element.count; ++m_row) {
       const size_t first = m_data.triangles.size();
       attributes.clear();
@@ -243,12 +301,12 @@ class PlyReader {
         if (property.countType && (property.name == "vertex_indices" || property.name == "vertex_index"))
           readPolygon(property);
         else if (property.attribute >= 0)
-          attributes.emplace_back(&property, float(next(property.type)));
+          attributes.emplace_back(&property, nextOf(property));
         else
           skip(property);
       }
       for (size_t triangle = first; triangle < m_data.triangles.size(); ++triangle)
-        for (const auto& [property, value] : attributes) valuesOf(*property).push_back(value);
+        for (const auto& [property, value] : attributes) store(*property, triangle - before, value);
     }
   }
 

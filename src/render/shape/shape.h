@@ -103,7 +103,8 @@ class Shape {
   virtual std::optional<Rgb> attribute(const std::string& /*name*/, const SurfacePoint& /*at*/) const {
     return {};
   }
-  virtual bool hasAttribute(const std::string& /*name*/) const { return false; }
+  // The least and the greatest number of an attribute; nothing if there is none of this name.
+  virtual std::optional<Vec2> attributeRange(const std::string& /*name*/) const { return {}; }
   virtual uint64_t bytes() const { return 0; }
 
   // This shape if it is a mesh, else null.

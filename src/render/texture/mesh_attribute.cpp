@@ -1,6 +1,6 @@
 // Mesh attribute: what the file of a mesh says of its vertices, in between interpolated, or of its faces.
 //
-//   name    string   required; vertex_NAME or face_NAME of what ply.cpp and serialized.cpp read
+//   name    string   required; vertex_NAME or face_NAME of what obj.cpp, ply.cpp and serialized.cpp read
 //   scale   number   multiplies the values; default 1
 //
 // On shapes that have no such attribute it is black.
