@@ -25,7 +25,7 @@ namespace odis::app {
 
 namespace {
 
-// A bar for each rendering if stderr is a terminal, otherwise a line.
+// A bar for each rendering if stderr is a terminal, otherwise a line every ten seconds.
 class ConsoleObserver : public eval::CompareObserver {
  public:
   ConsoleObserver(bool quiet, bool strict)
@@ -36,7 +36,7 @@ class ConsoleObserver : public eval::CompareObserver {
     if (outlook.secondsLeft > 0) title += ", " + durationText(outlook.secondsLeft) + " left";
     title += "] " + what;
     m_progress.setTitle(title);
-    if (!m_quiet && !m_terminal) say(title + "\n");
+    if (!m_quiet && !m_terminal && m_pace.isDue()) say(title + "\n");
   }
   void warnings(const std::string& scene, const render::Warnings& warnings) override {
     tellWarnings(scene, warnings, {.quiet = m_quiet, .strict = m_strict});
@@ -46,6 +46,7 @@ class ConsoleObserver : public eval::CompareObserver {
  private:
   bool m_quiet, m_strict, m_terminal;
   ConsoleProgress m_progress;
+  LinePace m_pace;
 };
 
 }  // namespace

@@ -24,6 +24,13 @@ void sayWarning(const std::string& message) {
   say(fmt::format("{}warning: {}\n", onTerminal() ? "\r\033[K" : "", message));
 }
 
+bool LinePace::isDue() {
+  const auto now = std::chrono::steady_clock::now();
+  if (now - m_last < m_interval) return false;
+  m_last = now;
+  return true;
+}
+
 // The first signal that came. Rendering threads look at it, so it is an atomic; one that a handler may write.
 static std::atomic<int> g_signal = 0;
 static_assert(std::atomic<int>::is_always_lock_free);
@@ -57,6 +64,11 @@ int InterruptScope::exitCode() {
   return g_signal != 0 ? codeOf(g_signal) : kOk;
 }
 
+// How much is done between two looks at the clock.
+static uint64_t stepOf(uint64_t total) {
+  return std::max<uint64_t>(1, total / 200);
+}
+
 ConsoleProgress::ConsoleProgress(bool quiet) : m_quiet(quiet), m_terminal(onTerminal()) {}
 
 void ConsoleProgress::begin(const std::string& stage, uint64_t total, uint64_t done, const char* unit) {
@@ -64,7 +76,7 @@ void ConsoleProgress::begin(const std::string& stage, uint64_t total, uint64_t d
   m_unit = unit;
   m_total = total;
   m_done = m_before = done;
-  m_nextShow = std::max<uint64_t>(1, m_total / (m_terminal ? 200 : 10));
+  m_nextShow = stepOf(m_total);
   m_start = m_lastShow = std::chrono::steady_clock::now();
 }
 
@@ -74,7 +86,7 @@ void ConsoleProgress::advance(uint64_t more) {
   if (m_quiet || m_total == 0 || done < m_nextShow.load(std::memory_order_relaxed)) return;
   const std::lock_guard lock(m_mutex);
   if (done < m_nextShow || done >= m_total) return;
-  const uint64_t step = std::max<uint64_t>(1, m_total / (m_terminal ? 200 : 10));
+  const uint64_t step = stepOf(m_total);
   m_nextShow = (done / step + 1) * step;
   show(done, false);
 }
@@ -95,7 +107,7 @@ void ConsoleProgress::warn(const std::string& message) {
 void ConsoleProgress::show(uint64_t done, bool last) {
   using namespace std::chrono;
   const auto now = steady_clock::now();
-  if (m_terminal && !last && now - m_lastShow < milliseconds(100)) return;
+  if (m_terminal ? !last && now - m_lastShow < milliseconds(100) : !m_pace.isDue()) return;
   m_lastShow = now;
   const double seconds = std::max(1e-6, duration<double>(now - m_start).count());
   const double share = std::min(1.0, double(done) / double(m_total));

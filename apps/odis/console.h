@@ -22,6 +22,18 @@ void sayWarning(const std::string& message);
 // Whether stderr is a terminal, where progress is one line that changes.
 bool onTerminal();
 
+// When the next line of progress may be written where lines stay, as in a log.
+class LinePace {
+ public:
+  explicit LinePace(std::chrono::seconds interval = std::chrono::seconds(10)) : m_interval(interval) {}
+  // Whether so much time has passed since the last line, or since the beginning; then one counts as written.
+  bool isDue();
+
+ private:
+  std::chrono::seconds m_interval;
+  std::chrono::steady_clock::time_point m_last = std::chrono::steady_clock::now();
+};
+
 // While one lives, the first Ctrl-C (SIGINT) or SIGTERM only sets a flag; the second ends the program at
 // once. A signal that is ignored when the program begins, as `trap '' INT` in a shell asks for, stays
 // ignored.
@@ -40,7 +52,7 @@ class InterruptScope {
   std::array<struct sigaction, kSignals.size()> m_before;
 };
 
-// A bar with rate and time left if stderr is a terminal, otherwise a line for every tenth that is done.
+// A bar with rate and time left if stderr is a terminal, otherwise a line every ten seconds.
 class ConsoleProgress : public render::Progress {
  public:
   explicit ConsoleProgress(bool quiet);
@@ -67,6 +79,7 @@ class ConsoleProgress : public render::Progress {
   uint64_t m_total = 0, m_before = 0;  // of the stage, and what of it an earlier run did
   std::atomic<uint64_t> m_done{0}, m_nextShow{0};
   std::chrono::steady_clock::time_point m_start, m_lastShow;
+  LinePace m_pace;  // of all stages
   std::mutex m_mutex;
 };
 

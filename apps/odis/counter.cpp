@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include "command.h"
-#include "console.h"
 
 namespace odis::app {
 
@@ -22,6 +21,7 @@ void Counter::skipped(const std::string& what) {
 void Counter::show(const std::string& what) {
   if (m_quiet) return;
   const size_t gone = m_done + m_skipped;
+  if (!m_terminal && gone < m_total && !m_pace.isDue()) return;
   const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - m_start).count();
   const std::string left =
       m_done > 0 ? ", " + durationText(seconds / double(m_done) * double(m_total - gone)) + " left" : "";

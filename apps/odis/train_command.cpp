@@ -18,17 +18,19 @@ struct TrainArguments {
   bool quiet = false;
 };
 
-// A line now and then.
+// A line now and then; where lines stay, at most one every ten seconds, but for the first and the last step.
 class TrainConsole : public learn::TrainObserver {
  public:
-  explicit TrainConsole(bool quiet) : m_quiet(quiet) {}
+  explicit TrainConsole(bool quiet)
+      : m_quiet(quiet), m_terminal(onTerminal()), m_pace(std::chrono::seconds(m_terminal ? 5 : 10)) {}
   void waiting(size_t shards, int expected) override {
-    if (shards == m_shards) return;
+    const bool first = m_shards == ~size_t(0);
+    if (shards == m_shards || !(first || m_terminal || m_pace.isDue())) return;
     m_shards = shards;
     print(fmt::format("waiting for shards: {} of {}\n", shards, expected));
   }
   void loaded(size_t shards, size_t examples) override {
-    print(fmt::format("{} shards, {} examples\n", shards, examples));
+    if (m_terminal || m_pace.isDue()) print(fmt::format("{} shards, {} examples\n", shards, examples));
   }
   void step(int of, const learn::History& history) override {
     const int step = history.losses.back().step;
@@ -37,8 +39,8 @@ class TrainConsole : public learn::TrainObserver {
       m_first = step;
       m_start = now;
     }
-    if (step < of && now - m_last < std::chrono::seconds(5)) return;
-    m_last = now;
+    m_last = step == of;
+    if (!m_last && !m_pace.isDue()) return;
     const double seconds = std::chrono::duration<double>(now - m_start).count();
     const std::string left = step > m_first && step < of
                                  ? ", " + durationText(seconds * (of - step) / (step - m_first)) + " left"
@@ -47,6 +49,7 @@ class TrainConsole : public learn::TrainObserver {
                       named(history.lossNames, history.losses.back().losses), left));
   }
   void validated(const learn::History& history) override {
+    if (!m_terminal && !m_last && !m_pace.isDue()) return;
     const learn::ValidationRow& row = history.validations.back();
     print(
         fmt::format("step {}, held-out scenes: {}\n", row.step, named(history.validationNames, row.values)));
@@ -64,10 +67,12 @@ class TrainConsole : public learn::TrainObserver {
   void print(const std::string& line) const {
     if (!m_quiet) say(line);
   }
-  bool m_quiet;
+  bool m_quiet, m_terminal;
+  LinePace m_pace;
+  bool m_last = false;  // whether the last step is done
   size_t m_shards = ~size_t(0);
   int m_first = 0;
-  Clock::time_point m_start, m_last;
+  Clock::time_point m_start;
 };
 
 int runTrain(const TrainArguments& a) {
