@@ -391,10 +391,13 @@ class Guide(unittest.TestCase):
         self.assertEqual((fractions[0], fractions[-1]), (0, 1))
         self.assertEqual(fractions, sorted(fractions))
         stream = io.StringIO()
-        line = ProgressLine(stream, "image")
-        for fraction in (0, 0.01, 0.5, 0.51, 1):
-            line(fraction)
-        self.assertEqual(stream.getvalue(), "".join(f"image: {p:3d} % of the samples\n" for p in (0, 50, 100)))
+        with mock.patch("time.monotonic") as clock:
+            clock.return_value = 100
+            line = ProgressLine(stream, "image")
+            for seconds, fraction in ((0, 0), (9, 0.2), (11, 0.3), (20, 0.5), (22, 0.6), (23, 1), (24, 1)):
+                clock.return_value = 100 + seconds
+                line(fraction)
+        self.assertEqual(stream.getvalue(), "".join(f"image: {p:3d} % of the samples\n" for p in (30, 60, 100)))
 
 
 def channels_of_film(scene):

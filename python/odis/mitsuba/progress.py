@@ -1,24 +1,27 @@
 """A line of text that says how much of an image is traced."""
 
 import sys
+import time
 
 import mitsuba as mi
+
+SECONDS_PER_LINE = 10  # where lines stay
 
 
 class ProgressLine:
     """Called with fractions from 0 to 1. A terminal or a notebook shows one line that changes, other files get a line
-    for every tenth."""
+    every ten seconds, and one at the end."""
 
     def __init__(self, stream=None, title="odis"):
         self.stream, self.title = stream or sys.stderr, title
         self.changes = self.stream.isatty() or in_notebook()
-        self.shown = None
+        self.shown, self.last = None, time.monotonic()
 
     def __call__(self, fraction):
         percent = int(100 * min(fraction, 1))
-        step = 1 if self.changes else 10
-        if self.shown is None or percent // step != self.shown // step:
-            self.shown = percent
+        due = self.changes or percent == 100 or time.monotonic() - self.last >= SECONDS_PER_LINE
+        if due and percent != self.shown:
+            self.shown, self.last = percent, time.monotonic()
             begin, end = ("\r", "\n" if percent == 100 else "") if self.changes else ("", "\n")
             self.stream.write(f"{begin}{self.title}: {percent:3d} % of the samples{end}")
             self.stream.flush()
