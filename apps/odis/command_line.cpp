@@ -108,6 +108,9 @@ int runCommandLine(int argc, char** argv) {
     return fail(kUsageError, error.what());
   } catch (const learn::GenerateError& error) {
     return fail(kWriteError, error.what());
+  } catch (const render::MissingFiles& error) {
+    for (const render::SceneError& file : error.files()) fail(kSceneError, file.what());
+    return kSceneError;
   } catch (const render::SceneError& error) {
     return fail(kSceneError, error.what());
   } catch (const core::FileError& error) {

@@ -10,12 +10,13 @@ using render::Effect;
 
 void tellWarnings(const std::string& scene, const render::Warnings& warnings, const WarningLevel& level) {
   const auto list = [&](Effect effect, const char* kind) {
-    for (const std::string& text : warnings.texts(effect)) say(fmt::format("{}: {}\n", kind, text));
+    for (const render::Warnings::Group& group : warnings.groups(effect))
+      say(fmt::format("{}: {}\n", kind, group.text()));
   };
   if (level.verbose && !level.quiet) list(Effect::none, "note");
   if (!level.quiet) list(Effect::same, "note");
   list(Effect::difference, level.strict ? "error" : "warning");
-  const size_t count = warnings.texts(Effect::difference).size();
+  const size_t count = warnings.count(Effect::difference);
   if (count == 0) return;
   const std::string sum =
       fmt::format("{} difference{} the picture", count, count == 1 ? " changes" : "s change");

@@ -20,9 +20,11 @@ inline std::shared_ptr<const Properties> parse(const std::string& text,
                                                render::Warnings* warnings = nullptr) {
   render::Warnings ignored;
   const bool whole = text.rfind("<scene", 0) == 0 || text.rfind("<?", 0) == 0;
-  return render::parseSceneText(whole ? text : "<scene version=\"3.0.0\">" + text + "</scene>", "test.xml",
-                                defines, warnings ? *warnings : ignored)
-      .root;
+  const render::ParsedScene parsed =
+      render::parseSceneText(whole ? text : "<scene version=\"3.0.0\">" + text + "</scene>", "test.xml",
+                             defines, warnings ? *warnings : ignored);
+  if (!parsed.missing.empty()) throw render::MissingFiles(parsed.missing);
+  return parsed.root;
 }
 
 // A folder that is removed with the object.

@@ -202,9 +202,9 @@ TEST(Errors, OfParametersOfTheWrongType) {
     node.number("alpa", render::kAnyNumber);
     FAIL();
   } catch (const SceneError& error) {
-    EXPECT_STREQ(
-        error.what(),
-        "test.xml:2:1: the bsdf 'x' has no parameter 'alpa' (did you mean 'alpha'?), expected a number");
+    EXPECT_STREQ(error.what(),
+                 "test.xml:2:1: the bsdf 'x' has no parameter 'alpa' ('alpha' may be meant to be it), "
+                 "expected a number");
   }
 }
 

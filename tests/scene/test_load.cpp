@@ -17,7 +17,8 @@ struct Loaded {
   std::string error;
 
   bool warnsOf(const std::string& text, Effect effect = Effect::difference) const {
-    return std::any_of(warnings.texts(effect).begin(), warnings.texts(effect).end(),
+    const std::vector<std::string> texts = warnings.texts(effect);
+    return std::any_of(texts.begin(), texts.end(),
                        [&](const std::string& w) { return w.find(text) != std::string::npos; });
   }
 };
@@ -280,6 +281,118 @@ TEST(Load, LooksUpAttributesOfMeshes) {
   expect("vertex_color", {0.34f, 0.44f, 0.54f}, 0);
   expect("face_c", {0.1f, 0.2f, 0.3f}, 0);
   expect("vertex_none", {0, 0, 0}, 1);
+}
+
+// Attributes that a parameter clamps are told with their file and their values.
+TEST(Load, WarnsOfAttributesThatAreClamped) {
+  const TemporaryFolder folder;
+  const auto mesh = [](const std::string& type, const std::string& colors) {
+    return "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n"
+           "property " +
+           type + " r\nproperty " + type + " g\nproperty " + type +
+           " b\nelement face 1\nproperty list uchar int vertex_indices\nend_header\n0 0 0 " + colors +
+           "\n1 0 0 " + colors + "\n0 1 0 " + colors + "\n3 0 1 2\n";
+  };
+  folder.write("float.ply", mesh("float", "51 102 204"));
+  folder.write("negative.ply", mesh("char", "-127 0 127"));
+  folder.write("uchar.ply", mesh("uchar", "51 102 255"));
+  folder.write("m.obj", "v 0 0 0 1 2 1\nv 1 0 0 0 0 0\nv 0 1 0 0 0 0\nf 1 2 3\n");
+  const auto told = [&](const std::string& file, const std::string& bsdf) {
+    const std::string path =
+        folder.write("scene.xml", "<scene version='3.0.0'><shape type='" + file.substr(file.find('.') + 1) +
+                                      "'><string name='filename' value='" + file + "'/>" + bsdf + "</shape>" +
+                                      kLight + "</scene>");
+    Warnings warnings;
+    Scene::load(path, {}, warnings);
+    std::string text;
+    for (const std::string& warning : warnings.texts()) text += warning.substr(warning.rfind('/') + 1) + "\n";
+    return text;
+  };
+  const auto attribute = [](const std::string& name, const std::string& scale = "1") {
+    return "<texture name='" + name + "' type='mesh_attribute'><string name='name' value='vertex_color'/>" +
+           "<float name='scale' value='" + scale + "'/></texture>";
+  };
+  const std::string diffuse = "<bsdf type='diffuse'>" + attribute("reflectance") + "</bsdf>";
+  EXPECT_EQ(told("uchar.ply", diffuse), "");
+  EXPECT_EQ(told("float.ply", diffuse),
+            "float.ply: the attribute 'vertex_color' goes from 51 to 204, 'reflectance' of the bsdf "
+            "'diffuse' is "
+            "clamped to 0 to 1\n");
+  EXPECT_EQ(
+      told("negative.ply", diffuse),
+      "negative.ply: the attribute 'vertex_color' goes from -1 to 1, 'reflectance' of the bsdf 'diffuse' is "
+      "clamped to 0 to 1\n");
+  EXPECT_EQ(told("m.obj", diffuse),
+            "m.obj: the attribute 'vertex_color' goes from 0 to 2, 'reflectance' of the bsdf 'diffuse' "
+            "is clamped "
+            "to 0 to 1\n");
+  // What multiplies them counts, and what they are used for.
+  EXPECT_EQ(told("float.ply", "<bsdf type='twosided'><bsdf type='diffuse'>" +
+                                  attribute("reflectance", "0.004") + "</bsdf></bsdf>"),
+            "");
+  EXPECT_NE(told("uchar.ply", "<bsdf type='diffuse'>" + attribute("reflectance", "2") + "</bsdf>")
+                .find("goes from 0.4 to 2,"),
+            std::string::npos);
+  EXPECT_EQ(told("float.ply",
+                 "<bsdf type='diffuse'><texture name='reflectance' type='scale'><float name='scale' "
+                 "value='0.004'/>" +
+                     attribute("") + "</texture></bsdf>"),
+            "");
+  EXPECT_NE(told("float.ply", "<bsdf type='diffuse'><texture name='reflectance' type='checkerboard'>" +
+                                  attribute("color0") + "</texture></bsdf>")
+                .find("'reflectance' of the bsdf 'diffuse'"),
+            std::string::npos);
+  EXPECT_EQ(told("float.ply", "<emitter type='area'>" + attribute("radiance") + "</emitter>"), "");
+  EXPECT_NE(told("float.ply", "<bsdf type='roughconductor'>" + attribute("alpha") + "</bsdf>")
+                .find("'alpha' of the"),
+            std::string::npos);
+}
+
+// Names that may have been meant are of what is drawn.
+TEST(Load, SuggestsOnlyWhatThereIs) {
+  const Loaded loaded = load(
+      "<shape type='sphere'><bsdf type='disneymetal'/></shape><shape type='sphere'><bsdf "
+      "type='disneybsdf'/></shape>"
+      "<shape type='sphere'><emitter type='directional'/></shape>"
+      "<integrator type='volpat'/><film type='specfilms'/>" +
+      kLight);
+  ASSERT_TRUE(loaded.scene) << loaded.error;
+  EXPECT_TRUE(loaded.warnsOf("the bsdf 'disneymetal' is unknown (did you mean 'principled'?), a grey"));
+  EXPECT_TRUE(loaded.warnsOf("the bsdf 'disneybsdf' is unknown (did you mean 'principled'?), a grey"));
+  EXPECT_TRUE(loaded.warnsOf("the emitter 'directional' of a shape is unknown, it is left out"));
+  EXPECT_TRUE(loaded.warnsOf("the integrator 'volpat' is unknown, the radiance"));
+  EXPECT_FALSE(loaded.warnsOf("'specfilm'"));
+  EXPECT_EQ(load("<mediun type='homogeneous'/>").error.find("did you mean"), std::string::npos);
+  const Loaded path = load("<integrator type='pat'/>" + kLight);
+  EXPECT_TRUE(path.warnsOf("the integrator 'pat' is unknown (did you mean 'path'?)"));
+}
+
+TEST(Load, TellsOfAllMissingFiles) {
+  const TemporaryFolder folder;
+  folder.write("there.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+  const auto mesh = [](const std::string& file, const std::string& inside = "") {
+    return "<shape type='obj'><string name='filename' value='" + file + "'/>" + inside + "</shape>\n";
+  };
+  const std::string bitmap =
+      "<texture type='bitmap' name='reflectance'><string name='filename' value='t.png'/></texture>";
+  const std::string path = folder.write(
+      "scene.xml", "<scene version='3.0.0'>" + mesh("there.obj") + mesh("a.obj") +
+                       mesh("there.obj", "<bsdf type='diffuse'>" + bitmap + "</bsdf>") + mesh("a.obj") +
+                       "<shape type='shapegroup' id='unused'>" + mesh("unused.obj") + "</shape>" +
+                       "<shape type='shapegroup' id='g'>" + mesh("g.obj") + "</shape>" +
+                       "<shape type='instance'><ref id='g'/></shape></scene>");
+  Warnings warnings;
+  try {
+    Scene::load(path, {}, warnings);
+    FAIL();
+  } catch (const MissingFiles& error) {
+    std::string names;
+    for (const SceneError& file : error.files())
+      names += file.message().substr(0, file.message().find(',')) + "; ";
+    EXPECT_EQ(names, "there is no file 'a.obj'; there is no file 't.png'; there is no file 'g.obj'; ");
+    EXPECT_NE(std::string(error.what()).find("'a.obj'"), std::string::npos);
+    EXPECT_NE(std::string(error.what()).find("(2 more missing)"), std::string::npos) << error.what();
+  }
 }
 
 TEST(Load, FindsPathsOfIncludedFilesBesideTheScene) {

@@ -197,6 +197,61 @@ TEST(Animation, HasAllItsKeyFrames) {
   EXPECT_TRUE(warnings.texts().empty());
 }
 
+TEST(Animation, IsSortedByTime) {
+  const auto root = parse(
+      "<shape type='sphere'><animation name='toWorld'><transform time='3'><translate x='3'/></transform>"
+      "<transform time='1'><translate x='1'/></transform><transform time='2'><translate x='2'/></transform>"
+      "</animation></shape>");
+  const render::Animation* animation = root->child("shape")->animation("to_world");
+  ASSERT_TRUE(animation);
+  ASSERT_EQ(animation->size(), 3u);
+  for (int i = 0; i < 3; ++i) {
+    EXPECT_EQ((*animation)[size_t(i)].time, i + 1);
+    EXPECT_EQ((*animation)[size_t(i)].toWorld[3][0], float(i + 1));
+  }
+}
+
+TEST(Animation, OfOneTransformStandsStill) {
+  for (const char* element : {"shape type='sphere'", "sensor type='perspective'", "emitter type='spot'",
+                              "shape type='instance'", "emitter type='sunsky'", "texture type='bitmap'"}) {
+    Warnings warnings;
+    const std::string tag(element, std::string(element).find(' '));
+    const auto root =
+        parse("<" + std::string(element) +
+                  "><animation name='toWorld'><transform time='7'><translate x='1'/></transform>"
+                  "</animation></" +
+                  tag + ">",
+              {}, &warnings);
+    EXPECT_FALSE(root->child(tag)->animation("to_world"));
+    EXPECT_EQ(root->child(tag)->transform("to_world")[3][0], 1);
+    EXPECT_TRUE(warnings.texts().empty());
+  }
+}
+
+TEST(Rest, OfAFileIsLeftOutWithWarnings) {
+  const std::string scene = "<scene version='3.0.0'><shape type='sphere'/></scene>";
+  for (const char* nothing : {"\n", "<!-- <shape/> &b; -->", "<?done?>", "\u00a0\n"}) {
+    Warnings warnings;
+    EXPECT_EQ(parse(scene + nothing, {}, &warnings)->children.size(), 1u);
+    EXPECT_TRUE(warnings.texts().empty()) << nothing;
+  }
+  const std::pair<const char*, const char*> cases[] = {
+      {"\n<shape type='cube'/>", "test.xml:2:1: <shape> follows the end of <scene>, it is left out"},
+      {"<!-- --> words &b; here",
+       "test.xml:1:63: the text 'words' follows the end of <scene>, it is left out"},
+      {"<![CDATA[ more]]>", "test.xml:1:64: the text 'more' follows the end of <scene>, it is left out"},
+      {" </scene>", "test.xml:1:55: what follows the end of <scene> is not well-formed XML, it is left out"},
+      {"\n<shape type='cu",
+       "test.xml:2:1: what follows the end of <scene> is not well-formed XML, it is left out"},
+      {"<a><b></a>",
+       "test.xml:1:54: what follows the end of <scene> is not well-formed XML, it is left out"}};
+  for (const auto& [rest, expected] : cases) {
+    Warnings warnings;
+    EXPECT_EQ(parse(scene + rest, {}, &warnings)->children.size(), 1u) << rest;
+    EXPECT_EQ(warnings.texts(), std::vector<std::string>{expected}) << rest;
+  }
+}
+
 TEST(Animation, IsItsFirstTransformWhereNothingCanMove) {
   const std::string animation =
       "<animation name='to_world'><transform time='0'><translate x='1'/></transform><transform time='1'/>"

@@ -16,7 +16,10 @@ namespace odis::render {
 namespace {
 
 std::string unknownType(const Properties& node, const std::vector<std::string>& known) {
-  return "the " + node.tag + " '" + node.type + "' is unknown" + suggestion(node.type, known);
+  std::string meant = suggestion(node.type, known);
+  // The lobes of Disney's BSDF are types of their own in lajolla and other renderers.
+  if (node.tag == "bsdf" && node.type.starts_with("disney")) meant = " (did you mean 'principled'?)";
+  return "the " + node.tag + " '" + node.type + "' is unknown" + meant;
 }
 
 // Parameters of Mitsuba that change nothing in an image that is traced by this program.
@@ -148,6 +151,7 @@ void Builder::warnUnqueried(const Properties& node) {
 
 std::string Builder::resolvePath(const std::string& fileName, const SourceLocation& at) {
   m_files.push_back(findFile(fileName, m_folders, at));
+  m_warnings.addFile(m_files.back(), at);
   return m_files.back();
 }
 

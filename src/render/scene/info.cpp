@@ -7,6 +7,22 @@
 
 namespace odis::render {
 
+// What is not read as it is written, with every place.
+static std::string listOf(const Warnings& warnings) {
+  std::string text;
+  constexpr std::pair<const char*, Effect> lists[] = {
+      {"differences ", Effect::difference}, {"notes       ", Effect::same}, {"no effect   ", Effect::none}};
+  for (const auto& [name, effect] : lists) {
+    if (warnings.count(effect) == 0 && effect != Effect::difference) continue;
+    text += fmt::format("{} {}\n", name, warnings.count(effect));
+    for (const Warnings::Group& group : warnings.groups(effect)) {
+      text += "  " + group.text() + "\n";
+      for (const SourceLocation& other : group.others) text += "    " + onOneLine(other.text()) + "\n";
+    }
+  }
+  return text;
+}
+
 std::string describe(const Scene& scene, const Warnings& warnings) {
   uint64_t primitives = 0, lights = 0, instanced = 0;
   std::set<const Bsdf*> bsdfs;
@@ -57,14 +73,7 @@ std::string describe(const Scene& scene, const Warnings& warnings) {
   if (integrator.samplesPerPixel > 0)
     text += fmt::format(", {} samples per pixel", integrator.samplesPerPixel);
   text += fmt::format("\nmemory       {:.1f} MiB\n", double(scene.bytes()) / (1024 * 1024));
-  constexpr std::pair<const char*, Effect> lists[] = {
-      {"differences ", Effect::difference}, {"notes       ", Effect::same}, {"no effect   ", Effect::none}};
-  for (const auto& [name, effect] : lists) {
-    if (warnings.texts(effect).empty() && effect != Effect::difference) continue;
-    text += fmt::format("{} {}\n", name, warnings.texts(effect).size());
-    for (const std::string& warning : warnings.texts(effect)) text += "  " + warning + "\n";
-  }
-  return text;
+  return text + listOf(warnings);
 }
 
 }  // namespace odis::render

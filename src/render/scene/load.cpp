@@ -3,6 +3,7 @@
 #include "render/scene/load_film.h"
 #include "render/scene/load_integrator.h"
 #include "render/scene/load_shapes.h"
+#include "render/scene/missing_files.h"
 #include "render/scene/scene.h"
 #include "render/sensor/perspective.h"
 #include "render/sensor/registry.h"
@@ -29,7 +30,7 @@ struct Singles {
 };
 
 // Adds shapes and emitters to the scene.
-Singles loadObjects(const Properties& root, Scene& scene, ShapeLoader& shapes, Builder& builder) {
+Singles loadObjectsOf(const Properties& root, Scene& scene, ShapeLoader& shapes, Builder& builder) {
   Warnings& warnings = builder.warnings();
   Singles result;
   for (const Properties::Child& child : root.children) {
@@ -61,6 +62,17 @@ Singles loadObjects(const Properties& root, Scene& scene, ShapeLoader& shapes, B
   return result;
 }
 
+// The same. If a file is missing, the error tells of all that are.
+Singles loadObjects(const ParsedScene& parsed, Scene& scene, ShapeLoader& shapes, Builder& builder) {
+  try {
+    return loadObjectsOf(*parsed.root, scene, shapes, builder);
+  } catch (const MissingFiles&) {
+    std::vector<SceneError> all = missingFiles(parsed, builder.warnings());
+    if (all.empty()) throw;
+    throw MissingFiles(std::move(all));
+  }
+}
+
 // The sensor that the scene is seen by, in a shape if there is no other; null if there is none.
 const Properties* findSensor(const Properties& node) {
   for (const char* tag : {"sensor", "shape"})
@@ -76,6 +88,7 @@ const Properties* findSensor(const Properties& node) {
 
 std::unique_ptr<Scene> Scene::load(const std::string& path, const LoadOptions& options, Warnings& warnings) {
   const ParsedScene parsed = parseScene(path, options.defines, warnings);
+  if (!parsed.missing.empty()) throw MissingFiles(missingFiles(parsed, warnings));
   const Properties& root = *parsed.root;
   const Properties* seenBy = findSensor(root);
   Builder builder(warnings, parsed.folders, seenBy ? readShutter(*seenBy) : Shutter());
@@ -83,7 +96,7 @@ std::unique_ptr<Scene> Scene::load(const std::string& path, const LoadOptions& o
   auto scene = std::make_unique<Scene>();
   ShapeLoader shapes(*scene, builder);
 
-  const Singles singles = loadObjects(root, *scene, shapes, builder);
+  const Singles singles = loadObjects(parsed, *scene, shapes, builder);
   const Properties* sensor = singles.sensor;
   scene->finish();
 

@@ -62,10 +62,9 @@ FilmSettings loadFilm(const Properties* node, const LoadOptions& options, Warnin
   if (type == "specfilm")
     warnings.add(film.location, "the film 'specfilm' is drawn as RGB, its spectral bands are left out");
   else if (node && type != "hdrfilm" && type != "ldrfilm" && type != "mfilm" && type != "tiledhdrfilm")
-    warnings.add(film.location,
-                 "the film '" + type + "' is unknown" +
-                     suggestion(type, {"hdrfilm", "ldrfilm", "mfilm", "specfilm", "tiledhdrfilm"}) +
-                     ", its size and filter are used");
+    warnings.add(film.location, "the film '" + type + "' is unknown" +
+                                    suggestion(type, {"hdrfilm", "ldrfilm", "mfilm", "tiledhdrfilm"}) +
+                                    ", its size and filter are used");
   FilmSettings result;
   result.width = int(film.integer("width", kSizes, 768));
   result.height = int(film.integer("height", kSizes, 576));

@@ -43,12 +43,10 @@ void warnOfType(const Properties& node, bool holdsOther, Warnings& warnings) {
     warnings.add(node.location, name + "is left out, the picture is that of the integrator in it",
                  Effect::same);
   } else {
-    std::vector<std::string> known = kPathIntegrators;
-    for (const auto& list : {kDirectIntegrators, kWrappingIntegrators, kOtherIntegrators})
-      known.insert(known.end(), list.begin(), list.end());
     const std::string fault = isIn(kWrappingIntegrators, type) ? "holds no other"
-                              : isIn(kOtherIntegrators, type)  ? "shows something else than radiance"
-                                                               : "is unknown" + suggestion(type, known);
+                              : isIn(kOtherIntegrators, type)
+                                  ? "shows something else than radiance"
+                                  : "is unknown" + suggestion(type, {"direct", "odis", "path"});
     warnings.add(node.location, name + fault + ", the radiance that paths bring is shown");
   }
 }

@@ -5,7 +5,9 @@
 #include <cstdint>
 #include <stdexcept>
 #include <string>
+#include <unordered_map>
 #include <unordered_set>
+#include <utility>
 #include <vector>
 
 namespace odis::render {
@@ -35,7 +37,26 @@ std::string onOneLine(std::string text);
 class SceneError : public std::runtime_error {
  public:
   SceneError(const SourceLocation& at, const std::string& message)
-      : std::runtime_error(onOneLine(at.file.empty() ? message : at.text() + ": " + message)) {}
+      : std::runtime_error(onOneLine(at.file.empty() ? message : at.text() + ": " + message)),
+        m_at(at),
+        m_message(message) {}
+  const SourceLocation& at() const { return m_at; }
+  const std::string& message() const { return m_message; }
+
+ private:
+  SourceLocation m_at;
+  std::string m_message;
+};
+
+// Files that a scene names and that are not there. what() tells of the first and counts the others.
+class MissingFiles : public SceneError {
+ public:
+  // At least one.
+  explicit MissingFiles(std::vector<SceneError> files);
+  const std::vector<SceneError>& files() const { return m_files; }
+
+ private:
+  std::vector<SceneError> m_files;
 };
 
 // A size or crop that the caller asks for and no image of the scene can have.
@@ -51,27 +72,44 @@ enum class Effect {
   difference,  // it is another picture than the scene describes
 };
 
-// Input that can still be drawn. Kept in the order of the file, each text once.
+// Input that can still be drawn. Each text is kept once.
 class Warnings {
  public:
-  void add(const SourceLocation& at, const std::string& message, Effect effect = Effect::difference) {
-    keep(onOneLine(at.file.empty() ? message : at.text() + ": " + message), effect);
-  }
-  void add(const Warnings& others) {
-    for (size_t effect = 0; effect < m_texts.size(); ++effect)
-      for (const std::string& text : others.m_texts[effect]) keep(text, Effect(effect));
-  }
-  const std::vector<std::string>& texts(Effect effect = Effect::difference) const {
-    return m_texts[size_t(effect)];
-  }
+  // Warnings that differ in their place and in numbers alone.
+  struct Group {
+    std::string first;
+    std::vector<SourceLocation> others;  // where the rest stands
+
+    // The first, and how many more there are.
+    std::string text() const;
+  };
+
+  void add(const SourceLocation& at, const std::string& message, Effect effect = Effect::difference);
+  void add(const Warnings& others);
+  // What is said of this file counts as said where the scene names it first.
+  void addFile(const std::string& file, const SourceLocation& namedAt);
+
+  // In the order of the scene; what is said of a file as a whole comes after what is said of its lines.
+  std::vector<std::string> texts(Effect effect = Effect::difference) const;
+  std::vector<Group> groups(Effect effect = Effect::difference) const;
+  // Whether one place comes before another in that order.
+  bool isBefore(const SourceLocation& a, const SourceLocation& b) const { return placeOf(a) < placeOf(b); }
+  size_t count(Effect effect = Effect::difference) const { return m_warnings[size_t(effect)].size(); }
 
  private:
-  void keep(std::string text, Effect effect) {
-    if (m_known.insert(text).second) m_texts[size_t(effect)].push_back(std::move(text));
-  }
+  struct Warning {
+    SourceLocation at;
+    std::string message;
 
-  std::array<std::vector<std::string>, 3> m_texts;  // by effect
+    std::string text() const;
+  };
+  std::vector<const Warning*> inOrder(Effect effect) const;
+  // Line and column in the scene, then in the file that is named there, and so on.
+  std::vector<std::pair<int, int>> placeOf(SourceLocation at) const;
+
+  std::array<std::vector<Warning>, 3> m_warnings;  // by effect
   std::unordered_set<std::string> m_known;
+  std::unordered_map<std::string, SourceLocation> m_namedAt;  // by file; no place for the scene itself
 };
 
 }  // namespace odis::render

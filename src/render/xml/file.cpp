@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "render/files/input_file.h"
+#include "render/xml/foreign.h"
 
 namespace odis::render {
 namespace {
@@ -47,6 +48,17 @@ size_t skipUnparsed(const std::string& text, size_t start) {
   return std::min(text.find(']', end), text.size() - 1);
 }
 
+// Where a text goes on after its first </scene>; its end if it has none.
+size_t endOfScene(const std::string& text) {
+  for (size_t i = text.find('<'); i != std::string::npos; i = text.find('<', i + 1)) {
+    i = skipUnparsed(text, i);
+    if (text.compare(i, 7, "</scene") != 0) continue;
+    const size_t end = text.find('>', i);
+    return end == std::string::npos ? text.size() : end + 1;
+  }
+  return text.size();
+}
+
 // The first entity that XML itself doesn't define, as the offset of its '&' and its name; nothing if there is
 // none. pugixml would leave it in the text as it stands.
 std::optional<std::pair<size_t, std::string>> findEntity(const std::string& text) {
@@ -80,30 +92,66 @@ static void rejectOtherEncodings(const std::string& path, const std::string& tex
     throw SceneError({path, 1, 1}, "this is UTF-16 or another encoding of several bytes, expected UTF-8");
 }
 
-XmlFile::XmlFile(std::string path, std::string text) : m_path(std::move(path)), m_text(std::move(text)) {
+XmlFile::XmlFile(std::string path, std::string text)
+    : m_path(std::move(path)), m_text(std::move(text)), m_end(m_text.size()) {
+  if (const std::string other = foreignFile(m_text); !other.empty()) throw SceneError({m_path, 1, 1}, other);
   rejectOtherEncodings(m_path, m_text);
   m_lineStarts.push_back(0);
   for (size_t i = 0; i < m_text.size(); ++i)
     if (m_text[i] == '\n') m_lineStarts.push_back(i + 1);
-  // Text is kept so that stray words between elements, and around the first one, can be reported.
-  const pugi::xml_parse_result result = m_document.load_buffer(
-      m_text.data(), m_text.size(), pugi::parse_default | pugi::parse_fragment, pugi::encoding_utf8);
-  if (!result) {
-    std::string reason = result.description();
-    if (!reason.empty()) reason[0] = char(std::tolower(static_cast<unsigned char>(reason[0])));
-    throw SceneError(locate(size_t(std::max<ptrdiff_t>(result.offset, 0))),
-                     "this is not well-formed XML: " + reason);
-  }
-  if (const auto entity = findEntity(m_text))
+  parse();
+  rejectSurroundings();
+  const pugi::xml_node rest = root().next_sibling();
+  if (const auto entity = findEntity(m_text.substr(0, rest ? size_t(rest.offset_debug()) : m_end)))
     throw SceneError(locate(entity->first), "found the entity '&" + entity->second +
                                                 ";', expected one of &lt; &gt; &amp; &quot; &apos;, or a "
                                                 "<default> in place of an entity of your own");
-  rejectText(m_document);
+}
+
+void XmlFile::parse() {
+  // Text is kept so that stray words between elements, and around the first one, can be reported.
+  const auto load = [&](size_t size) {
+    return m_document.load_buffer(m_text.data(), size, pugi::parse_default | pugi::parse_fragment,
+                                  pugi::encoding_utf8);
+  };
+  const pugi::xml_parse_result result = load(m_end);
+  if (result) return;
+  // Whatever follows a scene that is whole.
+  const size_t end = endOfScene(m_text);
+  if (end < m_text.size() && load(end) && std::string(root().name()) == "scene") {
+    m_end = end;
+    return;
+  }
+  std::string reason = result.description();
+  if (!reason.empty()) reason[0] = char(std::tolower(static_cast<unsigned char>(reason[0])));
+  throw SceneError(locate(size_t(std::max<ptrdiff_t>(result.offset, 0))),
+                   "this is not well-formed XML: " + reason);
+}
+
+void XmlFile::rejectSurroundings() const {
+  const bool wholeScene = std::string(root().name()) == "scene";
+  for (const pugi::xml_node& node : m_document.children()) {
+    if (node == root() && wholeScene) return;
+    if (node.type() == pugi::node_element && node != root())
+      throw SceneError(locate(node), "found <" + std::string(node.name()) + "> after the end of <" +
+                                         root().name() + ">, expected one element around the whole file");
+    rejectVisible(findText(node));
+  }
   if (!root()) throw SceneError({m_path, 1, 1}, "found no element, expected <scene version=\"...\">");
-  for (pugi::xml_node other = root().next_sibling(); other; other = other.next_sibling())
-    if (other.type() == pugi::node_element)
-      throw SceneError(locate(other), "found <" + std::string(other.name()) + "> after the end of <" +
-                                          root().name() + ">, expected one element around the whole file");
+}
+
+void XmlFile::warnOfRest(Warnings& warnings) const {
+  if (std::string(root().name()) != "scene") return;
+  for (pugi::xml_node node = root().next_sibling(); node; node = node.next_sibling()) {
+    if (node.type() == pugi::node_element)
+      warnings.add(locate(node),
+                   "<" + std::string(node.name()) + "> follows the end of <scene>, it is left out");
+    else if (const auto text = findText(node))
+      warnings.add(text->at, "the text '" + text->word + "' follows the end of <scene>, it is left out");
+  }
+  if (m_end < m_text.size())
+    warnings.add(locate(m_end + skipSpace(m_text.substr(m_end))),
+                 "what follows the end of <scene> is not well-formed XML, it is left out");
 }
 
 SourceLocation XmlFile::locate(size_t offset) const {
@@ -118,17 +166,23 @@ SourceLocation XmlFile::locate(const pugi::xml_node& node) const {
   return offset < 0 ? SourceLocation{m_path} : locate(size_t(offset));
 }
 
+std::optional<XmlFile::FoundText> XmlFile::findText(const pugi::xml_node& node) const {
+  constexpr size_t kLongest = 40;
+  if (node.type() != pugi::node_pcdata && node.type() != pugi::node_cdata) return {};
+  const std::string text = node.value();
+  const size_t start = skipSpace(text);
+  if (start == text.size()) return {};
+  const size_t length = text.find_first_of(" \t\r\n", start) - start;
+  return FoundText{locate(size_t(std::max<ptrdiff_t>(node.offset_debug(), 0)) + start),
+                   text.substr(start, std::min(length, kLongest))};
+}
+
+void XmlFile::rejectVisible(const std::optional<FoundText>& text) {
+  if (text) throw SceneError(text->at, "found the text '" + text->word + "', expected elements only");
+}
+
 void XmlFile::rejectText(const pugi::xml_node& node) const {
-  for (const pugi::xml_node& child : node.children()) {
-    if (child.type() != pugi::node_pcdata && child.type() != pugi::node_cdata) continue;
-    const std::string text = child.value();
-    const size_t start = skipSpace(text);
-    if (start == text.size()) continue;
-    const size_t length = text.find_first_of(" \t\r\n", start) - start;
-    throw SceneError(
-        locate(size_t(std::max<ptrdiff_t>(child.offset_debug(), 0)) + start),
-        "found the text '" + text.substr(start, std::min<size_t>(length, 40)) + "', expected elements only");
-  }
+  for (const pugi::xml_node& child : node.children()) rejectVisible(findText(child));
 }
 
 }  // namespace odis::render

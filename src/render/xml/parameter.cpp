@@ -1,6 +1,7 @@
 // The elements that hold a value: <float>, <rgb>, <transform>, <spectrum> and their like.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <set>
 
@@ -99,6 +100,7 @@ void XmlParser::parseAnimation(const Place& place, const pugi::xml_node& node, c
   e.allow({"name"});
   place.file.rejectText(node);
   Animation animation;
+  std::set<double> times;
   for (const pugi::xml_node& child : node.children()) {
     if (child.type() != pugi::node_element) continue;
     const XmlElement key = element(place, child);
@@ -106,9 +108,10 @@ void XmlParser::parseAnimation(const Place& place, const pugi::xml_node& node, c
       throw SceneError(key.at, "found <" + key.tag + "> in <animation>, expected <transform time=\"...\">");
     key.allow({"time"});
     const double time = parseNumber(key.require("time"), "the time", key.at);
-    if (!animation.empty() && !(time > animation.back().time))
-      throw SceneError(key.at, fmt::format("found the time {} after {} in <animation>, expected a later one",
-                                           time, animation.back().time));
+    if (!times.insert(time).second)
+      throw SceneError(
+          key.at,
+          fmt::format("found the time {} in <animation> again, expected each transform at another", time));
     const Matrix4 matrix = parseTransformSteps(place, child);
     if (isPlace(e, owner)) rejectSingular(matrix, key.at, owner);
     if (!animation.empty() && mirrors(matrix) != mirrors(animation.back().toWorld))
@@ -118,16 +121,17 @@ void XmlParser::parseAnimation(const Place& place, const pugi::xml_node& node, c
                            owner.tag);
     animation.push_back({time, matrix});
   }
-  if (animation.size() < 2)
-    throw SceneError(e.at, fmt::format("found {} <transform> in <animation>, expected at least two; what "
-                                       "doesn't move has a <transform> in place of the <animation>",
-                                       animation.size()));
-  if (isPlace(e, owner) && canMove(owner)) {
+  if (animation.empty()) throw SceneError(e.at, "found no <transform> in <animation>, expected one or more");
+  std::sort(animation.begin(), animation.end(),
+            [](const KeyFrame& a, const KeyFrame& b) { return a.time < b.time; });
+  if (animation.size() > 1 && isPlace(e, owner) && canMove(owner)) {
     addParameter(owner, e, std::move(animation));
     return;
   }
-  m_warnings.add(e.at, "'" + e.require("name") + "' of the " + owner.tag + " '" + owner.type +
-                           "' can't move, the first transform of the animation is used");
+  // What has one transform stands still.
+  if (animation.size() > 1)
+    m_warnings.add(e.at, "'" + e.require("name") + "' of the " + owner.tag + " '" + owner.type +
+                             "' can't move, the first transform of the animation is used");
   addParameter(owner, e, animation.front().toWorld);
 }
 
@@ -214,8 +218,10 @@ bool XmlParser::parseSpectrumObject(const Place& place, const pugi::xml_node& no
 
 PropertyValue XmlParser::parseSpectrumValue(const Place& place, const XmlElement& e) {
   const SpectrumUse use = useOf(place.emitter, e);
-  if (e.has("filename"))
-    return spectrumToRgb(readSpectrumFile(findInput(e.require("filename"), e.at), e.at), use);
+  if (e.has("filename")) {
+    const std::optional<std::string> path = findInput(e.require("filename"), e.at);
+    return path ? spectrumToRgb(readSpectrumFile(*path, e.at), use) : Rgb(0);
+  }
   const std::string& text = e.require("value");
   if (text.find(':') != std::string::npos) return spectrumToRgb(parseSpectrum(text, e.at), use);
   const std::vector<double> v = parseNumbers(text, "'" + e.require("name") + "'", e.at);

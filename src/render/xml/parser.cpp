@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "render/xml/find_file.h"
+#include "render/xml/foreign.h"
 #include "render/xml/names.h"
 
 namespace odis::render {
@@ -32,6 +32,15 @@ std::vector<std::string> knownTags() {
   return tags;
 }
 
+// Those of which something is drawn, for suggestions.
+std::vector<std::string> usefulTags() {
+  std::vector<std::string> tags = knownTags();
+  std::erase_if(tags, [](const std::string& tag) {
+    return tag == "medium" || tag == "phase" || tag == "subsurface" || tag == "volume";
+  });
+  return tags;
+}
+
 bool isKnownTag(const std::string& tag) {
   const std::vector<std::string> tags = knownTags();
   return std::find(tags.begin(), tags.end(), tag) != tags.end();
@@ -48,8 +57,7 @@ XmlElement XmlParser::element(const Place& place, const pugi::xml_node& node) {
     } catch (const SceneError& error) {
       // Published scenes leave the integrator to whoever renders them.
       if (e.tag != "integrator" || std::string(attribute.name()) != "type") throw;
-      m_warnings.add({}, std::string(error.what()) + "; the integrator of this program is used",
-                     Effect::same);
+      m_warnings.add(error.at(), error.message() + "; the integrator of this program is used", Effect::same);
     }
     if (!e.attributes.emplace(attribute.name(), std::move(value)).second)
       throw SceneError(e.at, "<" + e.tag + "> has the attribute '" + attribute.name() + "' twice");
@@ -59,10 +67,13 @@ XmlElement XmlParser::element(const Place& place, const pugi::xml_node& node) {
 
 ParsedScene XmlParser::parse(const XmlFile& file) {
   namespace fs = std::filesystem;
+  m_warnings.addFile(file.path(), {});
   m_folders.push_back(fs::path(file.path()).parent_path().string());
   m_files.push_back(file.path());
   std::error_code ignored;
   m_openFiles.push_back(fs::weakly_canonical(file.path(), ignored).string());
+  if (const std::string other = foreignElement(file.root()); !other.empty())
+    throw SceneError(file.locate(file.root()), other);
   const Place place{file};
   const XmlElement e = element(place, file.root());
   if (e.tag != "scene")
@@ -78,11 +89,18 @@ ParsedScene XmlParser::parse(const XmlFile& file) {
   const auto root = std::make_shared<Properties>();
   root->tag = "scene";
   root->location = e.at;
-  parseChildren(place, file.root(), *root);
-  m_references.resolve(*root);
+  file.warnOfRest(m_warnings);
+  try {
+    parseChildren(place, file.root(), *root);
+    m_references.resolve(*root, !m_missing.empty());
+  } catch (const SceneError&) {
+    // What is wrong may be right once the files are there.
+    if (!m_missing.empty()) throw MissingFiles(m_missing);
+    throw;
+  }
   for (const std::string& name : m_variables.unused())
     m_warnings.add({file.path()}, "the scene has no parameter '" + name + "', -D " + name + " is ignored");
-  return {root, m_folders, m_files};
+  return {root, m_folders, m_files, m_missing};
 }
 
 void XmlParser::parseChildren(const Place& place, const pugi::xml_node& node, Properties& owner) {
@@ -106,7 +124,7 @@ void XmlParser::parseNode(const Place& place, const pugi::xml_node& node, Proper
     throw SceneError(e.at, "found <scene> within a scene, expected it around the whole file only");
   if (parseValue(place, node, e, owner)) return;
   if (!isKnownTag(e.tag))
-    throw SceneError(e.at, "found the unknown element <" + e.tag + ">" + suggestion(e.tag, knownTags()) +
+    throw SceneError(e.at, "found the unknown element <" + e.tag + ">" + suggestion(e.tag, usefulTags()) +
                                ", expected an element of Mitsuba's scene format");
   if (node.first_child())
     throw SceneError(
@@ -128,10 +146,10 @@ void XmlParser::parseStructure(const Place& place, const XmlElement& e, Properti
   } else if (e.tag == "path") {
     e.allow({"value"});
     // Of an included file it may be beside the scene that includes it, too.
-    std::string folder = findFile(e.require("value"), m_folders, e.at, Wanted::folder);
+    std::optional<std::string> folder = findInput(e.require("value"), e.at, Wanted::folder);
     if (m_folders.size() >= kMaxFolders)
       throw SceneError(e.at, "found more than " + std::to_string(kMaxFolders) + " paths");
-    m_folders.push_back(std::move(folder));
+    if (folder) m_folders.push_back(std::move(*folder));
   } else if (e.tag == "include") {
     parseInclude(place, e, owner);
   }
@@ -139,7 +157,9 @@ void XmlParser::parseStructure(const Place& place, const XmlElement& e, Properti
 
 void XmlParser::parseInclude(const Place& place, const XmlElement& e, Properties& owner) {
   e.allow({"filename"});
-  const std::string path = findInput(e.require("filename"), e.at);
+  const std::optional<std::string> found = findInput(e.require("filename"), e.at);
+  if (!found) return;
+  const std::string& path = *found;
   std::error_code ignored;
   const std::string canonical = std::filesystem::weakly_canonical(path, ignored).string();
   if (std::find(m_openFiles.begin(), m_openFiles.end(), canonical) != m_openFiles.end())
@@ -152,6 +172,7 @@ void XmlParser::parseInclude(const Place& place, const XmlElement& e, Properties
   if (m_repeatedBytes > kMaxRepeatedBytes)
     throw SceneError(e.at, "found files that are included again, of more than 16 MiB in all");
   const XmlFile file(path, std::move(text));
+  file.warnOfRest(m_warnings);
   const Place inner{file, place.depth + 1, place.emitter};
   if (inner.depth >= kMaxDepth)
     throw SceneError(e.at, "files include each other more than " + std::to_string(kMaxDepth) + " deep");
@@ -197,9 +218,18 @@ void XmlParser::addParameter(Properties& owner, const XmlElement& e, PropertyVal
                                entry->second.location.text() + ")");
 }
 
-std::string XmlParser::findInput(const std::string& name, const SourceLocation& at) {
-  m_files.push_back(findFile(name, m_folders, at));
-  return m_files.back();
+std::optional<std::string> XmlParser::findInput(const std::string& name, const SourceLocation& at,
+                                                Wanted wanted) {
+  try {
+    std::string path = findFile(name, m_folders, at, wanted);
+    if (wanted == Wanted::folder) return path;
+    m_files.push_back(path);
+    m_warnings.addFile(path, at);
+    return path;
+  } catch (const MissingFiles& error) {
+    m_missing.insert(m_missing.end(), error.files().begin(), error.files().end());
+    return {};
+  }
 }
 
 ParsedScene parseScene(const std::string& path, const std::map<std::string, std::string>& defines,

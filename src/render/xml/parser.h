@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <set>
 #include <string>
 #include <unordered_map>
@@ -9,6 +10,7 @@
 
 #include "render/xml/element.h"
 #include "render/xml/file.h"
+#include "render/xml/find_file.h"
 #include "render/xml/properties.h"
 #include "render/xml/references.h"
 #include "render/xml/variables.h"
@@ -55,8 +57,9 @@ class XmlParser {
   void addObject(Properties& owner, const XmlElement& e, const std::shared_ptr<Properties>& object,
                  const std::string& tag);
   void addParameter(Properties& owner, const XmlElement& e, PropertyValue value);
-  // A file that the scene names.
-  std::string findInput(const std::string& name, const SourceLocation& at);
+  // A file that the scene names; nothing, and one more that is missing, if it isn't there.
+  std::optional<std::string> findInput(const std::string& name, const SourceLocation& at,
+                                       Wanted wanted = Wanted::file);
 
   bool m_before2 = false;  // what the scene's version says
   Variables m_variables;
@@ -64,6 +67,7 @@ class XmlParser {
   XmlReferences m_references;
   std::vector<std::string> m_folders;
   std::vector<std::string> m_files;      // that were read
+  std::vector<SceneError> m_missing;     // that should have been
   std::vector<std::string> m_openFiles;  // for cyclic includes
   std::set<std::string> m_included;
   int m_includeCount = 0;

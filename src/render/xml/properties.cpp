@@ -20,6 +20,13 @@ std::string withArticle(const std::string& type) {
   return (type == "integer" ? "an " : "a ") + type;
 }
 
+// " ('alpa' may be meant to be it)" with a parameter that the element has in place of the one it has not.
+std::string misspelt(const Properties& node, const std::string& name) {
+  for (const auto& [given, parameter] : node.parameters)
+    if (!suggestion(given, {name}).empty()) return " ('" + given + "' may be meant to be it)";
+  return "";
+}
+
 // The parameter, declared and marked as queried; null if it is missing and may be.
 const Properties::Parameter* find(const Properties& node, const std::string& name, bool mayBeMissing,
                                   const Declaration& declaration) {
@@ -27,10 +34,8 @@ const Properties::Parameter* find(const Properties& node, const std::string& nam
   const auto found = node.parameters.find(name);
   if (found == node.parameters.end()) {
     if (mayBeMissing) return nullptr;
-    std::vector<std::string> known;
-    for (const auto& entry : node.parameters) known.push_back(entry.first);
     throw SceneError(node.location, "the " + node.tag + " '" + node.type + "' has no parameter '" + name +
-                                        "'" + suggestion(name, known) + ", expected " +
+                                        "'" + misspelt(node, name) + ", expected " +
                                         withArticle(declaration.type));
   }
   found->second.queried = true;

@@ -43,7 +43,8 @@ void XmlReferences::refer(Properties& owner, const std::string& id, const Source
   m_references.push_back({&owner, owner.children.size() - 1, id, at});
 }
 
-std::shared_ptr<Properties> XmlReferences::find(const std::string& name, const SourceLocation& at) {
+std::shared_ptr<Properties> XmlReferences::find(const std::string& name, const SourceLocation& at,
+                                                bool mayBeUnknown) {
   std::string id = name;
   for (size_t step = 0; step <= m_aliases.size(); ++step) {
     const auto node = m_nodes.find(id);
@@ -56,6 +57,7 @@ std::shared_ptr<Properties> XmlReferences::find(const std::string& name, const S
       return node->second;
     }
     const auto other = m_aliases.find(id);
+    if (other == m_aliases.end() && mayBeUnknown) return std::make_shared<Properties>();
     if (other == m_aliases.end()) {
       std::vector<std::string> known;
       for (const auto& entry : m_nodes) known.push_back(entry.first);
@@ -98,17 +100,17 @@ XmlReferences::Extent XmlReferences::rejectEndless(const Properties& node, Exten
   return extents[&node] = own;
 }
 
-void XmlReferences::resolve(const Properties& root) {
+void XmlReferences::resolve(const Properties& root, bool filesAreMissing) {
   try {
     for (const Reference& reference : m_references) {
-      const std::shared_ptr<Properties> target = find(reference.id, reference.at);
+      const std::shared_ptr<Properties> target = find(reference.id, reference.at, filesAreMissing);
       // A merge of merges that are used again and again would be endless.
       if (reference.owner->tag == "shape" && target->type == "merge")
         throw SceneError(reference.at, "found a reference to the merge '" + reference.id + "' in a " +
                                            reference.owner->type + ", expected the shapes themselves");
       reference.owner->children[reference.child].node = target;
     }
-    for (const auto& [as, alias] : m_aliases) find(as, alias.at);
+    for (const auto& [as, alias] : m_aliases) find(as, alias.at, filesAreMissing);
     Extents extents;
     rejectEndless(root, extents, 0);
   } catch (...) {

@@ -20,8 +20,9 @@ class XmlReferences {
   // The last child of `owner` stands for the element `id`.
   void refer(Properties& owner, const std::string& id, const SourceLocation& at);
   // Fills in all references below `root`. Throws SceneError for unknown ids, for elements that hold
-  // themselves, and for those that few lines of references make absurdly deep or large.
-  void resolve(const Properties& root);
+  // themselves, and for those that few lines of references make absurdly deep or large. If files are missing,
+  // unknown ids may be theirs: they stand for an empty element.
+  void resolve(const Properties& root, bool filesAreMissing);
 
  private:
   struct Reference {
@@ -36,7 +37,7 @@ class XmlReferences {
   };
 
   void rejectTaken(const std::string& id, const SourceLocation& at) const;
-  std::shared_ptr<Properties> find(const std::string& name, const SourceLocation& at);
+  std::shared_ptr<Properties> find(const std::string& name, const SourceLocation& at, bool mayBeUnknown);
   // What hangs from an element once references are followed.
   struct Extent {
     int height = 0;  // levels below it

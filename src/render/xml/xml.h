@@ -18,6 +18,9 @@ struct ParsedScene {
   std::shared_ptr<const Properties> root;  // its tag is "scene"
   std::vector<std::string> folders;  // where files are looked for: the scene's folder, then those of <path>
   std::vector<std::string> files;    // that were read: the scene's own, included ones, spectra
+  // Of those that should have been read: what stands in them is missing from the tree, and references to it
+  // lead to empty elements.
+  std::vector<SceneError> missing;
 };
 
 // `defines` come before the <default>s of the file. Throws SceneError.
