@@ -348,6 +348,32 @@ TEST(Load, WarnsOfAttributesThatAreClamped) {
             std::string::npos);
 }
 
+TEST(Load, WarnsOfImagesThatAreClamped) {
+  const TemporaryFolder folder;
+  // From .25 to 2.
+  folder.write("map.hdr",
+               "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 1 +X 2\n\x80\x80\x80\x82\x80\x80\x80\x7f");
+  const auto warningsOf = [&](const std::string& bsdf) {
+    const std::string path = folder.write("scene.xml", "<scene version='3.0.0'><shape type='sphere'>" + bsdf +
+                                                           "</shape>" + kLight + "</scene>");
+    Warnings warnings;
+    Scene::load(path, {}, warnings);
+    return warnings.texts();
+  };
+  const auto bitmap = [](const std::string& name) {
+    return "<texture name='" + name + "' type='bitmap'><string name='filename' value='map.hdr'/></texture>";
+  };
+  const auto found = warningsOf("<bsdf type='diffuse'>" + bitmap("reflectance") + "</bsdf>");
+  ASSERT_EQ(found.size(), 1u);
+  EXPECT_NE(found[0].find(
+                "map.hdr: the image goes from 0.25 to 2, 'reflectance' of the bsdf 'diffuse' is clamped to "
+                "0 to 1"),
+            std::string::npos)
+      << found[0];
+  EXPECT_TRUE(
+      warningsOf("<bsdf type='bumpmap'>" + bitmap("arbitrary") + "<bsdf type='diffuse'/></bsdf>").empty());
+}
+
 // Names that may have been meant are of what is drawn.
 TEST(Load, SuggestsOnlyWhatThereIs) {
   const Loaded loaded = load(

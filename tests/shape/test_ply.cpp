@@ -207,6 +207,8 @@ TEST(Ply, KnowsColoursByTheirNames) {
   EXPECT_EQ(first(read(properties("uchar", {"BaseColor_0"}), "51"), "vertex_BaseColor"), (Values{0.2f}));
   // Labels, counts and coordinates are what they are.
   EXPECT_EQ(first(read(properties("int", {"label_0"}), "51"), "vertex_label"), (Values{51}));
+  EXPECT_EQ(first(read(properties("uchar", {"class_r"}), "51"), "vertex_class"), (Values{51}));
+  EXPECT_EQ(first(read(properties("uchar", {"class_a"}), "51"), "vertex_class"), (Values{51}));
   EXPECT_EQ(first(read(properties("uchar", {"cell_x", "cell_y", "cell_z"}), "1 2 3"), "vertex_cell"),
             (Values{1, 2, 3}));
   EXPECT_EQ(read(properties("uchar", {"u", "v"}), "1 1").uvs[0], Vec2(1, 1));

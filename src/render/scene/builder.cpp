@@ -8,6 +8,7 @@
 #include "render/image/image.h"
 #include "render/scene/files_ahead.h"
 #include "render/shape/mesh_files.h"
+#include "render/texture/bitmap.h"
 #include "render/texture/constant.h"
 #include "render/xml/find_file.h"
 #include "render/xml/names.h"
@@ -40,6 +41,22 @@ bool isWithoutEffect(const Properties& node, const std::string& name) {
 }
 
 }  // namespace
+
+// Images of bytes hold numbers from 0 to 1; others need not.
+static bool mayHoldAnyNumber(const std::string& fileName) {
+  const std::string name = lowerCase(fileName);
+  return name.ends_with(".exr") || name.ends_with(".hdr");
+}
+
+// A parameter that is an image in which there are numbers from one to another.
+static void warnIfClamped(const Properties& node, const std::string& name, const std::string& path,
+                          const Vec2& numbers, Warnings& warnings) {
+  const NumberRange& range = node.declarations().at(name).range;
+  if (range.contains(numbers.x) && range.contains(numbers.y)) return;
+  warnings.add({path, 0, 0},
+               fmt::format("the image goes from {:.6g} to {:.6g}, '{}' of the {} '{}' is clamped to {}",
+                           numbers.x, numbers.y, name, node.tag, node.type, range.text()));
+}
 
 std::optional<Placed> Builder::placed(const Properties& node, Scale scale) {
   const Animation* given = node.animation("to_world");
@@ -79,7 +96,14 @@ TexturePtr Builder::texture(const Properties& parent, const std::string& name, c
 TexturePtr Builder::optionalTexture(const Properties& parent, const std::string& name,
                                     const Declaration& declaration) {
   parent.declare(name, declaration);
-  if (const Properties* node = parent.child("texture", name)) return texture(*node);
+  if (const Properties* node = parent.child("texture", name)) {
+    TexturePtr made = texture(*node);
+    const auto* bitmap = dynamic_cast<const BitmapTexture*>(made.get());
+    if (bitmap && declaration.clamped && mayHoldAnyNumber(node->string("filename")))
+      warnIfClamped(parent, name, findFile(node->string("filename"), m_folders, node->placeOf("filename")),
+                    bitmap->range(), m_warnings);
+    return made;
+  }
   if (!parent.has(name)) return nullptr;
   return std::make_shared<ConstantTexture>(
       parent.color(name, declaration.clamped ? kAnyNumber : declaration.range));

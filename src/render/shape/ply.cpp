@@ -96,13 +96,16 @@ struct Element {
 struct Channel {
   std::string attribute;  // "" if it is of none
   int index = 0;          // decides about the order of channels; those that are alike keep that of the file
-  bool color = false;
+  bool named = false;     // whether it is called like a channel of a colour, or its alpha
 };
 
-// 0, 1, 2 for the channels of a colour, 3 for its alpha, -1 for others.
+// Comes after the channels 0, 1, 2 of a colour.
+constexpr int kAlpha = 3;
+
+// The index of a channel by its name, -1 if it is no name of one.
 int colorIndex(std::string_view channel) {
-  static constexpr std::pair<std::string_view, int> names[] = {{"r", 0}, {"red", 0},  {"g", 1}, {"green", 1},
-                                                               {"b", 2}, {"blue", 2}, {"a", 3}, {"alpha", 3}};
+  static constexpr std::pair<std::string_view, int> names[] = {
+      {"r", 0}, {"red", 0}, {"g", 1}, {"green", 1}, {"b", 2}, {"blue", 2}, {"a", kAlpha}, {"alpha", kAlpha}};
   for (const auto& [known, index] : names)
     if (channel == known) return index;
   return -1;
@@ -112,13 +115,13 @@ int colorIndex(std::string_view channel) {
 Channel channelOf(const Property& property) {
   const std::string& name = property.name;
   if (property.countType || property.role != Role::none) return {};
-  if (const int index = colorIndex(name); index >= 0 && index < 3) return {"color", index, true};
+  if (const int index = colorIndex(name); index >= 0 && index < kAlpha) return {"color", index, true};
   const size_t end = name.rfind('_');
   if (end == std::string::npos) return {};
   const std::string last = name.substr(end + 1);
   Channel result{name.substr(0, end), colorIndex(last)};
-  result.color = result.index >= 0 || lowerCase(result.attribute).find("color") != std::string::npos;
-  if (result.index < 0) std::from_chars(last.data(), last.data() + last.size(), result.index);
+  result.named = result.index >= 0;
+  if (!result.named) std::from_chars(last.data(), last.data() + last.size(), result.index);
   return result;
 }
 
@@ -202,14 +205,20 @@ class PlyReader {
     for (auto& [name, channels] : named) {
       std::stable_sort(channels.begin(), channels.end(),
                        [](const auto& a, const auto& b) { return a.first.index < b.first.index; });
-      const bool hasAlpha = channels.size() == 4 && channels[3].first.color && channels[3].first.index == 3;
+      const bool colorName = lowerCase(name).find("color") != std::string::npos;
+      const bool hasAlpha =
+          channels.size() == 4 && channels[3].first.index == kAlpha && (colorName || channels[3].first.named);
       if (hasAlpha) channels.pop_back();
       if (channels.size() != 1 && channels.size() != 3) continue;
+      const bool isColor = colorName || (channels.size() == 3 &&
+                                         std::all_of(channels.begin(), channels.end(), [](const auto& c) {
+                                           return c.first.named && c.first.index < kAlpha;
+                                         }));
       for (size_t i = 0; i < channels.size(); ++i) {
-        const auto& [channel, property] = channels[i];
+        Property* property = channels[i].second;
         property->attribute = int(m_data.attributes.size());
         property->channel = uint32_t(i);
-        if (channel.color) property->divisor = largest(property->type);
+        if (isColor) property->divisor = largest(property->type);
       }
       m_data.attributes.push_back({element.name + "_" + name, uint32_t(channels.size()), {}});
     }

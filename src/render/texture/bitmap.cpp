@@ -96,6 +96,17 @@ BitmapTexture::BitmapTexture(std::shared_ptr<const Image> image, const Options& 
       m_image->width() == 1 && m_image->height() == 1 && !bordered(options.wrapU) && !bordered(options.wrapV);
 }
 
+Vec2 BitmapTexture::range() const {
+  Vec2 result(INFINITY, -INFINITY);
+  for (int y = 0; y < m_image->height(); ++y)
+    for (int x = 0; x < m_image->width(); ++x) {
+      const Rgb c = m_image->rgb(x, y);
+      result.x = std::min({result.x, c.x, c.y, c.z});
+      result.y = std::max({result.y, c.x, c.y, c.z});
+    }
+  return result;
+}
+
 BitmapTexture::Patch BitmapTexture::patch(const Vec2& uv) const {
   const int width = m_image->width(), height = m_image->height();
   const Vec2 st = m_options.toUv.apply(uv);

@@ -29,6 +29,8 @@ class BitmapTexture final : public Texture {
   Rgb mean() const override { return m_mean; }
   Vec2i resolution() const override { return {m_image->width(), m_image->height()}; }
   bool isConstant() const override { return m_constant; }
+  // The least and the greatest number of the image.
+  Vec2 range() const;
 
  private:
   struct Patch;

@@ -100,6 +100,8 @@ XmlFile::XmlFile(std::string path, std::string text)
   for (size_t i = 0; i < m_text.size(); ++i)
     if (m_text[i] == '\n') m_lineStarts.push_back(i + 1);
   parse();
+  if (const std::string other = foreignElement(root()); !other.empty())
+    throw SceneError(locate(root()), other);
   rejectSurroundings();
   const pugi::xml_node rest = root().next_sibling();
   if (const auto entity = findEntity(m_text.substr(0, rest ? size_t(rest.offset_debug()) : m_end)))

@@ -1,8 +1,8 @@
 #include "render/xml/foreign.h"
 
 #include <algorithm>
-#include <array>
-#include <cctype>
+
+#include "render/xml/names.h"
 
 namespace odis::render {
 namespace {
@@ -42,9 +42,6 @@ constexpr Format kStarts[] = {
     {"\x89PNG", "an image in PNG", kTexture},
     {"\xff\xd8\xff", "an image in JPEG", kTexture},
     {"#?RADIANCE", "an image of Radiance", kTexture},
-    {"<!DOCTYPE html", "a web page", "what was to be downloaded is behind another address"},
-    {"<!doctype html", "a web page", "what was to be downloaded is behind another address"},
-    {"<html", "a web page", "what was to be downloaded is behind another address"},
 };
 
 // What begins the first line that is no comment of a text file.
@@ -127,7 +124,6 @@ constexpr Format kRoots[] = {
     {"cycles", "a scene of Cycles", kBlender},
     {"project", "a scene of appleseed", ""},
     {"BGFscene", "a scene of Embree's tutorials", ""},
-    {"html", "a web page", "what was to be downloaded is behind another address"},
     {"test", "a test of Nori", "it draws no picture"},
 };
 
@@ -146,10 +142,13 @@ constexpr Format kParts[] = {
 }  // namespace
 
 std::string foreignFile(std::string_view text) {
-  for (const Format& format : kStarts)
-    if (text.starts_with(format.sign)) return said(format.name, format.advice);
   if (text.starts_with("\xef\xbb\xbf")) text.remove_prefix(3);
   text = skipBlanks(text);
+  for (const Format& format : kStarts)
+    if (text.starts_with(format.sign)) return said(format.name, format.advice);
+  const std::string start = lowerCase(std::string(text.substr(0, 14)));
+  if (start == "<!doctype html" || start.starts_with("<html"))
+    return said("a web page", "what was to be downloaded is behind another address");
   if (text.starts_with("{") || text.starts_with("[")) return foreignJson(text);
   return text.starts_with("<") ? "" : foreignText(text);
 }

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 
-#include "render/xml/foreign.h"
 #include "render/xml/names.h"
 
 namespace odis::render {
@@ -72,8 +71,6 @@ ParsedScene XmlParser::parse(const XmlFile& file) {
   m_files.push_back(file.path());
   std::error_code ignored;
   m_openFiles.push_back(fs::weakly_canonical(file.path(), ignored).string());
-  if (const std::string other = foreignElement(file.root()); !other.empty())
-    throw SceneError(file.locate(file.root()), other);
   const Place place{file};
   const XmlElement e = element(place, file.root());
   if (e.tag != "scene")
