@@ -369,7 +369,8 @@ TEST_F(Odis, BenchWritesReportAndTables) {
   EXPECT_EQ(runShell("'" ODIS_SOURCE "/scripts/bench' '" ODIS_COMMAND "' nowhere out").code, 2);
 }
 
-// Lines that stay, as in a log, come every ten seconds at most: what is done sooner has one for its end, or none.
+// Lines that stay, as in a log, come every ten seconds at most: what is done sooner has one for its end, or
+// none.
 TEST_F(Odis, ProgressTakesFewLinesWithoutATerminal) {
   const auto expectLines = [&](const std::string& arguments, size_t atTheEnd) {
     const auto start = std::chrono::steady_clock::now();
