@@ -28,13 +28,14 @@ add_library(odis_compiler INTERFACE)
 target_compile_options(odis_compiler INTERFACE
   -Wall -Wextra $<$<BOOL:${ODIS_WERROR}>:-Werror> -fno-math-errno -fno-trapping-math -fno-semantic-interposition)
 
-# Fuzz targets need to see which way the code under test took, and what it did wrong on it.
+# Fuzz targets need to see which way the code under test took, and what it did wrong on it. Numbers that no integer
+# stands for are not among what `undefined` means, though they become indices.
 if(ODIS_FUZZ)
   if(NOT CMAKE_CXX_COMPILER_ID STREQUAL "Clang")
     message(FATAL_ERROR "ODIS_FUZZ needs Clang with its libFuzzer, found ${CMAKE_CXX_COMPILER_ID}: "
       "`scripts/setup --dev` installs it, `cmake --preset fuzz` chooses it.")
   endif()
-  add_compile_options(-fsanitize=fuzzer-no-link,address,undefined -fno-sanitize-recover=undefined
-    -fno-omit-frame-pointer)
+  add_compile_options(-fsanitize=fuzzer-no-link,address,undefined,float-cast-overflow
+    -fno-sanitize-recover=undefined,float-cast-overflow -fno-omit-frame-pointer)
   add_link_options(-fsanitize=address,undefined)
 endif()
