@@ -16,6 +16,11 @@
 //   eta              index of refraction, 0.01 to 100, instead of specular
 //   main_specular_sampling_rate, clearcoat_sampling_rate, diffuse_reflectance_sampling_rate
 //                    1, 0 to 1000: relative rates at which the lobes are sampled
+//
+// Between 0 and 1 spec_trans loses energy, in Mitsuba as here: from inside there is the transparent share
+// alone, and of the light that meets the surface there the opaque share is lost, every time. A white ball
+// with spec_trans 0.5 and roughness 0.2 in white surroundings has a radiance of 0.77, one with spec_trans 1
+// has 1.00 (docs/experiments/0055-principled-furnace.md).
 #include "render/bsdf/principled.h"
 
 #include "render/bsdf/factories.h"
