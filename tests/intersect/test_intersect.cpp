@@ -73,6 +73,28 @@ TEST(Intersector, OcclusionAgreesWithIntersection) {
   EXPECT_GT(hits, 2000);
 }
 
+// Rays that are not numbers, or too far away for Embree, meet nothing, alone and among others.
+TEST(Intersector, RaysThatAreNoneMeetNothing) {
+  const auto scene = sceneOf({meshOf(ballMesh()), sphereOf({0, 0, 0}, 0.6)});
+  const Ray good{{0, 0, 3}, {0, 0, -1}};
+  for (const float bad : {NAN, kInfinity, -kInfinity, 1e30f})
+    for (int number = 0; number < 7; ++number) {
+      Ray ray = good;
+      (number < 3 ? ray.origin[number] : number < 6 ? ray.direction[number - 3] : ray.tMax) = bad;
+      if (number == 6 && !std::isnan(bad)) continue;
+      SurfacePoint at;
+      EXPECT_FALSE(scene->intersect(ray, at));
+      EXPECT_FALSE(scene->occluded(ray));
+      const Ray rays[] = {good, ray, good};
+      Hit hits[3];
+      uint8_t hidden[3];
+      scene->intersect(rays, hits);
+      scene->occluded(rays, hidden);
+      for (const int i : {0, 2}) EXPECT_TRUE(hits[i].shape && hidden[i]);
+      EXPECT_FALSE(hits[1].shape || hidden[1]);
+    }
+}
+
 TEST(Intersector, InstancesEqualGeometryInTheWorld) {
   const Matrix4 placement = scaling({2, 2, 2}) * rotation(0.4f, 1.1f, -0.7f) * translation({3, -1, 2});
   const Affine affine(placement);

@@ -44,6 +44,33 @@ constexpr size_t kPacket = 8;
 // children, for the sake of the clock. Those of eight, the default on others, are faster there, too.
 constexpr const char* kDeviceConfig = "frequency_level=simd256";
 
+// Embree takes no rays that are not numbers, nor any beyond this (its FLT_LARGE): Debian's builds abort.
+constexpr float kMostCoordinate = 1.844e18f;
+
+bool isTraceable(const RTCRay& ray) {
+  bool result = !std::isnan(ray.tfar);
+  for (const float x : {ray.org_x, ray.org_y, ray.org_z, ray.dir_x, ray.dir_y, ray.dir_z})
+    result &= std::abs(x) <= kMostCoordinate;
+  return result;
+}
+
+// Rays that Embree does not take meet nothing: they become others, which are not valid.
+void dropUntraceable(RTCRay8& packet, int* valid) {
+  int usable[kPacket], all = 1;
+  for (size_t i = 0; i < kPacket; ++i) usable[i] = !std::isnan(packet.tfar[i]);
+  for (const float* x : {packet.org_x, packet.org_y, packet.org_z, packet.dir_x, packet.dir_y, packet.dir_z})
+    for (size_t i = 0; i < kPacket; ++i) usable[i] &= std::abs(x[i]) <= kMostCoordinate;
+  for (size_t i = 0; i < kPacket; ++i) all &= usable[i];
+  if (all) return;
+  for (size_t i = 0; i < kPacket; ++i) {
+    if (usable[i]) continue;
+    valid[i] = 0;
+    for (float* x : {packet.org_x, packet.org_y, packet.org_z, packet.dir_x, packet.dir_y, packet.tfar})
+      x[i] = 0;
+    packet.dir_z[i] = 1;
+  }
+}
+
 // Puts the first rays into a packet and says how many they are. Places that are left over repeat the last
 // ray: some builds of Embree look at them though they are not valid.
 size_t fillPacket(RTCRay8& packet, int* valid, std::span<const Ray> rays) {
@@ -66,6 +93,7 @@ size_t fillPacket(RTCRay8& packet, int* valid, std::span<const Ray> rays) {
     packet.mask[i] = ~0u;
     packet.flags[i] = 0;
   }
+  dropUntraceable(packet, valid);
   return count;
 }
 
@@ -218,6 +246,7 @@ RTCSceneTy* Intersector::makeScene(const std::vector<ShapePtr>& shapes, float la
 bool Intersector::intersect(const Ray& ray, SurfacePoint& at) const {
   RTCRayHit rayHit;
   rayHit.ray = embreeRay(ray);
+  if (!isTraceable(rayHit.ray)) return false;
   rayHit.hit.geomID = rayHit.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
   embreeIntersect(m_scene, rayHit);
   const RTCHit& found = rayHit.hit;
@@ -263,6 +292,7 @@ void Intersector::occluded(std::span<const Ray> rays, std::span<uint8_t> hidden)
 
 bool Intersector::occluded(const Ray& ray) const {
   RTCRay shadowRay = embreeRay(ray);
+  if (!isTraceable(shadowRay)) return false;
   embreeOccluded(m_scene, shadowRay);
   return shadowRay.tfar < 0;
 }

@@ -99,6 +99,9 @@ SensorPtr makeMeter(const Properties& node, const Vec2i& resolution,
         node.location, "the sensor '" + node.type + "' of a shape is unknown, an irradiancemeter is used");
   if (!(shape->area() > 0))
     throw SceneError(node.location, "found an irradiancemeter on a shape without area, expected one with");
+  if (!shape->canEmit())
+    throw SceneError(node.location,
+                     "found an irradiancemeter on curves, expected a shape that could be an area light");
   builder.warnUnqueried(node);
   return std::make_shared<IrradianceMeter>(shape, resolution);
 }
