@@ -292,6 +292,16 @@ class Maps(unittest.TestCase):
         # Places on the border of two cells may be rounded to either.
         self.assertLess((np.array(found) != expected).mean(), 0.005)
 
+    def test_what_is_no_number(self):
+        """Places that are huge or no numbers lie in no cell; such directions and normals have some place in tables."""
+        bad = array_of(mi.Float, np.array([np.nan, np.inf, -np.inf, 1e30, -1e30], np.float32))
+        found = guide_tables.find_cell(self.tables, mi.Point3f(bad, 0.5, 0), mi.Vector3f(0, 0, 1), True)
+        np.testing.assert_array_equal(np.array(found), np.full(5, odis.NO_CELL, np.uint32))
+        for direction in (mi.Vector3f(bad, 0, 0.5), mi.Vector3f(0, bad, bad), mi.Vector3f(0, 1, bad)):
+            block, texel = guide_tables.texel_of(direction)
+            self.assertLess(max(np.array(block).max(), np.array(texel).max()), 16)
+            self.assertLess(np.array(guide_tables.quantize_normal(direction)).max(), guide_tables.NORMAL_STEPS ** 2)
+
     def test_halves_of_paths(self):
         """odis::pathHalf, by whole numbers of Python."""
         def half(pixel, sample):

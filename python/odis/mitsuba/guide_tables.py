@@ -173,7 +173,8 @@ def find_cell(tables, position, normal, active):
     """The finest cell of a vertex, odis.NO_CELL where there is none."""
     local = (position - tables.origin) * tables.inverse_edge
     at = mi.Vector3i(dr.floor(local))
-    inside = active & dr.all((local >= 0) & (at < tables.size))
+    # Before they become integers: what is huge has none.
+    inside = active & dr.all((local >= 0) & (local < mi.Vector3f(tables.size)))
     entry = ((at.z * tables.size.y + at.y) * tables.size.x + at.x) * 6 + mi.Int32(orientation_of(normal))
     return dr.select(inside, dr.gather(mi.UInt32, tables.entries, mi.UInt32(entry), inside), odis.NO_CELL)
 
@@ -257,7 +258,7 @@ def square_to_direction(x, y):
 
 
 def direction_to_square(w):
-    """The inverse of square_to_direction."""
+    """The inverse of square_to_direction, in [0, 1]: 0 for what is no number, as that would have no texel."""
     r = dr.sqrt(dr.maximum(1 - dr.abs(w.z), 0))
     x, y = dr.abs(w.x), dr.abs(w.y)
     most, least = dr.maximum(x, y), dr.minimum(x, y)
@@ -269,8 +270,9 @@ def direction_to_square(w):
     v = phi * r
     u = r - v
     below = w.z < 0
-    return ((dr.copysign(dr.select(below, 1 - v, u), w.x) + 1) * 0.5,
-            (dr.copysign(dr.select(below, 1 - u, v), w.y) + 1) * 0.5)
+    x = (dr.copysign(dr.select(below, 1 - v, u), w.x) + 1) * 0.5
+    y = (dr.copysign(dr.select(below, 1 - u, v), w.y) + 1) * 0.5
+    return dr.select(x > 0, x, 0), dr.select(y > 0, y, 0)
 
 
 def texel_of(direction):
