@@ -2,13 +2,14 @@
 #include <fmt/format.h>
 
 #include "command.h"
+#include "render/math/vec.h"
 
 namespace odis::app {
 
 std::string durationText(double seconds) {
   if (seconds < 0.9995) return fmt::format("{:.0f} ms", seconds * 1e3);
   if (seconds < 59.95) return fmt::format("{:.1f} s", seconds);
-  const auto whole = static_cast<long long>(seconds + 0.5);
+  const auto whole = static_cast<long long>(render::limited(seconds + 0.5, 0.0, 1e15));
   if (whole < 3600) return fmt::format("{} min {:02} s", whole / 60, whole % 60);
   return fmt::format("{} h {:02} min", whole / 3600, whole / 60 % 60);
 }

@@ -28,6 +28,7 @@ class CellGrid {
   float finestEdge() const { return 1 / m_inverseEdge; }
 
   ODIS_HOST_DEVICE uint64_t key(const Float3& position, const Float3& normal, int level) const {
+    assert(isIndex(level, kCellLevels));
     const Float3 local = (position - m_origin) * m_inverseEdge;
     return pack(coordinate(local.x) >> level, coordinate(local.y) >> level, coordinate(local.z) >> level,
                 dominantAxis(normal), level);
@@ -100,6 +101,7 @@ ODIS_HOST_DEVICE inline uint64_t cellHash(uint64_t key) {
 // free; `hash` is cellHash(key). kNoCell if the key is not there or there is no table.
 ODIS_HOST_DEVICE inline uint32_t findSlot(const CellSlot* slots, uint64_t mask, uint64_t key, uint64_t hash) {
   if (!slots) return kNoCell;
+  assert((mask & (mask + 1)) == 0);
   for (uint64_t slot = hash & mask;; slot = (slot + 1) & mask) {
     if (slots[slot].cell == kNoCell) return kNoCell;
     if (slots[slot].key == key) return slots[slot].cell;

@@ -42,6 +42,7 @@ ODIS_HOST_DEVICE inline uint32_t findAround(const GuideView& view, uint64_t key,
     key = CellGrid::parent(key);
     cell = findSlot(view.slots, view.slotMask, key);
   }
+  assert(cell == kNoCell || cell < view.cellCount);
   return cell;
 }
 
@@ -115,6 +116,7 @@ ODIS_HOST_DEVICE inline Integer<Real> roughnessClass(const GuideRules& rules, Re
 template <class Real>
 ODIS_HOST_DEVICE inline Real bsdfFraction(const GuideView& view, Integer<Real> cell, Real roughness) {
   using Int = Integer<Real>;
+  assert(isIndex(cell, view.cellCount));
   constexpr int kStride = sizeof(CellDecisions) / sizeof(float);
   return gather(view.decisions->bsdfFraction, cell * Int(kStride) + roughnessClass(view.rules, roughness));
 }
@@ -159,6 +161,7 @@ struct LearnedLights {
 };
 
 ODIS_HOST_DEVICE inline LearnedLights learnedLights(const GuideView& view, uint32_t cell) {
+  assert(cell < view.cellCount);
   const float fraction = view.decisions[cell].learnedLightFraction;
   if (!(fraction > 0)) return {};
   return {view.lightTables + size_t(cell) * (view.lightGroups + 1), fraction};
@@ -189,6 +192,7 @@ ODIS_HOST_DEVICE inline const CachedRadiance* cachedRadiance(const GuideView& vi
                                                              uint32_t cell, float throughput,
                                                              float footprint) {
   if (!view.cached) return nullptr;
+  assert(cell < view.cellCount);
   const CachedRadiance& cached = view.cached[2 * size_t(cell) + pathHalf(place.pixel, place.sample)];
   const float edge = float(1 << CellGrid::levelOf(view.keys[cell])) / view.grid.inverseEdge;
   const bool ends = throughput * cached.error < view.rules.cachedError &&

@@ -13,6 +13,7 @@
 // and a specialisation of IntegerOf. tests/odis/lanes.h is one of some eighty lines.
 #pragma once
 
+#include <cassert>
 #include <cmath>
 #include <cstdint>
 
@@ -85,6 +86,15 @@ ODIS_HOST_DEVICE inline int32_t toInteger(float x) {
 }
 ODIS_HOST_DEVICE inline float toReal(int32_t i) {
   return float(i);
+}
+
+// Whether a number is an index of `count` elements, for assertions; of several lanes it is taken for granted.
+ODIS_HOST_DEVICE inline bool isIndex(int32_t index, uint32_t count) {
+  return uint32_t(index) < count;
+}
+template <class Lanes>
+ODIS_HOST_DEVICE inline bool isIndex(const Lanes&, uint32_t) {
+  return true;
 }
 
 // Values that lie side by side in memory, from an index on that may differ from lane to lane.

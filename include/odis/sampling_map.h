@@ -21,13 +21,15 @@ ODIS_HOST_DEVICE inline constexpr Int texelAt(Int x, Int y) {
   return ((y & Int(~3)) + (x >> 2)) * Int(kBlockTexels) + (y & Int(3)) * Int(kBlockSize) + (x & Int(3));
 }
 
-// The index of the texel that a unit direction falls into.
+// The index of the texel that a unit direction falls into; of one that is not a number, that of some texel.
 template <class Real>
 ODIS_HOST_DEVICE inline Integer<Real> texelOf(const Vector3<Real>& w) {
-  using Int = Integer<Real>;
   const Vector2<Real> square = directionToSquare(w);
-  const auto within = [](Int i) { return max(min(i, Int(kMapSize - 1)), Int(0)); };
-  return texelAt(within(toInteger(square.x * Real(kMapSize))), within(toInteger(square.y * Real(kMapSize))));
+  // Before it becomes an integer, since what is not a number has none.
+  const auto within = [](Real x) {
+    return toInteger(min(max(x * Real(kMapSize), Real(0)), Real(kMapSize - 1)));
+  };
+  return texelAt(within(square.x), within(square.y));
 }
 
 // The point of [0, 1]^2 that lies at `within` (each in [0, 1]) of a texel.
@@ -64,6 +66,7 @@ class VertexMap {
   // maps must outlive the use of this object.
   ODIS_HOST_DEVICE void prepare(const MapArrays& maps, Int cell, const Vector3<Real>& normal,
                                 Real belowSign) {
+    assert(isIndex(cell, INT32_MAX / kMapTexels));
     m_maps = maps;
     m_cell = cell;
     m_normal = normal;
@@ -118,6 +121,7 @@ class VertexMap {
     Real toPdf;
   };
   ODIS_HOST_DEVICE void weigh(Int block, Block& weights) const {
+    assert(isIndex(block, kMapBlocks));
     const Real rim(m_maps.rim);
     const Int first = block * Int(kBlockTexels);
     const Run<Real, uint16_t> texels(m_maps.texels, m_cell * Int(kMapTexels) + first);
@@ -144,6 +148,7 @@ class VertexMap {
   ODIS_HOST_DEVICE Real pdf(const Vector3<Real>& wi) const { return texelPdf(texelOf(wi)); }
   // The density within a texel.
   ODIS_HOST_DEVICE Real texelPdf(Int texel) const {
+    assert(isIndex(texel, kMapTexels));
     Block weights;
     weigh(texel >> 4, weights);
     const auto texels = row(weights.texels, (texel >> 2) & Int(3));

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "render/math/vec.h"
+
 namespace odis::eval {
 
 int samplesInTime(const std::vector<TimePoint>& measured, double seconds) {
@@ -18,7 +20,7 @@ int samplesInTime(const std::vector<TimePoint>& measured, double seconds) {
     samples = measured.back().samples * seconds / measured.back().seconds;
   }
   // A hair of tolerance, so that equal times give equal samples.
-  return int(std::clamp(std::floor(samples + 1e-9), 1.0, kMost));
+  return int(render::limited(std::floor(samples + 1e-9), 1.0, kMost));
 }
 
 }  // namespace odis::eval

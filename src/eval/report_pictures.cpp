@@ -22,7 +22,8 @@ std::string encodePicture(const ColorImage& image, double exposure) {
 
 std::string encodeMap(const std::vector<float>& values, int width, int height) {
   std::vector<uint8_t> bytes;
-  for (const float value : values) bytes.push_back(uint8_t(std::lround(std::clamp(value, 0.0f, 1.0f) * 255)));
+  for (const float value : values)
+    bytes.push_back(uint8_t(std::lround(render::limited(value, 0.0f, 1.0f) * 255)));
   return base64(render::encodePng(width, height, 1, bytes.data()));
 }
 

@@ -5,6 +5,7 @@
 #include "render/bsdf/fresnel.h"
 #include "render/bsdf/ior.h"
 #include "render/bsdf/perturbed.h"
+#include "render/bsdf/rough_transmittance.h"
 
 namespace odis::render {
 namespace {
@@ -89,6 +90,14 @@ TEST(Plastic, CoatHasTheWeightOfItsFresnelTerm) {
   EXPECT_EQ(coat.lobe, Lobe::delta);
   expectNear(coat.weight * coat.pdf, Rgb(fresnelDielectric(0.5f, 1.9f / 1.000277f).reflectance), 1e-5f);
   EXPECT_NEAR(coat.pdf, 1 - plastic.guidableProbability(flatPoint(), wo), 1e-6f);
+}
+
+// Cosines that are none, or beyond what cosines may be, have some transmittance: the table's ends.
+TEST(Plastic, TransmittanceOfEveryCosine) {
+  const RoughTransmittance interface(Microfacet::Type::beckmann, 0.3f, 1.5f);
+  EXPECT_EQ(interface.external(NAN), interface.external(0));
+  EXPECT_EQ(interface.external(-kInfinity), interface.external(0));
+  EXPECT_EQ(interface.external(kInfinity), interface.external(1));
 }
 
 TEST(Coating, WithoutAnInterfaceOrAbsorptionIsTheNestedBsdf) {

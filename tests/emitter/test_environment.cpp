@@ -137,6 +137,16 @@ Matrix4 someRotation() {
 
 }  // namespace
 
+// Directions that are none, or zero, look up some pixels.
+TEST(EnvironmentMap, EveryDirectionHasARadiance) {
+  const EnvironmentMap map(std::vector<Rgb>(12, Rgb(1.0f)), 4, 3, Matrix4());
+  for (const float x : {NAN, kInfinity, -kInfinity, 0.0f, 1e30f})
+    for (const float y : {NAN, kInfinity, 0.0f, -1.0f}) {
+      EXPECT_EQ(map.radiance({x, y, x}), Rgb(1.0f));
+      map.pdf({x, y, x});
+    }
+}
+
 TEST(EnvironmentMap, SamplesItsDensity) {
   Chi2Options options;
   options.quadrature = 80;  // what is left of the mean ends in corners within cells

@@ -23,6 +23,23 @@ TEST(Octahedral, InvertsItself) {
   }
 }
 
+// Directions that are none, that are zero or of any length have some texel.
+TEST(Octahedral, EveryDirectionHasATexel) {
+  for (const float x : {NAN, INFINITY, -INFINITY, 0.0f, 1e30f, -1e-30f})
+    for (const float z : {NAN, INFINITY, 0.0f, -1.0f, 1e30f}) {
+      const Float3 w{x, -x, z};
+      const int texel = texelOf(w);
+      EXPECT_TRUE(texel >= 0 && texel < kMapTexels);
+      const Splat spread = splat(w);
+      float sum = 0;
+      for (int k = 0; k < 4; ++k) {
+        EXPECT_TRUE(spread.texel[k] >= 0 && spread.texel[k] < kMapTexels);
+        sum += spread.weight[k];
+      }
+      EXPECT_NEAR(sum, 1, 1e-5f);
+    }
+}
+
 TEST(Octahedral, PolynomialsKeepTheirPromise) {
   std::mt19937 engine(2);
   std::uniform_real_distribution<float> uniform(0, 1);

@@ -139,7 +139,7 @@ class Row {
   // What one vertex says of the texel of its direction.
   static void addTo(Map& histogram, const PathVertex& v) {
     const Float2 at = directionToSquare(v.wi);
-    const auto bin = [](float x) { return size_t(std::clamp(int(x * kBins), 0, kBins - 1)); };
+    const auto bin = [](float x) { return size_t(render::limited(x * kBins, 0.0f, float(kBins - 1))); };
     constexpr size_t kEach = kTargetSize / kBins;
     for (size_t y = 0; y < kEach; ++y)
       for (size_t x = 0; x < kEach; ++x)
@@ -193,7 +193,7 @@ class Row {
       const int left = g * kBarWidth / groups,
                 width = std::clamp((g + 1) * kBarWidth / groups - left - 1, 1, kWidestBar);
       const auto bar = [&](float value, const Rgb& color) {
-        const int height = int(std::lround(std::clamp(value / most, 0.0f, 1.0f) * kSide));
+        const int height = int(std::lround(render::limited(value / most, 0.0f, 1.0f) * kSide));
         m_canvas.fill(m_left + left, m_top + kText + kSide - height, width, height, color);
       };
       bar(m_target.lights[size_t(g)].rms, Rgb(0.15f));

@@ -102,7 +102,7 @@ Half toHalf(float value) {
 
 PackedDirection packed(const Float3& direction) {
   const Float2 square = directionToSquare(direction);
-  const auto bits = [](float x) { return uint16_t(std::clamp(x * 65536, 0.0f, 65535.0f)); };
+  const auto bits = [](float x) { return uint16_t(render::limited(x * 65536, 0.0f, 65535.0f)); };
   return {bits(square.x), bits(square.y)};
 }
 
@@ -151,7 +151,7 @@ void addColumns(ShardWriter& writer, const std::string& prefix, const Pilot& pil
     const PositionSteps steps = stepsOf(v.position, frame);
     for (size_t axis = 0; axis < 3; ++axis) positions[axis * count + i] = steps[axis];
     distances[i] = toHalf(v.distance / frame.edge);
-    rays[i] = uint16_t(std::clamp(v.raysAfter, 0.0f, 65535.0f));
+    rays[i] = uint16_t(render::limited(v.raysAfter, 0.0f, 65535.0f));
     groups[i] = v.lightGroup < kMaxLightGroups ? uint8_t(v.lightGroup) : kNoGroup;
     // Of light that gave nothing, what its weight would have been is left out.
     lit[i] = v.light > 0;

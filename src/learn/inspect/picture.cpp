@@ -148,10 +148,10 @@ class Painter {
     std::stable_sort(dots.begin(), dots.end(),
                      [](const SampleDot& a, const SampleDot& b) { return a.value < b.value; });
     for (const SampleDot& dot : dots) {
-      const int x = std::clamp(int(dot.at.x * kSide), 0, kSide - 1),
-                y = std::clamp(int(dot.at.y * kSide), 0, kSide - 1);
+      const int x = int(render::limited(dot.at.x * kSide, 0.0f, float(kSide - 1))),
+                y = int(render::limited(dot.at.y * kSide, 0.0f, float(kSide - 1)));
       const float stops = dot.value > 0 ? std::log2(dot.value) : kLeastMapStops;
-      const int size = std::clamp(int(std::lround(3 + stops / 2)), 1, 7);
+      const int size = int(std::lround(render::limited(3 + stops / 2, 1.0f, 7.0f)));
       const int px = std::clamp(x - size / 2, 0, kSide - size),
                 py = std::clamp(y - size / 2, 0, kSide - size);
       m_canvas.fill(m_left + px, m_top + kText + py, size, size,

@@ -37,7 +37,10 @@ void drawPanel(Canvas& canvas, int y, const std::string& title,
   if (high - low < 1e-9) high = low + 1e-9;
   const int top = y + 22, bottom = y + kPanel - 22, right = kWidth - 12;
   const auto across = [&](double step) { return kMargin + int(step / last * (right - kMargin)); };
-  const auto down = [&](double value) { return bottom - int((value - low) / (high - low) * (bottom - top)); };
+  // Losses of trainings that failed may be infinite or no numbers.
+  const auto down = [&](double value) {
+    return bottom - int(render::limited((value - low) / (high - low), 0.0, 1.0) * (bottom - top));
+  };
   for (int i = 0; i <= 4; ++i) {
     const double value = low + (high - low) * i / 4;
     canvas.fill(kMargin, down(value), right - kMargin, 1, kGrid);

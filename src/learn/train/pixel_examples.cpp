@@ -33,7 +33,7 @@ Float3 turnedBack(const Float3& v, int turn) {
 
 int squareTexel(const Float3& w) {
   const Float2 square = directionToSquare(w);
-  const auto index = [](float x) { return std::clamp(int(x * kMapSize), 0, kMapSize - 1); };
+  const auto index = [](float x) { return int(render::limited(x * kMapSize, 0.0f, float(kMapSize - 1))); };
   return index(square.y) * kMapSize + index(square.x);
 }
 

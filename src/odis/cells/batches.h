@@ -3,6 +3,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cassert>
 #include <numeric>
 #include <span>
 #include <utility>
@@ -79,7 +80,10 @@ CellOrder<Item> sortByCell(const Tasks& tasks, std::span<const BatchCells> batch
   result.begin.assign(size_t(cellCount) + 1, 0);
   for (size_t b = 0; b < batches.size(); ++b)
     for (size_t i = 0; i < next[b].size(); ++i)
-      if (next[b][i] > 0) result.begin[batches[b].cells[i] + 1] += next[b][i];
+      if (next[b][i] > 0) {
+        assert(batches[b].cells[i] < cellCount);
+        result.begin[batches[b].cells[i] + 1] += next[b][i];
+      }
   std::partial_sum(result.begin.begin(), result.begin.end(), result.begin.begin());
   std::vector<uint32_t> free(result.begin.begin(), result.begin.end() - 1);
   for (size_t b = 0; b < batches.size(); ++b)

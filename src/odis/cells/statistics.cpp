@@ -1,5 +1,6 @@
 #include "odis/cells/statistics.h"
 
+#include <cassert>
 #include <cmath>
 #include <numeric>
 
@@ -134,6 +135,7 @@ void accumulate(CellStatistics& cell, LightField* field, const Float3& middle, f
     addTo(
         cell.secondHalf,
         {half, {half * outgoing.x, half * outgoing.y, half * outgoing.z}, half * (brightness * brightness)});
+    assert(sample.lightGroup < kMaxLightGroups);
     cell.lightCount += sample.lightSquare != kNoLights;
     cell.lightSquares[sample.lightGroup] += std::max(sample.lightSquare, 0.0f);
     cell.normal = cell.normal + sample.normal;
@@ -178,6 +180,7 @@ void CellStore::addNewCells() {
     if (link.parent != kNoCell) m_children[free[link.parent]++] = uint32_t(c);
     if (c < known) continue;
     m_cells[c].parent = link.parent;
+    assert(link.level < kCellLevels);
     m_cells[c].level = link.level;
     if (m_looksAround && link.level == 1) m_fieldOf[c] = fields++;
   }

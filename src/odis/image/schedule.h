@@ -1,6 +1,7 @@
 // Which sample of which pixel is taken when.
 #pragma once
 
+#include <cassert>
 #include <utility>
 #include <vector>
 
@@ -18,11 +19,17 @@ class Schedule {
   explicit Schedule(const OdisFrameOptions& options);
 
   // How many samples of the pixel belong to the pilot.
-  uint32_t pilotCount(uint32_t pixel) const { return m_pilotCounts.empty() ? 0 : m_pilotCounts[pixel]; }
+  uint32_t pilotCount(uint32_t pixel) const {
+    assert(m_pilotCounts.empty() || pixel < m_pilotCounts.size());
+    return m_pilotCounts.empty() ? 0 : m_pilotCounts[pixel];
+  }
   // The number of samples of all pilots together.
   uint64_t pilotSamples() const;
   // How many samples a pixel has in all.
-  uint32_t sampleCount(uint32_t pixel) const { return m_counts.empty() ? m_spp : m_counts[pixel]; }
+  uint32_t sampleCount(uint32_t pixel) const {
+    assert(m_counts.empty() || pixel < m_counts.size());
+    return m_counts.empty() ? m_spp : m_counts[pixel];
+  }
   // How many samples remain after the pilot in the pixel that has the most.
   uint32_t mostRemaining() const { return m_mostRemaining; }
   // The samples of a pixel among those between `begin` and `end` of what remains after the pilot.

@@ -1,6 +1,7 @@
 #include "odis/image/tiles.h"
 
 #include <algorithm>
+#include <cassert>
 #include <stdexcept>
 #include <string>
 #include <tuple>
@@ -263,6 +264,7 @@ void TileCollector::requireOpen(uint32_t tile) const {
 }
 
 void TileCollector::addToTile(uint32_t index, ArrayView<const FrameSample> samples, TileVertices vertices) {
+  assert(index < tileCount());
   Tile& tile = m_tiles[index];
   const std::lock_guard lock(tile.mutex);
   requireOpen(index);

@@ -10,11 +10,12 @@ namespace odis::core {
 
 Splat splat(const Float3& wi) {
   const Float2 square = directionToSquare(wi);
-  const float x = square.x * kMapSize - 0.5f, y = square.y * kMapSize - 0.5f;
+  // Directions that are not numbers have some place, too.
+  const auto place = [](float at) { return min(max(at * kMapSize - 0.5f, -0.5f), kMapSize - 0.5f); };
+  const float x = place(square.x), y = place(square.y);
   // Rounded down, as no coordinate is less than -1: std::floor() is a call.
-  const int x0 = std::clamp(int(x + 1) - 1, -1, kMapSize - 1),
-            y0 = std::clamp(int(y + 1) - 1, -1, kMapSize - 1);
-  const float fx = std::clamp(x - x0, 0.0f, 1.0f), fy = std::clamp(y - y0, 0.0f, 1.0f);
+  const int x0 = int(x + 1) - 1, y0 = int(y + 1) - 1;
+  const float fx = x - float(x0), fy = y - float(y0);
   return {{wrappedTexel(x0, y0), wrappedTexel(x0 + 1, y0), wrappedTexel(x0, y0 + 1),
            wrappedTexel(x0 + 1, y0 + 1)},
           {(1 - fx) * (1 - fy), fx * (1 - fy), (1 - fx) * fy, fx * fy}};

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <cassert>
 
 #include "odis/sampling_map.h"
 
@@ -20,6 +21,7 @@ inline void wrapTexel(int& x, int& y, int side = kMapSize) {
     y = y < 0 ? 0 : side - 1;
     x = side - 1 - x;
   }
+  assert(x >= 0 && x < side && y >= 0 && y < side);
 }
 inline int wrappedTexel(int x, int y) {
   wrapTexel(x, y);

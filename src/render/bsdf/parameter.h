@@ -13,8 +13,7 @@ class Builder;
 
 // Each channel clamped to [0, 1]; 0 if it is not a number.
 inline Rgb clampUnit(const Rgb& c) {
-  const auto clamp = [](float x) { return std::min(std::max(0.0f, x), 1.0f); };
-  return {clamp(c.x), clamp(c.y), clamp(c.z)};
+  return {limited(c.x, 0.0f, 1.0f), limited(c.y, 0.0f, 1.0f), limited(c.z, 0.0f, 1.0f)};
 }
 
 class RgbParameter {

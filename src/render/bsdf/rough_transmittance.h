@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <cassert>
 
 #include "render/bsdf/microfacet.h"
 
@@ -14,8 +15,9 @@ class RoughTransmittance {
   // Share of the light from outside at this cosine (0 if it is not a number) that enters; linear between 64
   // nodes.
   float external(float cosTheta) const {
-    const float x = std::min(std::max(0.0f, cosTheta), 1.0f) * (kNodes - 1);
+    const float x = limited(cosTheta, 0.0f, 1.0f) * (kNodes - 1);
     const int i = std::min(int(x), kNodes - 2);
+    assert(i >= 0);
     return lerp(x - float(i), m_external[i], m_external[i + 1]);
   }
   // Hemispherical reflectance from inside.

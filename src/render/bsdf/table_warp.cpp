@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <cassert>
+
 namespace odis::render {
 namespace {
 
@@ -10,7 +12,7 @@ struct GridPlace {
   float share;
 };
 GridPlace gridPlaceAt(float x, uint32_t count) {
-  const float scaled = std::min(std::max(0.0f, x), 1.0f) * float(count - 1);
+  const float scaled = limited(x, 0.0f, 1.0f) * float(count - 1);
   const uint32_t first = std::min(uint32_t(scaled), count - 2);
   return {first, scaled - float(first)};
 }
@@ -97,7 +99,10 @@ TableWarp::Mix TableWarp::mixAt(const TableAxis& first, const TableAxis& second,
 
 float TableWarp::mixed(const std::vector<float>& table, uint64_t size, const Mix& mix, uint64_t index) const {
   float sum = 0;
-  for (int k = 0; k < 4; ++k) sum += mix.weights[k] * table[mix.tables[k] * size + index];
+  for (int k = 0; k < 4; ++k) {
+    assert(index < size && mix.tables[k] * size + index < table.size());
+    sum += mix.weights[k] * table[mix.tables[k] * size + index];
+  }
   return sum;
 }
 float TableWarp::value(const Mix& mix, uint32_t x, uint32_t y) const {

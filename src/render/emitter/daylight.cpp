@@ -8,24 +8,25 @@ namespace {
 
 using namespace hosek_wilkie;
 
-// Where a value lies in a table of equal steps: between `index` and the entry after it.
+// Where a value, of 0 to the last index, lies in a table of equal steps: between `index` and the entry after
+// it.
 struct Position {
   int index;
   float fraction;
 };
 
 Position positionIn(float value, int entries) {
-  const int index = std::clamp(int(value), 0, entries - 2);
+  const int index = std::min(int(value), entries - 2);
   return {index, value - float(index)};
 }
 
 Position turbidityPosition(float turbidity) {
-  return positionIn(std::clamp(turbidity, 1.0f, float(kTurbidities)) - 1, kTurbidities);
+  return positionIn(limited(turbidity, 1.0f, float(kTurbidities)) - 1, kTurbidities);
 }
 
 // Both data sets follow the cube root of the sun's elevation: 0 at the horizon, 1 at the zenith.
 float elevationParameter(float sunZenith) {
-  return std::cbrt(std::clamp(1 - sunZenith / (kPi / 2), 0.0f, 1.0f));
+  return std::cbrt(limited(1 - sunZenith / (kPi / 2), 0.0f, 1.0f));
 }
 
 // Bernstein polynomials of degree 5.
@@ -48,7 +49,7 @@ Sky::Sky(float turbidity, float sunZenith, const Rgb& albedo) {
   const Position haze = turbidityPosition(turbidity);
   const std::array<float, kControlPoints> basis = bernstein(elevationParameter(sunZenith));
   for (int c = 0; c < 3; ++c) {
-    const float ground = std::clamp(albedo[c], 0.0f, 1.0f);
+    const float ground = limited(albedo[c], 0.0f, 1.0f);
     m_channels[c] = {};
     // Bézier curves in the sun's elevation, linear between turbidities and albedos.
     for (int t = 0; t < 2; ++t)

@@ -127,10 +127,11 @@ ODIS_WIDE void EnvironmentMap::findPlacesInLanes(const EnvironmentMap& map, size
 }
 
 inline EnvironmentMap::Patch EnvironmentMap::patchAt(const Vec2& uv) const {
-  const float s = uv.x * float(m_width) - 0.5f, t = uv.y * float(m_height - 1);
+  // Directions that are not numbers have some place, too.
+  const float s = limited(uv.x * float(m_width) - 0.5f, -0.5f, float(m_width) - 0.5f),
+              t = limited(uv.y * float(m_height - 1), 0.0f, float(m_height - 1));
   const int column = int(s) - int(s < 0);  // rounded down
-  const int left = column < 0 ? m_width - 1 : std::min(column, m_width - 1);
-  const int top = std::min(std::max(int(t), 0), m_height - 2);
+  const int left = column < 0 ? m_width - 1 : column, top = std::min(int(t), m_height - 2);
   return {left, left + 1 < m_width ? left + 1 : 0, top, {s - float(column), t - float(top)}};
 }
 

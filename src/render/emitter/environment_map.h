@@ -1,6 +1,7 @@
 // An image wrapped around the scene. Manual page in environment_map.cpp.
 #pragma once
 
+#include <cassert>
 #include <vector>
 
 #include "render/emitter/emitter.h"
@@ -35,7 +36,10 @@ class EnvironmentMap final : public EnvironmentEmitter {
   uint64_t bytes() const { return m_pixels.size() * sizeof(Rgb) + m_table.bytes(); }
 
  private:
-  const Rgb& pixel(int x, int y) const { return m_pixels[size_t(y) * size_t(m_width) + size_t(x)]; }
+  const Rgb& pixel(int x, int y) const {
+    assert(x >= 0 && x < m_width && y >= 0 && y < m_height);
+    return m_pixels[size_t(y) * size_t(m_width) + size_t(x)];
+  }
   // A direction of the world as the image has it.
   struct Place {
     Vec2 uv;

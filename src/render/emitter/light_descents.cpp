@@ -56,6 +56,7 @@ void LightDescents::find(const LightTree& tree) {
   size_t count = 0;
   const auto goOn = [&](size_t lane) {
     if (m_descents[lane].arrived()) return;
+    assert(m_descents[lane].link < tree.m_pairs.size());
     pairs[lane] = &tree.m_pairs[m_descents[lane].link];
     active[count++] = uint8_t(lane);
   };

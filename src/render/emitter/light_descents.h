@@ -13,6 +13,7 @@ class LightDescents {
  public:
   size_t size() const { return m_count; }
   void add(const LightReference& ref, const LightTree::Descent& from) {
+    assert(m_count < kLanes);
     m_p.set(m_count, ref.p);
     m_n.set(m_count, ref.n);
     m_both[m_count] = ref.both;

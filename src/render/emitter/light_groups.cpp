@@ -77,7 +77,7 @@ LightGroup LightSampler::describe(uint32_t group) const {
   if (length > 0) result.bounds.axis = sum / length;
   for (const auto& [wi, weight] : directions)
     result.bounds.thetaO =
-        std::max(result.bounds.thetaO, std::acos(std::clamp(dot(wi, result.bounds.axis), -1.0f, 1.0f)));
+        std::max(result.bounds.thetaO, std::acos(limited(dot(wi, result.bounds.axis), -1.0f, 1.0f)));
   return result;
 }
 

@@ -51,7 +51,7 @@ inline float importance(const SubtreeBounds& lights, const Vec3& p, const Vec3& 
   const Angle sphere{std::sqrt(sinSquared), std::sqrt(1 - sinSquared)};
 
   // The least angle between a normal of the lights and the direction to the reference.
-  const float cosAxis = std::clamp(dot(lights.axis, wi) * (-1 / kAxisScale), -1.0f, 1.0f);
+  const float cosAxis = limited(dot(lights.axis, wi) * (-1 / kAxisScale), -1.0f, 1.0f);
   const Angle emission = difference(difference(angleOf(cosAxis), lights.normals), sphere);
   // The least angle between the surface's normal and a direction to the lights.
   const float cosSurface = dot(n, wi);
@@ -59,7 +59,7 @@ inline float importance(const SubtreeBounds& lights, const Vec3& p, const Vec3& 
 
   const float value =
       lights.intensity * std::max(emission.cos, kGrazing) * std::max(incidence.cos, kGrazing) * inverse;
-  float result = std::clamp(value, std::numeric_limits<float>::min(), kMostImportance);
+  float result = limited(value, std::numeric_limits<float>::min(), kMostImportance);
   result = emission.cos < lights.cosReach - kGrazing ? 0.0f : result;
   result = incidence.cos < -kGrazing ? 0.0f : result;
   // Among the lights every direction is possible.
@@ -69,7 +69,7 @@ inline float importance(const SubtreeBounds& lights, const Vec3& p, const Vec3& 
 // The probability of descending to the first of two children of these importances; negative if neither gives
 // anything.
 inline float firstProbability(float first, float second) {
-  float probability = std::clamp(first / (first + second), kLeastProbability, 1 - kLeastProbability);
+  float probability = limited(first / (first + second), kLeastProbability, 1 - kLeastProbability);
   probability = second == 0 ? 1.0f : probability;
   const float ofNone = second == 0 ? -1.0f : 0.0f;
   return first == 0 ? ofNone : probability;

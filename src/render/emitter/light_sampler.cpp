@@ -1,5 +1,6 @@
 #include "render/emitter/light_sampler.h"
 
+#include <cassert>
 #include <cmath>
 #include <limits>
 
@@ -188,6 +189,7 @@ bool LightSampler::begin(const LightReference& ref, float uChoice, Beginning& be
     return true;
   }
   const float rest = 1 - treeProbability;
+  assert(!m_infinite.empty());
   const uint32_t emitter = m_infinite[findCell(m_cdf, (uChoice - treeProbability) / rest)];
   choice = {m_emitters[emitter], 0, rest * m_probability[emitter], withinGroup(ref, *m_emitters[emitter], 0),
             m_groupOf[emitter]};
@@ -196,6 +198,7 @@ bool LightSampler::begin(const LightReference& ref, float uChoice, Beginning& be
 
 bool LightSampler::beginInGroup(const LightReference& ref, uint32_t group, float u, Beginning& beginning,
                                 Choice& choice) const {
+  assert(group < groupCount());
   beginning.treeProbability = treeProbability(ref);
   if (group >= m_infiniteGroups) {
     beginning.descent = m_tree.throughGroup(group - m_infiniteGroups, u);
@@ -213,6 +216,7 @@ void LightSampler::arrive(const Beginning& beginning, Choice& choice) const {
   const LightTree::Descent& descent = beginning.descent;
   const float probability = beginning.treeProbability * descent.toGroup;
   if (descent.light() == LightTree::kNone || !(probability > 0)) return;
+  assert(descent.light() < m_emitterOf.size());
   const uint32_t emitter = m_emitterOf[descent.light()];
   choice = {m_emitters[emitter], descent.light() - m_firstLight[emitter], probability * descent.probability,
             descent.probability, m_infiniteGroups + m_tree.groupOf(descent.light())};

@@ -4,6 +4,7 @@
 
 #include <array>
 #include <bit>
+#include <cassert>
 #include <limits>
 
 namespace odis::render {
@@ -22,7 +23,7 @@ const std::array<Angle, kAngleSteps + 1> kAngles = [] {
 }();
 
 uint8_t packAngle(float theta) {
-  return uint8_t(std::clamp(std::ceil(theta * (kAngleSteps * kInvPi)), 0.0f, float(kAngleSteps)));
+  return uint8_t(limited(std::ceil(theta * (kAngleSteps * kInvPi)), 0.0f, float(kAngleSteps)));
 }
 
 // What rounding may turn an axis by, generously.
@@ -82,6 +83,7 @@ float LightTree::firstProbability(const Pair& pair, const LightReference& ref) {
 
 LightTree::Descent LightTree::descend(const LightReference& ref, Descent from) const {
   while (!from.arrived()) {
+    assert(from.link < m_pairs.size());
     const Pair& pair = m_pairs[from.link];
     from.turn(firstProbability(pair, ref), pair.child[0].link, pair.child[1].link);
   }
@@ -91,6 +93,7 @@ LightTree::Descent LightTree::descend(const LightReference& ref, Descent from) c
 float LightTree::walk(const LightReference& ref, uint32_t link, uint64_t trail) const {
   float probability = 1;
   for (; trail != 1; trail >>= 1) {
+    assert(link < m_pairs.size());
     const Pair& pair = m_pairs[link];
     const float first = firstProbability(pair, ref);
     if (first < 0) return 0;

@@ -102,7 +102,7 @@ class LightTree::Build {
   }
 
   static int binOf(float x, float low, float high) {
-    return std::min(int(kBins * ((x - low) / (high - low))), kBins - 1);
+    return int(limited(kBins * ((x - low) / (high - low)), 0.0f, float(kBins - 1)));
   }
 
   struct Cut {

@@ -32,8 +32,8 @@ Vec2 pointInSubdivision(uint32_t n, uint32_t cell, const Vec2& within) {
 
 uint32_t subdivisionAt(uint32_t n, const Vec2& barycentric) {
   const Vec2 scaled = barycentric * float(n);
-  const uint32_t i = std::min(uint32_t(std::max(scaled.x, 0.0f)), n - 1);
-  const uint32_t j = std::min(uint32_t(std::max(scaled.y, 0.0f)), n - 1 - i);
+  const auto i = uint32_t(limited(scaled.x, 0.0f, float(n - 1)));
+  const auto j = uint32_t(limited(scaled.y, 0.0f, float(n - 1 - i)));
   const bool upsideDown = scaled.x - float(i) + scaled.y - float(j) > 1 && i + j + 1 < n;
   return subdivisionRowStart(n, i) + 2 * j + uint32_t(upsideDown);
 }
@@ -44,7 +44,7 @@ TexturedMeshLight::TexturedMeshLight(const Mesh& mesh, TexturePtr radiance)
     : AreaLight(mesh, std::move(radiance)), m_mesh(mesh), m_first{0} {
   for (uint32_t triangle = 0; triangle < mesh.primitiveCount(); ++triangle) {
     const float parts = kTexturedParts * mesh.triangleArea(triangle) / mesh.area();
-    const uint32_t n = std::max(uint32_t(std::sqrt(parts)), 1u);
+    const auto n = uint32_t(std::sqrt(limited(parts, 1.0f, kTexturedParts)));
     m_first.push_back(m_first.back() + n * n);
   }
 }

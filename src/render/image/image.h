@@ -1,6 +1,7 @@
 // Images read from files and held in memory, row 0 at the top.
 #pragma once
 
+#include <cassert>
 #include <cstdint>
 #include <memory>
 #include <string>
@@ -44,7 +45,10 @@ class Image {
  private:
   Image() = default;
   void decodeBytes(bool srgb);  // fills m_decode
-  size_t index(int x, int y) const { return size_t(y) * size_t(m_width) + size_t(x); }
+  size_t index(int x, int y) const {
+    assert(x >= 0 && x < m_width && y >= 0 && y < m_height);
+    return size_t(y) * size_t(m_width) + size_t(x);
+  }
   static std::shared_ptr<Image> readExrPixels(const std::vector<uint8_t>& file);
   static std::shared_ptr<Image> readHdrPixels(const std::vector<uint8_t>& file);
   static std::shared_ptr<Image> readJpegPixels(const std::vector<uint8_t>& file, bool srgb);

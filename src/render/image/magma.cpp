@@ -24,7 +24,7 @@ constexpr std::array<std::array<int, 3>, 10> kMagma{{{0x00, 0x00, 0x04},
 }  // namespace
 
 Rgb magma(double share) {
-  const double at = std::clamp(share, 0.0, 1.0) * double(kMagma.size() - 1);
+  const double at = limited(share, 0.0, 1.0) * double(kMagma.size() - 1);
   const size_t i = std::min(size_t(at), kMagma.size() - 2);
   Rgb color;
   for (size_t c = 0; c < 3; ++c) {

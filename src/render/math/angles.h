@@ -19,8 +19,10 @@ inline void swapIf(bool condition, float& a, float& b) {
 struct SinCos {
   float sin, cos;
 };
-// The sine and the cosine of an angle, in [0, 1] turns, with relative errors below 4e-7.
+// The sine and the cosine of an angle, in [0, 1] turns, with relative errors below 4e-7. Beyond that range,
+// and for what is not a number, those of the nearest end.
 inline SinCos sinCosOfTurns(float turns) {
+  turns = limited(turns, 0.0f, 1.0f);
   // The angle to the nearest axis is at most an eighth of a turn, where short series are exact to a rounding.
   const int32_t quarters = (int32_t(turns * 8) + 1) >> 1;
   const float x = (turns - float(quarters) * 0.25f) * (2 * kPi), x2 = x * x;

@@ -6,6 +6,7 @@
 
 #include <xmmintrin.h>
 
+#include <cassert>
 #include <cstddef>
 #include <cstdint>
 
@@ -20,6 +21,7 @@ inline constexpr size_t kLanes = 64;
 
 // The end of a loop over the first `count` lanes: the next multiple of eight, so that vectors are full.
 inline size_t endOfLanes(size_t count) {
+  assert(count <= kLanes);
   return (count + 7) / 8 * 8;
 }
 
@@ -46,6 +48,7 @@ struct LaneList {
 
   // Without a branch, which would often be mispredicted.
   void addIf(bool belongs, size_t lane) {
+    assert(count < kLanes && lane < kLanes);
     lanes[count] = uint8_t(lane);
     count += belongs;
   }

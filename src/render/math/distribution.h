@@ -4,6 +4,7 @@
 // length or area of the domain.
 #pragma once
 
+#include <cassert>
 #include <cmath>
 #include <cstdint>
 #include <span>
@@ -30,8 +31,10 @@ inline double buildCdf(std::span<const float> weights, std::span<float> cdf) {
 
 // The cell with cdf[i] <= u < cdf[i + 1]; never one of zero width.
 inline uint32_t findCell(std::span<const float> cdf, float u) {
-  u = std::min(std::max(u, 0.0f), kOneMinusEpsilon);
-  return uint32_t(std::upper_bound(cdf.begin(), cdf.end(), u) - cdf.begin()) - 1;
+  u = limited(u, 0.0f, kOneMinusEpsilon);
+  const auto above = std::upper_bound(cdf.begin(), cdf.end(), u);
+  assert(above != cdf.begin() && above != cdf.end());
+  return uint32_t(above - cdf.begin()) - 1;
 }
 
 // An index of a long table: the unit interval is cut into pieces, and for the beginning of each the index
@@ -51,7 +54,7 @@ inline void buildIndex(std::span<const float> cdf, std::span<uint32_t> index) {
 }
 // What findCell() finds, by the index.
 inline uint32_t findCell(std::span<const float> cdf, std::span<const uint32_t> index, float u) {
-  u = std::min(std::max(u, 0.0f), kOneMinusEpsilon);
+  u = limited(u, 0.0f, kOneMinusEpsilon);
   const uint32_t pieces = uint32_t(index.size()) - 1;
   // Rounding may take u to the piece beside its own.
   const uint32_t piece = std::min(uint32_t(u * float(pieces)), pieces - 1);
@@ -66,6 +69,7 @@ inline uint32_t findCell(std::span<const float> cdf, std::span<const uint32_t> i
     cell += cdf[cell + half] <= u ? half : 0;
     count -= half;
   }
+  assert(cell + 1 < cdf.size());
   return cell;
 }
 
@@ -75,7 +79,7 @@ inline float cellPdf(std::span<const float> cdf, uint32_t cell) {
 
 inline float invertCell(std::span<const float> cdf, uint32_t cell, float u) {
   const float within = (u - cdf[cell]) / (cdf[cell + 1] - cdf[cell]);
-  return std::min((float(cell) + within) / float(cdf.size() - 1), kOneMinusEpsilon);
+  return limited((float(cell) + within) / float(cdf.size() - 1), 0.0f, kOneMinusEpsilon);
 }
 
 // The inverse of invertCell.
@@ -84,7 +88,8 @@ inline float unsampleCell(std::span<const float> cdf, uint32_t cell, float x) {
 }
 
 inline uint32_t cellAt(float x, uint32_t count) {
-  return std::min(uint32_t(std::max(x, 0.0f) * float(count)), count - 1);
+  assert(count > 0);
+  return std::min(uint32_t(limited(x, 0.0f, 1.0f) * float(count)), count - 1);
 }
 
 class PiecewiseConstant1D {
@@ -147,7 +152,7 @@ class PiecewiseConstant2D {
   }
   // By the index alone, about the cell of the row that the second step finds; fetches what it reads there.
   uint32_t cellAhead(const Row& y, float u) const {
-    return index(y.cell)[std::min(uint32_t(u * float(m_pieces)), m_pieces - 1)];
+    return index(y.cell)[std::min(uint32_t(limited(u, 0.0f, 1.0f) * float(m_pieces)), m_pieces - 1)];
   }
   void prefetchRow(const Row& y, float u) const { __builtin_prefetch(&row(y.cell)[cellAhead(y, u)]); }
   // Fetches what pdf() and invert() read from memory.
@@ -171,6 +176,7 @@ class PiecewiseConstant2D {
 
  private:
   std::span<const float> row(uint32_t y) const {
+    assert(y < m_marginal.size());
     return {m_rows.data() + size_t(y) * (m_width + 1), size_t(m_width) + 1};
   }
   std::span<const uint32_t> index(uint32_t y) const {

@@ -18,9 +18,10 @@ template <class... Coefficients>
     return c0 + x * polynomial(x, rest...);
 }
 
-// e^x, with relative errors below 3e-7, for x <= 88; what is less than -87 counts as that.
+// e^x, with relative errors below 3e-7, for x in [-87, 88]; what lies beyond counts as the nearest end, what
+// is not a number as -87.
 [[gnu::always_inline]] inline float exponential(float x) {
-  x = x > -87.0f ? x : -87.0f;
+  x = limited(x, -87.0f, 88.0f);
   const int32_t n = int32_t(x * 1.44269504f + 127.5f) - 127;  // to the nearest, also of negative numbers
   // The logarithm of two in two parts, so that the difference is exact.
   const float r = (x - float(n) * 0.693359375f) - float(n) * -2.12194440e-4f;
@@ -29,11 +30,12 @@ template <class... Coefficients>
 }
 
 // The natural logarithm of a positive, normal number, with errors below 2e-7 of it or of 1e-7, whichever is
-// more.
+// more. Of anything else it is some number.
 [[gnu::always_inline]] inline float logarithm(float x) {
   // x = 2^n (1 + r), where 1 + r lies in [sqrt(1/2), sqrt(2)).
-  const int32_t bits = std::bit_cast<int32_t>(x) - 0x3f3504f3, n = bits >> 23;
-  const float r = std::bit_cast<float>((bits & 0x007fffff) + 0x3f3504f3) - 1;
+  const uint32_t bits = std::bit_cast<uint32_t>(x) - 0x3f3504f3u;
+  const int32_t n = int32_t(bits) >> 23;
+  const float r = std::bit_cast<float>((bits & 0x007fffffu) + 0x3f3504f3u) - 1;
   // log(1 + r) = 2 artanh(s).
   const float s = r / (2 + r), s2 = s * s;
   const float series = s * polynomial(s2, 2.0f, 2.0f / 3, 2.0f / 5, 2.0f / 7, 2.0f / 9);

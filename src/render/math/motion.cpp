@@ -2,6 +2,8 @@
 
 #include <ImathMatrixAlgo.h>
 
+#include <cassert>
+
 namespace odis::render {
 
 namespace {
@@ -142,6 +144,7 @@ Motion::Motion(const Animation& animation, const Shutter& shutter) {
 
 Matrix4 Motion::matrixAt(float time) const {
   const size_t steps = m_poses.size() - 1;
+  assert(time >= 0 && time <= 1);
   const float place = time * float(steps);
   const size_t step = std::min(size_t(place), steps - 1);
   const float t = place - float(step);

@@ -53,6 +53,12 @@ inline float safeSqrt(float x) {
 inline float lerp(float t, float a, float b) {
   return a + t * (b - a);
 }
+// The nearest number within a range; `least` for what is not a number, which std::clamp() would hand on. To
+// be used wherever the result becomes an integer or an index.
+template <class Number>
+[[gnu::always_inline]] inline Number limited(Number x, Number least, Number most) {
+  return std::min(std::max(least, x), most);
+}
 
 // Relative luminance of linear Rec. 709 / sRGB primaries.
 inline float luminance(const Rgb& c) {

@@ -39,7 +39,7 @@ inline Vec3 squareToSphere(const Vec2& u) {
 // The point of the square that squareToSphere takes to `d`, unit, but for rounding; in [0, 1)^2.
 inline Vec2 sphereToSquare(const Vec3& d) {
   const float turns = angleInTurns(d.y, d.x), z = 0.5f - 0.5f * d.z;
-  return {std::clamp(z, 0.0f, kOneMinusEpsilon), std::min(turns < 0 ? turns + 1 : turns, kOneMinusEpsilon)};
+  return {limited(z, 0.0f, kOneMinusEpsilon), limited(turns < 0 ? turns + 1 : turns, 0.0f, kOneMinusEpsilon)};
 }
 
 // Uniform in the cone of directions about +z with cosine > cosMax; solid-angle density 1/(2 pi (1 - cosMax)).

@@ -67,6 +67,7 @@ ODIS_WIDE void findTexelsInLanes(MapLookUps& lookUps) {
 }  // namespace
 
 void MapPreparations::add(VertexMap<float>& map, int32_t cell, const Vec3& normal, float belowSign) {
+  assert(count < kLanes);
   maps[count] = &map;
   cells[count] = cell;
   normals[count] = normal;
@@ -112,11 +113,13 @@ void sampleWithinBlocks(MapSamples& samples) {
 }
 
 void MapLookUps::add(const VertexMap<float>& map, const Vec3& direction) {
+  assert(count < kLanes);
   maps[count] = &map;
   wi.set(count++, direction);
 }
 
 void MapLookUps::add(const VertexMap<float>& map, int32_t texel) {
+  assert(count < kLanes);
   maps[count] = &map;
   texels[count++] = texel;
 }

@@ -34,6 +34,7 @@ struct MapSamples {
   }
   // Without a branch, which would often be mispredicted.
   void addIf(bool drawn, const VertexMap<float>& map, const Vec2& numbers, int32_t block = 0) {
+    assert(count < kLanes);
     maps[count] = &map;
     u[count] = numbers.x;
     v[count] = numbers.y;

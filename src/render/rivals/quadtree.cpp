@@ -6,6 +6,7 @@ namespace {
 
 // The quadrant that a point lies in; the point is then relative to the quadrant.
 uint32_t descend(Vec2& point) {
+  assert(point.x >= 0 && point.x <= 1 && point.y >= 0 && point.y <= 1);
   uint32_t quadrant = 0;
   for (int axis = 0; axis < 2; ++axis) {
     point[axis] *= 2;

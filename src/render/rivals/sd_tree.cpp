@@ -6,8 +6,8 @@ namespace odis::render {
 
 Vec2 directionToCylinder(const Vec3& w) {
   const float turns = std::atan2(w.y, w.x) * (0.5f * kInvPi);
-  return {std::clamp((w.z + 1) * 0.5f, 0.0f, kOneMinusEpsilon),
-          std::min(turns < 0 ? turns + 1 : turns, kOneMinusEpsilon)};
+  return {limited((w.z + 1) * 0.5f, 0.0f, kOneMinusEpsilon),
+          limited(turns < 0 ? turns + 1 : turns, 0.0f, kOneMinusEpsilon)};
 }
 
 Vec3 cylinderToDirection(const Vec2& point) {

@@ -36,6 +36,7 @@ ODIS_WIDE void drawIndependent(const uint64_t* bases, const uint32_t* samples, u
 }  // namespace
 
 void SamplerBlock::add(const Sampler& sampler) {
+  assert(m_count < kSize);
   m_kind = sampler.m_kind;
   m_redrawn = sampler.m_redrawn;
   m_bases[m_count] = sampler.m_base;

@@ -7,7 +7,7 @@ namespace odis::render {
 
 // The place on the film in [0, 1)^2; with `sample_border` filters reach beyond its edge.
 Vec2 IrradianceMeter::onShape(const Vec2& film) const {
-  const auto unit = [](float x, int size) { return std::clamp(x / float(size), 0.0f, kOneMinusEpsilon); };
+  const auto unit = [](float x, int size) { return limited(x / float(size), 0.0f, kOneMinusEpsilon); };
   return {unit(film.x, m_resolution.x), unit(film.y, m_resolution.y)};
 }
 

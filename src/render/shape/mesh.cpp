@@ -215,7 +215,7 @@ SurfacePoint Mesh::surfacePoint(const Ray& ray, const RawHit& hit) const {
 }
 
 SurfacePoint Mesh::placeOn(uint32_t triangle, const Vec2& barycentric) const {
-  const Face& face = m_faces[triangle];
+  const Face& face = faceOf(triangle);
   const auto& [c0, c1, c2] = face.corners;
   const Vertex &v0 = m_vertices[c0], &v1 = m_vertices[c1], &v2 = m_vertices[c2];
   const float b1 = barycentric.x, b2 = barycentric.y, b0 = 1 - b1 - b2;
@@ -239,7 +239,7 @@ SurfacePoint Mesh::placeOn(uint32_t triangle, const Vec2& barycentric) const {
 
 SurfacePoint Mesh::pointOn(uint32_t triangle, const Vec2& barycentric) const {
   SurfacePoint at = placeOn(triangle, barycentric);
-  const Face& face = m_faces[triangle];
+  const Face& face = faceOf(triangle);
   at.pError = isLarge(triangle) ? preciseError(face.magnitude) : positionError(face.magnitude);
   at.shading = CoordinateFrame(at.shading.n);
   if (tangents()) findTangents(at, face.corners);
@@ -278,6 +278,7 @@ uint32_t Mesh::drawTriangle(Vec2& u) const {
     for (const float end : ends) triangle += size_t(end <= u.x);
   else
     triangle = size_t(std::upper_bound(ends.begin(), ends.end(), u.x) - ends.begin());
+  assert(triangle < m_faces.size());
   const float begin = m_cdf[triangle];
   u.x = std::min((u.x - begin) / (m_cdf[triangle + 1] - begin), kOneMinusEpsilon);
   return uint32_t(triangle);
@@ -289,7 +290,7 @@ Mesh::Draw Mesh::drawOverArea(Vec2 u) const {
 }
 
 std::array<Vec3, 3> Mesh::corners(uint32_t triangle) const {
-  const auto& [c0, c1, c2] = m_faces[triangle].corners;
+  const auto& [c0, c1, c2] = faceOf(triangle).corners;
   return {m_vertices[c0].position, m_vertices[c1].position, m_vertices[c2].position};
 }
 
@@ -323,7 +324,7 @@ float Mesh::pdf(const Vec3& ref, const SurfacePoint& at) const {
 PrimitiveExtent Mesh::extent(uint32_t triangle) const {
   PrimitiveExtent result;
   result.area = triangleArea(triangle);
-  const Triangle& corners = m_faces[triangle].corners;
+  const Triangle& corners = faceOf(triangle).corners;
   result.min = result.max = m_vertices[corners[0]].position;
   for (const uint32_t vertex : corners)
     for (int i = 0; i < 3; ++i) {
@@ -365,7 +366,7 @@ std::optional<Rgb> Mesh::attribute(const std::string& name, const SurfacePoint& 
     return found->channels == 3 ? Rgb(v[0], v[1], v[2]) : Rgb(v[0]);
   };
   if (found->ofFaces()) return valueOf(at.primitive);
-  const auto& [c0, c1, c2] = m_faces[at.primitive].corners;
+  const auto& [c0, c1, c2] = faceOf(at.primitive).corners;
   const Vec2& b = at.barycentric;
   return valueOf(c0) * (1 - b.x - b.y) + valueOf(c1) * b.x + valueOf(c2) * b.y;
 }

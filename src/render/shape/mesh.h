@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <cassert>
 #include <optional>
 #include <string>
 #include <vector>
@@ -74,7 +75,7 @@ class Mesh final : public Shape {
   bool isLarge(uint32_t triangle) const { return !m_isLarge.empty() && m_isLarge[triangle]; }
   // Whether all over each triangle the shading normal is the geometric one, but for rounding.
   bool isFlat() const;
-  float triangleArea(uint32_t triangle) const { return m_faces[triangle].area; }
+  float triangleArea(uint32_t triangle) const { return faceOf(triangle).area; }
   // The point with barycentric coordinates (b1, b2) on a triangle, in the space of the mesh. dpdu
   // and dpdv stay zero, and the shading frame is any about its normal, if the BSDF does not ask for more.
   SurfacePoint pointOn(uint32_t triangle, const Vec2& barycentric) const;
@@ -102,6 +103,10 @@ class Mesh final : public Shape {
   };
 
   Mesh(MeshData data, const MeshOptions& options);
+  const Face& faceOf(uint32_t triangle) const {
+    assert(triangle < m_faces.size());
+    return m_faces[triangle];
+  }
   const MeshAttribute* findAttribute(const std::string& name) const;
   Draw drawOverArea(Vec2 u) const;  // as drawTriangle()
   // The longest side of a triangle's box.

@@ -30,8 +30,9 @@ void MeshPoints::add(const Hit& hit, const Ray& ray, Vertex& vertex) {
     return;
   }
   const size_t i = m_count++;
+  assert(i < kLanes);
   const Mesh& mesh = *hit.shape->mesh();
-  const Mesh::Face& face = mesh.m_faces[hit.raw.primitive];
+  const Mesh::Face& face = mesh.faceOf(hit.raw.primitive);
   m_faces[i] = &face;
   for (size_t corner = 0; corner < 3; ++corner) m_corners[corner][i] = &mesh.m_vertices[face.corners[corner]];
   m_hits[i] = &hit;

@@ -138,7 +138,7 @@ double SdfGrid::value(const Vec3d& p) const {
   uint32_t first[3];
   double share[3];
   for (int axis = 0; axis < 3; ++axis) {
-    const double clamped = std::clamp(p[axis], 0.0, m_grid.size[axis] - 1.0);
+    const double clamped = limited(p[axis], 0.0, m_grid.size[axis] - 1.0);
     first[axis] = std::min(uint32_t(clamped), m_grid.size[axis] - 2);
     share[axis] = clamped - first[axis];
   }
@@ -171,7 +171,7 @@ Vec3d SdfGrid::smoothNormal(const Vec3d& p) const {
     Cell cell;
     double weight = 1;
     for (int axis = 0; axis < 3; ++axis) {
-      const double middle = std::clamp(std::round(p[axis]), 0.0, m_grid.size[axis] - 1.0);
+      const double middle = limited(std::round(p[axis]), 0.0, m_grid.size[axis] - 1.0);
       const bool hasLow = middle >= 1, hasHigh = middle + 1 < m_grid.size[axis];
       const double share = !hasLow ? 1 : !hasHigh ? 0 : p[axis] - middle + 0.5;
       const bool high = (i >> axis & 1) != 0;
