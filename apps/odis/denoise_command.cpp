@@ -94,7 +94,9 @@ DenoiserImages imagesOf(const DenoiseArguments& a, const LayeredImage& image) {
   return images;
 }
 
+// A layer of one channel becomes one of three.
 void setLayer(LayeredImage& image, const std::string& prefix, const std::vector<render::Rgb>& pixels) {
+  image.channels.erase(prefix + "Y");
   for (int c = 0; c < 3; ++c) {
     std::vector<float>& plane = image.channels[prefix + "RGB"[c]];
     plane.clear();

@@ -127,6 +127,19 @@ TEST_F(Denoising, KeepsOtherChannels) {
   EXPECT_TRUE(exists("out.png"));
 }
 
+TEST_F(Denoising, MakesThreeChannelsOfOne) {
+  ODIS_NEEDS_DENOISER();
+  std::vector<float> grey;
+  for (int i = 0; i < 96; ++i) grey.push_back(float(i % 7));
+  odis::render::writeExr(file("in.exr").string(), {12, 8, 0, 0, 12, 8}, {{"Y", grey.data()}}, {});
+  ASSERT_EQ(run("denoise in.exr -q -o out.exr").code, 0);
+  const ExrFile out = image("out.exr");
+  EXPECT_EQ(out.channels.count("Y"), 0u);
+  EXPECT_EQ(out.channels.at("noisy.R"), grey);
+  EXPECT_NE(out.channels.at("R"), grey);
+  EXPECT_EQ(out.channels.at("R"), out.channels.at("B"));
+}
+
 TEST_F(Denoising, ComparisonsMeasureBoth) {
   ODIS_NEEDS_DENOISER();
   const std::string compare =

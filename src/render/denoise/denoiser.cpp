@@ -7,6 +7,9 @@
 #include <memory>
 #include <stdexcept>
 
+#include "render/denoise/color_range.h"
+#include "render/denoise/margin.h"
+
 namespace odis::render {
 
 namespace {
@@ -15,15 +18,6 @@ constexpr int kOldestVersion = 10400;  // two digits each of major, minor and pa
 
 float clampFinite(float value, float least, float most) {
   return std::isfinite(value) ? std::clamp(value, least, most) : 0.0f;
-}
-
-// The images as the denoiser wants them.
-std::vector<Rgb> cleanColors(std::span<const Rgb> colors) {
-  std::vector<Rgb> clean(colors.begin(), colors.end());
-  for (Rgb& color : clean)
-    color = isFinite(color) ? Rgb(std::max(color.x, 0.0f), std::max(color.y, 0.0f), std::max(color.z, 0.0f))
-                            : Rgb(0, 0, 0);
-  return clean;
 }
 
 // In the 16 bits that files hold, so that an image and its file are denoised alike.
@@ -58,7 +52,7 @@ struct Monitor {
 // One filter of the library, which is made, run and released.
 class Filter {
  public:
-  Filter(const OidnLibrary& oidn, OidnDevice* device, const DenoiserInput& size)
+  Filter(const OidnLibrary& oidn, OidnDevice* device, const Margin& size)
       : m_oidn(oidn), m_filter(oidn.newFilter(device, "RT")), m_size(size) {
     m_oidn.setFilterInt(m_filter, "maxMemoryMB", kDenoiserMegabytes);
   }
@@ -69,8 +63,8 @@ class Filter {
   template <typename Vector>
   void image(const char* name, std::vector<Vector>& pixels) {
     if (pixels.empty()) return;
-    m_oidn.setSharedFilterImage(m_filter, name, pixels.data(), kOidnFloat3, size_t(m_size.width),
-                                size_t(m_size.height), 0, sizeof(Vector), 0);
+    m_oidn.setSharedFilterImage(m_filter, name, pixels.data(), kOidnFloat3, size_t(m_size.width()),
+                                size_t(m_size.height()), 0, sizeof(Vector), 0);
   }
   void flag(const char* name, bool value) { m_oidn.setFilterBool(m_filter, name, value); }
   void run(Monitor& monitor) {
@@ -83,7 +77,7 @@ class Filter {
  private:
   const OidnLibrary& m_oidn;
   OidnFilter* m_filter;
-  const DenoiserInput& m_size;
+  const Margin& m_size;
 };
 
 void requireSizes(const DenoiserInput& input) {
@@ -131,11 +125,13 @@ void Denoiser::fail(const char* message) const {
 std::optional<std::vector<Rgb>> Denoiser::denoise(const DenoiserInput& input, Auxiliaries auxiliaries,
                                                   Progress& progress) const {
   requireSizes(input);
-  std::vector<Rgb> color = cleanColors(input.color);
+  const ColorRange range(input.color, input.width);
+  const Margin margin(input.width, input.height);
+  std::vector<Rgb> color = margin.add(range.colors());
   std::vector<Vec3> albedo, normal;
   if (auxiliaries != Auxiliaries::none) {
-    albedo = cleanFeatures(input.albedo, 0);
-    normal = cleanFeatures(input.normal, -1);
+    albedo = margin.add(cleanFeatures(input.albedo, 0));
+    normal = margin.add(cleanFeatures(input.normal, -1));
   }
   const bool prefiltered = auxiliaries == Auxiliaries::prefiltered && usesBoth(input);
   Monitor monitor{progress, color.size()};
@@ -152,14 +148,14 @@ std::optional<std::vector<Rgb>> Denoiser::denoise(const DenoiserInput& input, Au
     return true;
   };
   const auto prefilter = [&](const char* name, std::vector<Vec3>& pixels) {
-    Filter filter(m_oidn, m_device, input);
+    Filter filter(m_oidn, m_device, margin);
     filter.image(name, pixels);
     filter.image("output", pixels);
     return run(filter);
   };
   if (prefiltered && (!prefilter("albedo", albedo) || !prefilter("normal", normal))) return {};
 
-  Filter filter(m_oidn, m_device, input);
+  Filter filter(m_oidn, m_device, margin);
   filter.image("color", color);
   filter.image("albedo", albedo);
   filter.image("normal", normal);
@@ -168,6 +164,8 @@ std::optional<std::vector<Rgb>> Denoiser::denoise(const DenoiserInput& input, Au
   filter.flag("cleanAux", prefiltered || (auxiliaries == Auxiliaries::clean && usesBoth(input)));
   if (!run(filter)) return {};
   progress.end();
+  color = margin.remove(std::move(color));
+  range.restore(color);
   return color;
 }
 

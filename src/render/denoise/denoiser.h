@@ -44,8 +44,8 @@ class Denoiser {
   const std::string& name() const { return m_name; }
 
   // The denoised colours; nothing if progress was cancelled. Colours that are not finite count as black,
-  // negative ones as 0; what of the auxiliaries is out of range is clamped. The same input gives the same
-  // bits for any number of threads. Throws DenoiserError.
+  // negative ones as 0, others as ColorRange says; what of the auxiliaries is out of range is clamped. The
+  // same input gives the same bits for any number of threads. Throws DenoiserError.
   std::optional<std::vector<Rgb>> denoise(const DenoiserInput& input, Auxiliaries auxiliaries,
                                           Progress& progress) const;
 
