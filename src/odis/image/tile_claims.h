@@ -23,7 +23,7 @@ struct SamplesDue {
 // claimed at once.
 class TileClaims {
  public:
-  void begin(const SamplesDue& due) { m_due = due, m_count = 0, m_isClaimed = {}; }
+  void begin(const SamplesDue& due) { m_due = due, m_count = 0, m_areInOrder = false, m_isClaimed = {}; }
   // Lets go of memory once all samples are in.
   void end() { m_isClaimed = {}; }
 
@@ -31,7 +31,8 @@ class TileClaims {
   // already. Where that is not `count`, none is claimed.
   template <class SlotAt>
   size_t claim(size_t count, const SlotAt& slotAt) {
-    if (m_count == 0 && areAll(count, slotAt)) {
+    m_areInOrder = m_count == 0 && areAll(count, slotAt);
+    if (m_areInOrder) {
       m_isClaimed = {};
       m_count = count;
       return count;
@@ -52,6 +53,8 @@ class TileClaims {
   }
 
   const SamplesDue& due() const { return m_due; }
+  // Whether the last call of claim() claimed all samples, those of a pixel in ascending order.
+  bool areInOrder() const { return m_areInOrder; }
   uint64_t bytes() const { return m_isClaimed.capacity() / 8; }
 
  private:
@@ -80,6 +83,7 @@ class TileClaims {
   }
 
   SamplesDue m_due;
+  bool m_areInOrder = false;
   uint64_t m_count = 0;           // of claimed samples
   std::vector<bool> m_isClaimed;  // [place][number]; empty: none is, or all are
 };

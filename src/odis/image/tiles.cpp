@@ -317,13 +317,16 @@ TileCollector::LeftOut TileCollector::endPass() {
 
 void TileCollector::handOn(uint32_t tile, ArrayView<const FrameSample> samples, TileVertices& vertices) {
   // Sums over a pixel depend on the order of its own samples alone.
-  uint32_t next[kTileSize * kTileSize] = {};
-  bool inOrder = true;
-  uint32_t pixel = ~0u, place = 0;
-  for (const FrameSample& s : samples) {
-    if (s.pixel != pixel) place = placeInTile(pixel = s.pixel);
-    inOrder = inOrder && s.sample >= next[place];
-    next[place] = s.sample + 1;
+  bool inOrder = m_tiles[tile].claims.areInOrder();
+  if (!inOrder) {
+    uint32_t next[kTileSize * kTileSize] = {};
+    uint32_t pixel = ~0u, place = 0;
+    inOrder = true;
+    for (const FrameSample& s : samples) {
+      if (s.pixel != pixel) place = placeInTile(pixel = s.pixel);
+      inOrder = inOrder && s.sample >= next[place];
+      next[place] = s.sample + 1;
+    }
   }
   std::vector<FrameSample> orderedSamples;
   if (!inOrder) {
