@@ -42,13 +42,13 @@ void Frame::Data::settleRefinement() {
   if (options.guidedCost > 0 && ownsBuilder && predicted && !nextRefinementPays()) schedule.endRefinement();
 }
 
-// Whether the first guided samples, compared with the pilot's, were not worth their time.
+// Whether the first guided samples, compared with the pilot's, were clearly not worth their time.
 bool Frame::Data::guidingDoesNotPay() {
   if (!options.guided || options.oracleSamples > 0 || options.guidedCost == 0) return false;
   if (done > 0 || end >= schedule.mostRemaining()) return false;
-  const std::optional<double> ratio = guidedOverUnguided(*tasks, pilot, later, options.width);
-  if (ratio) measuredCostRatio = *ratio * options.guidedCost;
-  return ratio && measuredCostRatio > 1;
+  const std::optional<GuidingGain> gain = guidedOverUnguided(*tasks, pilot, later, options.width);
+  if (gain) measuredCostRatio = gain->ratio * options.guidedCost;
+  return gain && guidingIsWorse(*gain, options.guidedCost);
 }
 
 // Goes on without a guide. No sample's weight changes, nor how many there are: only samples that are still to

@@ -17,6 +17,8 @@ constexpr double kLeastSaving = 0.1;
 
 constexpr size_t kLeastPixels = 2048;
 constexpr double kLeftOut = 0.001;
+// Standard errors that leave one chance in a hundred of being wrong.
+constexpr double kCertainErrors = 2.326;
 // Pixels' values are means over blocks of this side; a share of the image's mean is added, so that nothing is
 // divided by almost nothing.
 constexpr uint32_t kPixelBlock = 8;
@@ -53,6 +55,13 @@ struct GuidedImage {
   }
 };
 
+// The product of the distances of two kinds' mean samples from a colour.
+double meanProduct(const PixelSums& a, const PixelSums& b, const Color& from) {
+  double sum = 0;
+  for (int c = 0; c < 3; ++c) sum += (a.sum[c] / a.count - from[c]) * (b.sum[c] / b.count - from[c]);
+  return sum;
+}
+
 // The mean square of the distance of a pixel's samples from a colour.
 double meanSquare(const PixelSums& s, const Color& from) {
   double sum = 0;
@@ -61,31 +70,33 @@ double meanSquare(const PixelSums& s, const Color& from) {
   return std::max(sum, 0.0);
 }
 
-double trimmedSum(std::vector<double>& values) {
-  const auto end = values.end() - std::ptrdiff_t(kLeftOut * double(values.size()));
-  if (end != values.end()) std::nth_element(values.begin(), end, values.end());
-  double sum = 0;
-  for (auto v = values.begin(); v != end; ++v) sum += *v;
-  return sum;
-}
+// What a pixel's samples of both kinds say: the squares of their distances from what is around, and the
+// product of the two kinds' mean distances. Of independent samples that is what the mean around is off by.
+struct PixelDistances {
+  uint32_t block;
+  double squares[2];  // of the unguided ones and of the guided ones
+  double product;
+};
 
-// Samples of two kinds: the unguided ones and the guided ones.
+// Pixels with samples of both kinds: the unguided ones and the guided ones.
 struct Kinds {
-  std::vector<double> squares[2];  // of the distances of each pixel's samples from what is around
+  std::vector<PixelDistances> pixels;
   double rays[2] = {}, counts[2] = {};
 
   void append(const Kinds& more) {
+    pixels.insert(pixels.end(), more.pixels.begin(), more.pixels.end());
     for (int k = 0; k < 2; ++k) {
-      squares[k].insert(squares[k].end(), more.squares[k].begin(), more.squares[k].end());
       rays[k] += more.rays[k];
       counts[k] += more.counts[k];
     }
   }
+  double raysPerSample(int kind) const { return rays[kind] / counts[kind]; }
 };
 
 // Compares the samples of a row of the image. `least` is added to the pixels' values.
 Kinds compareRow(ArrayView<const PixelSums> unguided, const GuidedImage& samples, uint32_t y, double least) {
   Kinds result;
+  const uint32_t blocks = (samples.width + kPixelBlock - 1) / kPixelBlock;
   for (uint32_t x = 0; x < samples.width; ++x) {
     const size_t i = size_t(y) * samples.width + x;
     const PixelSums* kinds[] = {&unguided[i], &samples.pixels[i]};
@@ -97,19 +108,62 @@ Kinds compareRow(ArrayView<const PixelSums> unguided, const GuidedImage& samples
     if (nearCount == 0 || blockCount == 0) continue;
     for (double& channel : near) channel /= double(nearCount);
     const double value = std::max(grayOf(block) / double(blockCount), 0.0) + least;
+    PixelDistances pixel{y / kPixelBlock * blocks + x / kPixelBlock, {}, 0};
     for (int k = 0; k < 2; ++k) {
-      result.squares[k].push_back(meanSquare(*kinds[k], near) / (value * value));
+      pixel.squares[k] = meanSquare(*kinds[k], near) / (value * value);
       result.rays[k] += kinds[k]->rays;
       result.counts[k] += kinds[k]->count;
     }
+    pixel.product = meanProduct(*kinds[0], *kinds[1], near) / (value * value);
+    result.pixels.push_back(pixel);
   }
   return result;
 }
 
+// The greatest of the squares that count.
+double greatestSquare(const Kinds& kinds, int kind) {
+  std::vector<double> squares;
+  for (const PixelDistances& pixel : kinds.pixels) squares.push_back(pixel.squares[kind]);
+  const size_t last = squares.size() - 1 - size_t(kLeftOut * double(squares.size()));
+  std::nth_element(squares.begin(), squares.begin() + std::ptrdiff_t(last), squares.end());
+  return squares[last];
+}
+
+// Sums of variances over the pixels of each block.
+using BlockVariances = std::vector<std::array<double, 2>>;
+BlockVariances variancesOfBlocks(const Kinds& kinds, size_t blockCount) {
+  const double most[2] = {greatestSquare(kinds, 0), greatestSquare(kinds, 1)};
+  BlockVariances blocks(blockCount);
+  for (const PixelDistances& pixel : kinds.pixels) {
+    const bool counts[2] = {pixel.squares[0] <= most[0], pixel.squares[1] <= most[1]};
+    for (size_t k = 0; k < 2; ++k) {
+      if (counts[k]) blocks[pixel.block][k] += pixel.squares[k];
+      if (counts[0] && counts[1]) blocks[pixel.block][k] -= pixel.product;
+    }
+  }
+  return blocks;
+}
+
+// The ratio of the sums of second variances to first ones, and its standard error: by how much it would
+// change with each block, to first order.
+std::optional<GuidingGain> ratioOf(const BlockVariances& blocks) {
+  double sums[2] = {};
+  for (const auto& block : blocks)
+    for (size_t k = 0; k < 2; ++k) sums[k] += block[k];
+  if (!(sums[0] > 0)) return {};
+  const double ratio = sums[1] / sums[0];
+  double squares = 0;
+  for (const auto& block : blocks) {
+    const double residual = block[1] - ratio * block[0];
+    squares += residual * residual;
+  }
+  return GuidingGain{ratio, std::sqrt(squares) / sums[0]};
+}
+
 }  // namespace
 
-std::optional<double> guidedOverUnguided(const Tasks& tasks, ArrayView<const PixelSums> unguided,
-                                         ArrayView<const PixelSums> guided, uint32_t width) {
+std::optional<GuidingGain> guidedOverUnguided(const Tasks& tasks, ArrayView<const PixelSums> unguided,
+                                              ArrayView<const PixelSums> guided, uint32_t width) {
   const GuidedImage samples{guided, width, uint32_t(guided.size() / width)};
   Color sum{};
   uint64_t count = 0;
@@ -124,10 +178,17 @@ std::optional<double> guidedOverUnguided(const Tasks& tasks, ArrayView<const Pix
   tasks.forEach(rows.size(), [&](size_t y) { rows[y] = compareRow(unguided, samples, uint32_t(y), least); });
   Kinds all;
   for (const Kinds& row : rows) all.append(row);
-  if (all.squares[0].size() < kLeastPixels || !(all.rays[0] > 0)) return {};
-  const double before = trimmedSum(all.squares[0]) * all.rays[0] / all.counts[0];
-  if (!(before > 0)) return {};
-  return trimmedSum(all.squares[1]) * all.rays[1] / all.counts[1] / before;
+  if (all.pixels.size() < kLeastPixels || !(all.rays[0] > 0)) return {};
+  const auto blocksAlong = [](uint32_t pixels) { return (pixels + kPixelBlock - 1) / kPixelBlock; };
+  const size_t blockCount = size_t(blocksAlong(width)) * blocksAlong(samples.height);
+  const std::optional<GuidingGain> gain = ratioOf(variancesOfBlocks(all, blockCount));
+  if (!gain) return {};
+  const double rays = all.raysPerSample(1) / all.raysPerSample(0);
+  return GuidingGain{gain->ratio * rays, gain->standardError * rays};
+}
+
+bool guidingIsWorse(const GuidingGain& gain, double guidedCost) {
+  return guidedCost * (gain.ratio - kCertainErrors * gain.standardError) > 1;
 }
 
 bool refinementPays(const PossibleRefinement& p) {
