@@ -1,6 +1,12 @@
 // Nested cells in world space: cubes of doubling size, each split by the dominant axis of the surface
 // normal. A cell is named by a key of 64 bits: three coordinates of 19 bits, the axis, the level.
+//
+// Up to the grid's reach all cells of a level have the same size. Beyond it they lie in rings, each twice as
+// far out as the one before and made of cells twice as large, so that a horizon needs few of them. The number
+// of the ring, times kRingStride >> level, is added to the first coordinate.
 #pragma once
+
+#include <cstring>
 
 #include "odis/number.h"
 #include "odis/view.h"
@@ -16,32 +22,53 @@ inline constexpr int kCellLevels = ODIS_CELL_LEVELS;
 class CellGrid {
  public:
   CellGrid() = default;
-  CellGrid(const Float3& origin, float finestEdge) : m_origin(origin), m_inverseEdge(1 / finestEdge) {}
+  // `reach` in edges of the finest cells, from the point that lies half of it from the origin along each
+  // axis: kLeastReach to kMostReach; 0 if there is no end of it.
+  CellGrid(const Float3& origin, float finestEdge, float reach = 0)
+      : m_origin(origin), m_inverseEdge(1 / finestEdge), m_inverseReach(reach > 0 ? 1 / reach : 0) {}
   ODIS_HOST_DEVICE explicit CellGrid(const OdisCellGrid& grid)
-      : m_origin(grid.origin), m_inverseEdge(grid.inverseEdge) {}
-  OdisCellGrid flat() const { return {m_origin, m_inverseEdge}; }
+      : m_origin(grid.origin), m_inverseEdge(grid.inverseEdge), m_inverseReach(grid.inverseReach) {}
+  OdisCellGrid flat() const { return {m_origin, m_inverseEdge, m_inverseReach}; }
   bool operator==(const CellGrid& other) const {
     return m_origin.x == other.m_origin.x && m_origin.y == other.m_origin.y &&
-           m_origin.z == other.m_origin.z && m_inverseEdge == other.m_inverseEdge;
+           m_origin.z == other.m_origin.z && m_inverseEdge == other.m_inverseEdge &&
+           m_inverseReach == other.m_inverseReach;
   }
+  static constexpr float kLeastReach = 8, kMostReach = 640;
   Float3 origin() const { return m_origin; }
   float finestEdge() const { return 1 / m_inverseEdge; }
+  // The grid with cells so many times as large, out to the same place.
+  CellGrid coarser(int times) const {
+    const float reach = m_inverseReach > 0 ? max(1 / m_inverseReach / float(times), kLeastReach) : 0;
+    return CellGrid(m_origin, float(times) * finestEdge(), reach);
+  }
 
   ODIS_HOST_DEVICE uint64_t key(const Float3& position, const Float3& normal, int level) const {
     assert(isIndex(level, kCellLevels));
     const Float3 local = (position - m_origin) * m_inverseEdge;
-    return pack(coordinate(local.x) >> level, coordinate(local.y) >> level, coordinate(local.z) >> level,
+    const int ring = ringAround(local);
+    const float scale = powerOfTwo(-exponentOf(ring));
+    const float limit = m_inverseReach > 0 ? float(kRingStride / 2 - 1) : float(kMiddle - 1);
+    return pack((coordinate(local.x * scale, limit) + ring * kRingStride) >> level,
+                coordinate(local.y * scale, limit) >> level, coordinate(local.z * scale, limit) >> level,
                 dominantAxis(normal), level);
+  }
+
+  // The edge of a cell's cube.
+  ODIS_HOST_DEVICE float edge(uint64_t key) const {
+    return powerOfTwo(levelOf(key) + exponentOf(ringOf(key))) / m_inverseEdge;
   }
 
   // The middle of a cell's cube.
   Float3 middle(uint64_t key) const {
-    const float edge = float(1 << levelOf(key)) / m_inverseEdge;
-    const auto along = [&](int shift) { return (float(unpacked(key, shift)) + 0.5f) * edge; };
-    return m_origin + Float3{along(0), along(kBits), along(2 * kBits)};
+    const float edge = this->edge(key);
+    const int x = unpacked(key, 0) - (ringOf(key) * kRingStride >> levelOf(key));
+    return m_origin + Float3{float(x) + 0.5f, float(unpacked(key, kBits)) + 0.5f,
+                             float(unpacked(key, 2 * kBits)) + 0.5f} *
+                          edge;
   }
 
-  // The key of the cell of the same level that lies (x, y, z) cells away.
+  // The key of the cell of the same level that lies (x, y, z) cells away, as if rings had no end.
   static uint64_t neighbour(uint64_t key, int x, int y, int z) {
     return pack(unpacked(key, 0) + x, unpacked(key, kBits) + y, unpacked(key, 2 * kBits) + z, axisOf(key),
                 levelOf(key));
@@ -57,13 +84,40 @@ class CellGrid {
  private:
   static constexpr int kBits = 19, kMiddle = 1 << (kBits - 1);
   static constexpr uint64_t kMask = (uint64_t(1) << kBits) - 1;
+  // Coordinates of all rings stay below half a stride, and those of the outermost one within 19 bits.
+  static constexpr int kRingBits = 11, kRingStride = 1 << kRingBits, kMostRing = 120;
+  // The cells of the first ring are so many powers of two larger than those within reach.
+  static constexpr int kRingExponent = 2;
 
-  // Rounds down. Positions are clamped to 2^18 cells either side of the origin, which only merges what is
-  // absurdly far away; what is not a number lies at the lower end.
-  ODIS_HOST_DEVICE static int coordinate(float x) {
-    constexpr float kLimit = kMiddle - 1;
-    x = x > -kLimit ? x : -kLimit;
-    x = x < kLimit ? x : kLimit;
+  ODIS_HOST_DEVICE static int exponentOf(int ring) { return ring > 0 ? ring + kRingExponent : 0; }
+  // Of an exponent of normal numbers.
+  ODIS_HOST_DEVICE static float powerOfTwo(int exponent) {
+    const uint32_t bits = uint32_t(exponent + 127) << 23;
+    float result;
+    std::memcpy(&result, &bits, sizeof(result));
+    return result;
+  }
+  // 0 within reach, 1 up to twice as far, 2 up to four times as far, and so on.
+  ODIS_HOST_DEVICE int ringAround(const Float3& local) const {
+    const auto along = [this](float x) { return abs(x * m_inverseReach - 0.5f); };
+    const float most = powerOfTwo(kMostRing - 1);
+    float distance = max(max(along(local.x), along(local.y)), along(local.z));
+    distance = distance < most ? distance : most;
+    uint32_t bits;
+    std::memcpy(&bits, &distance, sizeof(bits));
+    return max(int(bits >> 23) - 126, 0);
+  }
+  ODIS_HOST_DEVICE int ringOf(uint64_t key) const {
+    const int level = levelOf(key) & 3;
+    const int ring = (unpacked(key, 0) + (kRingStride / 2 >> level)) >> (kRingBits - level);
+    return m_inverseReach > 0 ? min(max(ring, 0), kMostRing) : 0;
+  }
+
+  // Rounds down. Numbers are clamped to the limit either side of 0, which only merges what is absurdly far
+  // away; what is not a number lies at the lower end.
+  ODIS_HOST_DEVICE static int coordinate(float x, float limit) {
+    x = x > -limit ? x : -limit;
+    x = x < limit ? x : limit;
     const int towardsZero = int(x);
     return towardsZero - int(x < float(towardsZero));
   }
@@ -87,7 +141,7 @@ class CellGrid {
   }
 
   Float3 m_origin;
-  float m_inverseEdge = 1;
+  float m_inverseEdge = 1, m_inverseReach = 0;
 };
 
 // The slot at which the search for a key begins, before the mask: the finalizer of MurmurHash3.

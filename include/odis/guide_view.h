@@ -194,7 +194,7 @@ ODIS_HOST_DEVICE inline const CachedRadiance* cachedRadiance(const GuideView& vi
   if (!view.cached) return nullptr;
   assert(cell < view.cellCount);
   const CachedRadiance& cached = view.cached[2 * size_t(cell) + pathHalf(place.pixel, place.sample)];
-  const float edge = float(1 << CellGrid::levelOf(view.keys[cell])) / view.grid.inverseEdge;
+  const float edge = CellGrid(view.grid).edge(view.keys[cell]);
   const bool ends = throughput * cached.error < view.rules.cachedError &&
                     footprint >= view.rules.leastCachedFootprint * edge;
   return ends ? &cached : nullptr;

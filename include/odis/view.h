@@ -6,7 +6,7 @@
 #include "odis/structs.h"
 
 // Counts up when a field changes its meaning; what is added comes at the end.
-#define ODIS_GUIDE_VIEW_VERSION 1
+#define ODIS_GUIDE_VIEW_VERSION 2
 
 // Where a look-up is made, and for which sample of which pixel, counted as in the frame.
 typedef struct OdisPlace {
@@ -22,10 +22,12 @@ typedef struct OdisMapSample {
   float pdf ODIS_DEFAULT(0);
 } OdisMapSample;
 
-// Where the cells lie: the first corner of the first cell, and 1 / edge of the finest.
+// Where the cells lie: the first corner of the first cell, 1 / edge of the finest, and 1 / the number of them
+// up to which they are all the same size, 0 if they are everywhere (odis/cell_grid.h).
 typedef struct OdisCellGrid {
   OdisFloat3 origin;
   float inverseEdge ODIS_DEFAULT(1);
+  float inverseReach ODIS_DEFAULT(0);
 } OdisCellGrid;
 
 // A slot of the hash table from keys of cells (odis/cell_grid.h) to their numbers; ODIS_NO_CELL marks a free

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "odis/cells/place_grid.h"
 #include "odis/cells/statistics.h"
 #include "odis/cells/surroundings.h"
 #include "odis/maps/pack.h"
@@ -159,7 +160,7 @@ void GuideBuilder::setBounds(const Float3& lower, const Float3& upper) {
   if (!(extent.x >= 0 && extent.y >= 0 && extent.z >= 0 && std::isfinite(dot(extent, extent))))
     throw std::invalid_argument("odisSetBounds: expected finite numbers, lower <= upper");
   const CellGrid grid = gridAround(lower, extent, m_data->options.cellsPerDiagonal);
-  m_data->store.move(CellGrid(grid.origin(), float(coarsening()) * grid.finestEdge()));
+  m_data->store.move(grid.coarser(coarsening()));
 }
 
 const GuideOptions& GuideBuilder::options() const {

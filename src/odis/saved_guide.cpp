@@ -1,6 +1,7 @@
 // Guides and builders written to a file and read again.
 #include <cmath>
 
+#include "odis/cells/saved_grid.h"
 #include "odis/files/archive.h"
 #include "odis/guide_data.h"
 #include "odis/maps/pack.h"
@@ -30,19 +31,13 @@ bool isSound(std::span<const float> table, bool known) {
   return table.back() <= 1;
 }
 
-void checkGrid(const Archive& file, const OdisCellGrid& grid) {
-  file.require(std::isfinite(grid.origin.x + grid.origin.y + grid.origin.z) && grid.inverseEdge > 0 &&
-                   std::isfinite(grid.inverseEdge),
-               "the grid is damaged");
-}
-
 }  // namespace
 
 void Guide::save(ArchiveWriter& file) const {
   file.addValue("guide.built", uint8_t(m_data != nullptr));
   if (!m_data) return;
   const size_t cells = m_data->decisions.size();
-  file.addValue("guide.grid", m_data->grid.flat());
+  saveGrid(file, "guide.grid", m_data->grid.flat());
   file.add("guide.keys", m_data->keys);
   file.add("guide.texels", std::span<const uint16_t>(m_data->texels.data(), cells * kMapTexels));
   file.add("guide.decisions", m_data->decisions);
@@ -59,15 +54,13 @@ void Guide::save(ArchiveWriter& file) const {
 Guide Guide::load(const Archive& file) {
   Guide guide;
   if (!file.value<uint8_t>("guide.built")) return guide;
-  const OdisCellGrid grid = file.value<OdisCellGrid>("guide.grid");
-  checkGrid(file, grid);
   const std::vector<uint64_t> keys = file.get<uint64_t>("guide.keys");
   const std::vector<uint16_t> texels = file.get<uint16_t>("guide.texels", keys.size() * kMapTexels);
   file.require(std::find(texels.begin(), texels.end(), uint16_t(0)) == texels.end(),
                "guide.texels: a direction is impossible");
   guide.m_data = std::make_shared<Data>(keys.size());
   Data& data = *guide.m_data;
-  data.grid = CellGrid(grid);
+  data.grid = CellGrid(loadGrid(file, "guide.grid"));
   data.keys = keys;
   // Guides without maps at pixels may lack what belongs to these.
   const bool pixels = file.contains("guide.pixelCells");
@@ -116,7 +109,6 @@ void GuideBuilder::save(ArchiveWriter& file) const {
 }
 
 void GuideBuilder::load(const Archive& file) {
-  checkGrid(file, file.value<OdisCellGrid>("cells.grid"));
   m_data->store.load(file);
 }
 

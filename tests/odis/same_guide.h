@@ -18,7 +18,7 @@ inline ::testing::AssertionResult sameView(const GuideView& a, const GuideView& 
   const auto differ = [](const char* what) { return ::testing::AssertionFailure() << what << " differ"; };
   if (a.version != b.version || a.cellCount != b.cellCount || a.lightGroups != b.lightGroups)
     return differ("versions or sizes");
-  static_assert(sizeof(OdisCellGrid) == 16);  // without gaps
+  static_assert(sizeof(OdisCellGrid) == 20);  // without gaps
   if (!sameBits(&a.grid, &b.grid, 1)) return differ("grids");
   if (!a.slots != !b.slots || (a.slots && a.slotMask != b.slotMask)) return differ("tables' sizes");
   for (uint64_t i = 0; a.slots && i <= a.slotMask; ++i)

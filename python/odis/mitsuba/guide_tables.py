@@ -67,6 +67,10 @@ def grid_box(guide):
     keys = guide.cell_keys
     level = (keys >> np.uint64(60)).astype(np.int64)
     axes = [((keys >> np.uint64(19 * a)) & np.uint64((1 << 19) - 1)).astype(np.int64) - (1 << 18) for a in range(3)]
+    near = axes[0] << level < 1024  # without the rings of larger cells, far out (odis/cell_grid.h)
+    level, axes = level[near], [coordinate[near] for coordinate in axes]
+    if not len(level):
+        return np.zeros(3, np.int64), np.ones(3, np.int64)
     low, high = np.zeros(3, np.int64), np.zeros(3, np.int64)
     finest = level == 0 if (level == 0).any() else level == level.min()
     for a, coordinate in enumerate(axes):

@@ -191,7 +191,8 @@ class Inspector {
       const core::CellStatistics& cell = m_cells[c];
       LevelView& level = m_result.levels.emplace_back();
       level.cell = c;
-      level.edge = m_store.grid().finestEdge() * float(1 << cell.level);
+      const CellGrid& grid = m_store.grid();
+      level.edge = grid.edge(grid.key(m_place.position, m_place.normal, cell.level));
       level.effective = core::effectiveSamples(cell.sum, cell.sumSquares);
       level.own = core::ownWeight(level.effective, m_pilot.guideOptions.priorSamples[cell.level]);
       level.statistics = cell;

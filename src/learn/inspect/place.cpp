@@ -27,7 +27,7 @@ std::string text(const Float3& v) {
   for (const PathVertex& v : pilot)
     if (isUsable(v) && (!nearest || distance(v.position, point) < distance(nearest->position, point)))
       nearest = &v;
-  const float widest = grid.finestEdge() * float(1 << (kCellLevels - 1));
+  const float widest = grid.edge(grid.key(point, {}, kCellLevels - 1));
   throw OptionError(fmt::format(
       "--point: the pilot saw nothing{} in the cells at {}, the widest of which is {:.4g} wide; {}", facing,
       text(point), widest,

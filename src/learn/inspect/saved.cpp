@@ -44,7 +44,7 @@ GuideSummary summarizeGuide(core::Guide guide) {
   for (uint32_t cell = 0; cell < view.cellCount; ++cell) {
     const int level = CellGrid::levelOf(view.keys[cell]);
     ++result.cells[size_t(level)];
-    const float half = 0.5f * result.finestEdge * float(1 << level);
+    const float half = 0.5f * grid.edge(view.keys[cell]);
     const Float3 middle = grid.middle(view.keys[cell]), corner{half, half, half};
     extend(result.bounds, middle - corner);
     extend(result.bounds, middle + corner);
@@ -114,7 +114,7 @@ CellSummary inspectCell(const SavedInspection& saved, const Float3& point,
                                           vectorText(point), normal ? " that faces this way" : "",
                                           boundsWords(saved.guide->bounds)));
   const CellGrid grid(view.grid);
-  result.edge = grid.finestEdge() * float(1 << result.level);
+  result.edge = grid.edge(view.keys[result.cell]);
   result.middle = grid.middle(view.keys[result.cell]);
   result.decisions = view.decisions[result.cell];
   const LearnedLights lights = learnedLights(view, result.cell);

@@ -1,4 +1,5 @@
 // Cells written to a file and read again.
+#include "odis/cells/saved_grid.h"
 #include "odis/cells/statistics.h"
 #include "odis/cells/surroundings.h"
 #include "odis/files/archive.h"
@@ -29,7 +30,7 @@ void forEachColumn(const Body& body) {
 // Coarser levels are sums, which rollUp() forms anew.
 void CellStore::save(ArchiveWriter& file) const {
   file.addValue("cells.placed", uint8_t(m_placed));
-  file.addValue("cells.grid", m_grid.flat());
+  saveGrid(file, "cells.grid", m_grid.flat());
   file.addValue("cells.coarsening", int32_t(m_coarsening));
   file.addValue("cells.leftOut", m_samplesLeftOut);
   file.addValue("cells.counts", m_vertexCounts);
@@ -50,7 +51,7 @@ void CellStore::save(ArchiveWriter& file) const {
 
 void CellStore::load(const Archive& file) {
   m_placed = file.value<uint8_t>("cells.placed") != 0;
-  m_grid = CellGrid(file.value<OdisCellGrid>("cells.grid"));
+  m_grid = CellGrid(loadGrid(file, "cells.grid"));
   m_coarsening = file.value<int32_t>("cells.coarsening");
   m_samplesLeftOut = file.value<uint64_t>("cells.leftOut");
   m_vertexCounts = file.value<VertexCounts>("cells.counts");

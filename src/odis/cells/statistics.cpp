@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numeric>
 
+#include "odis/cells/place_grid.h"
 #include "odis/cells/surroundings.h"
 #include "odis/record/vertex_check.h"
 
@@ -13,7 +14,8 @@ Float3 reaim(const Float3& position, const Float3& wi, float distance, const Flo
   if (!std::isfinite(distance)) return wi;
   const Float3 direction = position + wi * distance - centroid;
   const float squared = dot(direction, direction);
-  return squared > 1e-20f && dot(direction, wi) > 0 ? direction * (1 / std::sqrt(squared)) : wi;
+  const bool usable = squared > 1e-20f && squared < INFINITY && dot(direction, wi) > 0;
+  return usable ? direction * (1 / std::sqrt(squared)) : wi;
 }
 
 CellStore::CellStore(float clamp, bool looksAround, std::shared_ptr<const Tasks> tasks)
@@ -33,41 +35,17 @@ std::vector<uint64_t> CellStore::keys() const {
   return keys;
 }
 
-CellGrid gridAround(const Float3& low, const Float3& extent, int cellsPerDiagonal) {
-  const float diagonal = std::sqrt(dot(extent, extent));
-  const float edge = diagonal > 0 ? diagonal / float(cellsPerDiagonal) : 1.0f;
-  // An odd offset keeps walls at the ends of the extent off the cells' faces.
-  const float offset = 0.37f * edge;
-  return {low - Float3{offset, offset, offset}, edge};
-}
-
-// The grid spans what the pilot saw, not what the scene holds: a huge ground plane must not make the cells
-// huge. A few vertices far out (0.5 % at either end of each axis) don't count.
 void CellStore::place(std::span<BatchSamples* const> batches, int cellsPerDiagonal) {
   size_t count = 0;
   for (const BatchSamples* batch : batches) count += batch->samples.size();
-  std::vector<float> axis[3];
+  std::vector<Float3> positions;
   const size_t step = std::max<size_t>(1, count / 20000);
   size_t next = 0;  // within the batch
   for (const BatchSamples* batch : batches) {
-    for (; next < batch->samples.size(); next += step) {
-      const Float3& p = batch->samples[next].position;
-      axis[0].push_back(p.x);
-      axis[1].push_back(p.y);
-      axis[2].push_back(p.z);
-    }
+    for (; next < batch->samples.size(); next += step) positions.push_back(batch->samples[next].position);
     next -= batch->samples.size();
   }
-  float low[3] = {}, extent[3] = {};
-  for (int a = 0; a < 3 && !axis[a].empty(); ++a) {
-    const auto cut = std::ptrdiff_t(axis[a].size() / 200);
-    const auto first = axis[a].begin() + cut, last = axis[a].end() - 1 - cut;
-    std::nth_element(axis[a].begin(), first, axis[a].end());
-    low[a] = *first;
-    std::nth_element(axis[a].begin(), last, axis[a].end());
-    extent[a] = *last - low[a];
-  }
-  place(gridAround({low[0], low[1], low[2]}, {extent[0], extent[1], extent[2]}, cellsPerDiagonal));
+  place(gridFor(std::move(positions), cellsPerDiagonal));
 }
 
 // Doubles the edges of the cells until there are few enough. Coarser levels add less than half as many.
@@ -81,7 +59,7 @@ bool CellStore::coarsen(std::span<BatchSamples* const> batches) {
       for (const CellSample& s : batch->samples) finest.insert(m_grid.key(s.position, s.normal, 0));
     if (finest.size() + finest.size() / 2 <= m_mostCells) break;
     m_coarsening *= 2;
-    place(CellGrid(m_grid.origin(), 2 * m_grid.finestEdge()));
+    place(m_grid.coarser(2));
   }
   return m_coarsening > before;
 }

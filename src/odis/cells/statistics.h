@@ -91,9 +91,6 @@ void forEachFromCoarse(const Tasks& tasks, std::span<const CellStatistics> cells
     });
 }
 
-// The grid of a box of this extent: its finest cells have an edge of its diagonal / cellsPerDiagonal.
-CellGrid gridAround(const Float3& low, const Float3& extent, int cellsPerDiagonal);
-
 // The cells at every level. A coarser cell's statistics are the sums of its children's, formed by `rollUp`.
 class CellStore {
  public:
