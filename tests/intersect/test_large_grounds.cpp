@@ -179,5 +179,23 @@ TEST(LargeGrounds, ShadowsReachTheFootOfThings) {
       }
 }
 
+// In single precision the centre would be .004 off.
+TEST(LargeGrounds, FilesPlaceSpheresPrecisely) {
+  const std::string radius = "<float name=\"radius\" value=\"100000\"/>";
+  for (const std::string& place :
+       {std::string("<transform name=\"to_world\"><translate y=\"-100000\"/><rotate z=\"1\" angle=\"30\"/>"
+                    "</transform>"),
+        std::string("<point name=\"center\" x=\"50000\" y=\"-86602.540378443865\" z=\"0\"/>")}) {
+    const TemporaryFile file("scene.xml", "<scene version=\"3.0.0\"><shape type=\"sphere\">" + radius +
+                                              place + "</shape></scene>");
+    Warnings warnings;
+    const auto scene = Scene::load(file.path(), {}, warnings);
+    const Vec3 up(-0.5f, 0.8660254f, 0);
+    SurfacePoint at;
+    ASSERT_TRUE(scene->intersect({up, -up}, at));
+    EXPECT_LT(length(at.p), 1e-6f);
+  }
+}
+
 }  // namespace
 }  // namespace odis::test

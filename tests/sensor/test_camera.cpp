@@ -93,7 +93,7 @@ TEST(Perspective, StandsAndMirrorsInTheWorld) {
   Matrix4 toWorld;
   toWorld[0][0] = -1;  // mirrored in x
   toWorld[3][1] = 7;
-  set(node, "to_world", toWorld);
+  set(node, "to_world", Imath::M44d(toWorld));
   Warnings warnings;
   const Ray ray = sensorOf(node, kWide, warnings)->ray({0, 0}, {});
   // Half a diagonal of the film away from its middle, at the near plane.
@@ -108,7 +108,7 @@ TEST(Perspective, LeavesOutScaleWithAWarning) {
   Matrix4 toWorld;
   toWorld[0][0] = -2;
   toWorld[2][2] = 3;
-  set(node, "to_world", toWorld);
+  set(node, "to_world", Imath::M44d(toWorld));
   Warnings warnings;
   expectNear(atDepthOne(sensorOf(node, kWide, warnings)->ray({0, 0}, {})), {-1, 0.5f, 1}, "scaled");
   ASSERT_EQ(warnings.texts().size(), 1u);
@@ -137,7 +137,7 @@ TEST(Orthographic, IsThatOfMitsuba) {
   expectNear(sensorOf(node, kTall, warnings)->ray({100, 200}, {}).origin, {-1, -2, 0.01f}, "tall");
   Matrix4 toWorld;
   for (int i = 0; i < 3; ++i) toWorld[i][i] = std::array{3.0f, 2.0f, 5.0f}[size_t(i)];
-  set(node, "to_world", toWorld);
+  set(node, "to_world", Imath::M44d(toWorld));
   set(node, "near_clip", 1.0);
   set(node, "far_clip", 7.0);
   ray = sensorOf(node, kWide, warnings)->ray({0, 0}, {});
@@ -149,8 +149,8 @@ TEST(Orthographic, IsThatOfMitsuba) {
 
 TEST(RadianceMeter, LooksAlongItsDirection) {
   Properties node = camera("radiancemeter");
-  set(node, "origin", Vec3(1, 2, 3));
-  set(node, "direction", Vec3(0, 3, 4));
+  set(node, "origin", Imath::V3d(1, 2, 3));
+  set(node, "direction", Imath::V3d(0, 3, 4));
   Warnings warnings;
   const Ray ray = sensorOf(node, kWide, warnings)->ray({7, 9}, {0.2f, 0.3f});
   expectNear(ray.origin, {1, 2, 3}, "origin");
@@ -164,7 +164,7 @@ TEST(ThinLens, FocusesOnAPlane) {
   set(node, "focus_distance", 5.0);
   Matrix4 toWorld;
   toWorld[3][0] = 3;
-  set(node, "to_world", toWorld);
+  set(node, "to_world", Imath::M44d(toWorld));
   Warnings warnings;
   const auto sensor = sensorOf(node, kWide, warnings);
   float widest = 0;

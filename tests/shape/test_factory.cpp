@@ -24,8 +24,9 @@ TEST(ShapeFactory, SpheresFollowTheirTransform) {
   Warnings warnings;
   Builder builder(warnings);
   const Matrix4 turn = scaling({2, 2, 2}) * rotation(0, 0, kPi / 2) * translation({1, 0, 0});
-  const ShapePtr sphere =
-      makeShape(nodeOf("sphere", {{"radius", 0.5}, {"center", Vec3(0, 1, 0)}, {"to_world", turn}}), builder);
+  const ShapePtr sphere = makeShape(
+      nodeOf("sphere", {{"radius", 0.5}, {"center", Vec3d(0, 1, 0)}, {"to_world", Imath::M44d(turn)}}),
+      builder);
   EXPECT_FLOAT_EQ(sphere->area(), 4 * kPi);
   // The centre goes to (0, 2, 0), to (-2, 0, 0), to (-1, 0, 0); the local x axis is the world's y axis.
   const SurfacePoint at = meet(sphere, {{-1, 5, 0}, {0, -1, 0}});
@@ -35,12 +36,12 @@ TEST(ShapeFactory, SpheresFollowTheirTransform) {
   EXPECT_TRUE(warnings.texts().empty());
   // A mirror turns a sphere inside out, as in Mitsuba.
   const SurfacePoint mirrored =
-      meet(makeShape(nodeOf("sphere", {{"to_world", scaling({-1, 1, 1})}}), builder),
+      meet(makeShape(nodeOf("sphere", {{"to_world", Imath::M44d(scaling({-1, 1, 1}))}}), builder),
            {{0.3f, 0.4f, 9}, {0, 0, -1}});
   EXPECT_TRUE(near(mirrored.ng, {-0.3f, -0.4f, -0.866025f}));
   EXPECT_TRUE(near(mirrored.uv, Vec2(0.352416f, 1.0f / 6)));
   EXPECT_TRUE(near(mirrored.dpdu, {2.51327f, -1.88496f, 0}, 1e-4f));
-  makeShape(nodeOf("sphere", {{"to_world", scaling({1, 2, 3})}}), builder);
+  makeShape(nodeOf("sphere", {{"to_world", Imath::M44d(scaling({1, 2, 3}))}}), builder);
   EXPECT_EQ(warnings.texts().size(), 1u);
   EXPECT_THROW(makeShape(nodeOf("sphere", {{"radius", 0.0}}), builder), SceneError);
 }
@@ -49,12 +50,12 @@ TEST(ShapeFactory, CylindersStartWhereMitsubasDo) {
   Warnings warnings;
   Builder builder(warnings);
   const ShapePtr cylinder = makeShape(
-      nodeOf("cylinder", {{"p0", Vec3(0, 0.5f, 0)}, {"p1", Vec3(2, 1, 0.3f)}, {"radius", 0.5}}), builder);
+      nodeOf("cylinder", {{"p0", Vec3d(0, 0.5, 0)}, {"p1", Vec3d(2, 1, 0.3)}, {"radius", 0.5}}), builder);
   const SurfacePoint at = meet(cylinder, {{0.7f, 0.6f, 9}, {0, 0, -1}});
   EXPECT_TRUE(near(at.uv, Vec2(0.562232f, 0.375731f), 1e-4f));
   EXPECT_TRUE(near(at.ng, {-0.102924f, -0.175731f, 0.979043f}, 1e-4f));
   EXPECT_TRUE(near(at.dpdu, {0.817706f, -2.99938f, -0.452403f}, 1e-3f));
-  EXPECT_THROW(makeShape(nodeOf("cylinder", {{"p1", Vec3(0, 0, 0)}}), builder), SceneError);
+  EXPECT_THROW(makeShape(nodeOf("cylinder", {{"p1", Vec3d(0, 0, 0)}}), builder), SceneError);
   EXPECT_THROW(makeShape(nodeOf("cylinder", {{"radius", -1.0}}), builder), SceneError);
 }
 
@@ -79,8 +80,12 @@ TEST(ShapeFactory, EveryShapeWithItsDefaults) {
       {"rectangle", 4}, {"cube", 24}, {"sphere", 4 * kPi}, {"disk", kPi}, {"cylinder", 2 * kPi}};
   for (const auto& [type, area] : areas) {
     EXPECT_FLOAT_EQ(makeShape(nodeOf(type), builder)->area(), area) << type;
-    EXPECT_THROW(makeShape(nodeOf(type, {{"to_world", scaling({1, 1, 0})}}), builder), SceneError) << type;
-    EXPECT_THROW(makeShape(nodeOf(type, {{"to_world", scaling({1, NAN, 1})}}), builder), SceneError) << type;
+    EXPECT_THROW(makeShape(nodeOf(type, {{"to_world", Imath::M44d(scaling({1, 1, 0}))}}), builder),
+                 SceneError)
+        << type;
+    EXPECT_THROW(makeShape(nodeOf(type, {{"to_world", Imath::M44d(scaling({1, NAN, 1}))}}), builder),
+                 SceneError)
+        << type;
   }
   EXPECT_TRUE(warnings.texts().empty());
 }

@@ -83,7 +83,7 @@ std::optional<Placed> Builder::placed(const Properties& node, Scale scale) {
     result.motion = std::move(motion);
     place = Matrix4();
   }
-  result.node.parameters.at("to_world").value = place;
+  result.node.parameters.at("to_world").value = Imath::M44d(place);
   return result;
 }
 

@@ -185,7 +185,9 @@ struct LargeExtents {
 
 }  // namespace
 
-Intersector::Intersector(const std::vector<ShapePtr>& shapes, const std::vector<Instance>& instances) {
+Intersector::Intersector(const std::vector<ShapePtr>& shapes, const std::vector<Instance>& instances,
+                         bool watertight)
+    : m_watertight(watertight) {
   m_device = rtcNewDevice(kDeviceConfig);
   if (!m_device) fail("start", rtcGetDeviceError(nullptr));
   rtcSetDeviceMemoryMonitorFunction(m_device, countBytes, &m_bytes);
@@ -232,9 +234,10 @@ RTCSceneTy* Intersector::makeScene(const std::vector<ShapePtr>& shapes, float la
                                    ShapeArray& array) {
   RTCScene scene = rtcNewScene(m_device);
   rtcSetSceneBuildQuality(scene, RTC_BUILD_QUALITY_HIGH);
+  if (m_watertight) rtcSetSceneFlags(scene, RTC_SCENE_FLAG_ROBUST);
   for (const ShapePtr& shape : shapes)
     for (RTCGeometry geometry :
-         {shape->makeLargeGeometry(m_device, largeExtent), shape->makeGeometry(m_device)}) {
+         {shape->makeLargeGeometry(m_device, largeExtent, m_watertight), shape->makeGeometry(m_device)}) {
       if (!geometry) continue;
       rtcAttachGeometryByID(scene, geometry, unsigned(array.size()));
       rtcReleaseGeometry(geometry);

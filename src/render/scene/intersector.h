@@ -14,8 +14,9 @@ namespace odis::render {
 class Intersector {
  public:
   // Builds the acceleration structure on all cores. The shapes must outlive the intersector. Throws
-  // std::bad_alloc for want of memory, std::runtime_error if Embree fails otherwise.
-  Intersector(const std::vector<ShapePtr>& shapes, const std::vector<Instance>& instances);
+  // std::bad_alloc for want of memory, std::runtime_error if Embree fails otherwise. `watertight`: no ray
+  // passes between triangles that share an edge.
+  Intersector(const std::vector<ShapePtr>& shapes, const std::vector<Instance>& instances, bool watertight);
   ~Intersector();
   Intersector(const Intersector&) = delete;
 
@@ -44,6 +45,7 @@ class Intersector {
 
   std::atomic<int64_t> m_bytes = 0;
   RTCDeviceTy* m_device = nullptr;
+  bool m_watertight;
   RTCSceneTy* m_scene = nullptr;
   std::vector<RTCSceneTy*> m_groupScenes;
   ShapeArray m_shapes;  // and null, for rays that met nothing

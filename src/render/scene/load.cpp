@@ -57,8 +57,11 @@ Singles loadObjectsOf(const Properties& root, Scene& scene, ShapeLoader& shapes,
                    Effect::none);
     }
   }
-  for (const auto& [name, parameter] : root.parameters)
-    warnings.add(parameter.location, "'" + name + "' of the scene has no effect", Effect::none);
+  scene.setWatertight(root.boolean("embree_use_robust_intersections", false));
+  for (const auto& [name, location] : root.unqueried())
+    if (root.has(name))
+      warnings.add(location, "'" + name + "' of the scene has no effect" + root.suggestionFor(name),
+                   Effect::none);
   return result;
 }
 

@@ -41,7 +41,7 @@ ShapeLoader::Made ShapeLoader::make(const Properties& node, bool grouped) {
   if (grouped && placed->motion) {
     m_builder.warn(node.placeOf("to_world"),
                    "a shape can't move within its shape group, it stays where it is when the shutter opens");
-    placed->node.parameters.at("to_world").value = placed->motion->matrixAt(0);
+    placed->node.parameters.at("to_world").value = Imath::M44d(placed->motion->matrixAt(0));
     placed->motion = nullptr;
   }
   Made made{makeStill(placed->node, grouped), placed->motion};

@@ -46,7 +46,7 @@ void Scene::addEmitter(EmitterPtr emitter) {
 }
 
 void Scene::finish() {
-  m_intersector = std::make_unique<Intersector>(m_shapes, m_instances);
+  m_intersector = std::make_unique<Intersector>(m_shapes, m_instances, m_watertight);
   // A scene of lights alone still has an extent, so that it may be divided by.
   if (!m_intersector->box(m_bounds.min, m_bounds.max)) m_bounds.min = m_bounds.max = Vec3(0, 0, 0);
   m_bounds.center = (m_bounds.min + m_bounds.max) * 0.5f;

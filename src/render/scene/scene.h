@@ -105,6 +105,8 @@ class Scene {
   void setSensor(std::shared_ptr<const Sensor> sensor);
   void setFilm(const FilmSettings& film) { m_film = film; }
   void setIntegrator(const IntegratorSettings& settings) { m_integrator = settings; }
+  // Whether no ray passes between triangles that share an edge, which takes longer.
+  void setWatertight(bool watertight) { m_watertight = watertight; }
   void finish();
 
  private:
@@ -120,7 +122,7 @@ class Scene {
   FilmSettings m_film;
   IntegratorSettings m_integrator;
   SceneBounds m_bounds;
-  bool m_moves = false;
+  bool m_moves = false, m_watertight = false;
   std::vector<std::string> m_files;
   std::unique_ptr<Intersector> m_intersector;
 };

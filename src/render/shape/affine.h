@@ -14,7 +14,8 @@ using Vec3d = Imath::V3d;
 struct Affine {
   Vec3d origin, x, y, z;
 
-  explicit Affine(const Matrix4& m)
+  template <class T>
+  explicit Affine(const Imath::Matrix44<T>& m)
       : origin(m[3][0], m[3][1], m[3][2]),
         x(m[0][0], m[0][1], m[0][2]),
         y(m[1][0], m[1][1], m[1][2]),

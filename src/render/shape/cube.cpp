@@ -31,7 +31,7 @@ MeshData cubeMesh() {
 
 ShapePtr makeCube(const Properties& node, Builder& builder) {
   MeshOptions options;
-  options.toWorld = readToWorld(node);
+  options.toWorld = Matrix4(readToWorld(node));
   options.flipNormals = node.boolean("flip_normals", false);
   return Mesh::make(cubeMesh(), options, node.location, builder.warnings());
 }

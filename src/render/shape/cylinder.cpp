@@ -105,7 +105,7 @@ PrimitiveExtent Cylinder::extent(uint32_t) const {
 
 ShapePtr makeCylinder(const Properties& node, Builder& builder) {
   const Affine affine(readToWorld(node));
-  const Vec3d p0(node.vector("p0", Vec3(0, 0, 0))), p1(node.vector("p1", Vec3(0, 0, 1)));
+  const Vec3d p0 = node.preciseVector("p0", Vec3d(0, 0, 0)), p1 = node.preciseVector("p1", Vec3d(0, 0, 1));
   const double length = std::sqrt((p1 - p0).dot(p1 - p0));
   const float radius = node.number("radius", kRadiusRange, 1.0f);
   if (!(length > 0) || !std::isfinite(length))

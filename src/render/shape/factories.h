@@ -22,7 +22,7 @@ ShapePtr makeSphere(const Properties& node, Builder& builder);
 inline constexpr NumberRange kRadiusRange = between(1e-30, 1e15);
 
 // The parameter to_world; throws SceneError if it can't be inverted.
-Matrix4 readToWorld(const Properties& node);
+Imath::M44d readToWorld(const Properties& node);
 
 // A mesh from a file, with the parameters that all such shapes share. `flipTexCoords`: unless the scene says
 // otherwise.

@@ -23,7 +23,7 @@ bool LargeTriangles::hit(uint32_t index, const PreciseRay& ray, PreciseHit& hit)
   hit.t = toCorner.dot(triangle.normal) * inverse;
   if (!ray.contains(hit.t)) return false;
   // Rays along an edge belong to both of its triangles.
-  constexpr double kEdge = 1e-12;
+  constexpr double kEdge = 1e-10;
   const Vec3d across = toCorner.cross(ray.direction) * inverse;
   hit.u = across.dot(triangle.e2);
   hit.v = -across.dot(triangle.e1);

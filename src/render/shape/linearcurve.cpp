@@ -13,7 +13,8 @@ namespace odis::render {
 ShapePtr makeLinearCurve(const Properties& node, Builder& builder) {
   const SourceLocation& location = node.placeOf("filename");
   const std::string path = builder.resolvePath(node.string("filename"), location);
-  return std::make_shared<Curves>(readCurves(path, location, readToWorld(node), 2), CurveBasis::linear);
+  return std::make_shared<Curves>(readCurves(path, location, Matrix4(readToWorld(node)), 2),
+                                  CurveBasis::linear);
 }
 
 }  // namespace odis::render

@@ -169,16 +169,17 @@ float Mesh::detail() const {
   return float(std::min(double(whole.longestSide()), median * std::sqrt(double(m_faces.size()))));
 }
 
-RTCGeometryTy* Mesh::makeLargeGeometry(RTCDeviceTy* device, float extent) {
+RTCGeometryTy* Mesh::makeLargeGeometry(RTCDeviceTy* device, float extent, bool whole) {
   m_large = {};
   m_isLarge.clear();
+  const auto isLarger = [&](const Face& face) { return sideOf(face) > extent; };
+  if (std::none_of(m_faces.begin(), m_faces.end(), isLarger)) return nullptr;
+  m_isLarge.resize(m_faces.size());
   for (uint32_t i = 0; i < m_faces.size(); ++i) {
-    if (!(sideOf(m_faces[i]) > extent)) continue;
-    m_isLarge.resize(m_faces.size());
-    m_isLarge[i] = true;
-    m_large.add(i, corners(i));
+    m_isLarge[i] = whole || isLarger(m_faces[i]);
+    if (m_isLarge[i]) m_large.add(i, corners(i));
   }
-  return m_large.count() > 0 ? makeUserGeometry(device, m_large, m_large.count()) : nullptr;
+  return makeUserGeometry(device, m_large, m_large.count());
 }
 
 RTCGeometryTy* Mesh::makeGeometry(RTCDeviceTy* device) const {

@@ -52,7 +52,7 @@ class Mesh final : public Shape {
 
   // Of the mesh as a whole or, for those of many parts, what triangles as large as half of it are cover.
   float detail() const override;
-  RTCGeometryTy* makeLargeGeometry(RTCDeviceTy* device, float extent) override;
+  RTCGeometryTy* makeLargeGeometry(RTCDeviceTy* device, float extent, bool whole) override;
   RTCGeometryTy* makeGeometry(RTCDeviceTy* device) const override;
   SurfacePoint surfacePoint(const Ray& ray, const RawHit& hit) const override;
   float area() const override { return m_area; }

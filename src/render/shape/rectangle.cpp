@@ -18,7 +18,7 @@ MeshData rectangleMesh() {
 
 ShapePtr makeRectangle(const Properties& node, Builder& builder) {
   MeshOptions options;
-  options.toWorld = readToWorld(node);
+  options.toWorld = Matrix4(readToWorld(node));
   options.flipNormals = node.boolean("flip_normals", false);
   return Mesh::make(rectangleMesh(), options, node.location, builder.warnings());
 }

@@ -26,13 +26,13 @@ constexpr std::pair<const char*, ShapeFactory> kFactories[] = {
 
 }  // namespace
 
-Matrix4 readToWorld(const Properties& node) {
-  const Matrix4 matrix = node.transform("to_world");
+Imath::M44d readToWorld(const Properties& node) {
+  const Imath::M44d matrix = node.preciseTransform("to_world");
   const Imath::V3d x(matrix[0][0], matrix[0][1], matrix[0][2]), y(matrix[1][0], matrix[1][1], matrix[1][2]),
       z(matrix[2][0], matrix[2][1], matrix[2][2]);
   // The volume of the transformed axes against that of a box with edges as long: zero if they lie in a plane.
   const double volume = std::abs(x.cross(y).dot(z)), box = std::sqrt(x.dot(x) * y.dot(y) * z.dot(z));
-  const Vec3 origin(matrix[3][0], matrix[3][1], matrix[3][2]);
+  const Vec3 origin(Matrix4(matrix).translation());
   if (!(volume > 1e-9 * box) || !std::isfinite(box) || !isFinite(origin)) {
     throw SceneError(
         node.placeOf("to_world"),
@@ -55,7 +55,7 @@ ShapePtr makeMeshOfFile(const Properties& node, Builder& builder, bool flipTexCo
   const SourceLocation& at = node.placeOf("filename");
   const std::string path = builder.resolvePath(node.string("filename"), at);
   MeshOptions options;
-  options.toWorld = readToWorld(node);
+  options.toWorld = Matrix4(readToWorld(node));
   options.faceNormals = node.boolean("face_normals", false);
   options.flipNormals = node.boolean("flip_normals", false);
   const bool flip = node.boolean("flip_tex_coords", flipTexCoords);

@@ -16,7 +16,7 @@ ShapePtr makeSdfGrid(const Properties& node, Builder& builder) {
   const SourceLocation& location = node.placeOf("filename");
   const std::string path = builder.resolvePath(node.string("filename"), location);
   const bool smooth = node.word("normals", "analytic|smooth", "smooth") == "smooth";
-  auto shape = std::make_shared<SdfGrid>(readVolume(path, location), readToWorld(node), smooth);
+  auto shape = std::make_shared<SdfGrid>(readVolume(path, location), Matrix4(readToWorld(node)), smooth);
   if (shape->primitiveCount() > 0) return shape;
   builder.warn(location, "the volume is positive or negative everywhere, there is nothing to draw");
   return nullptr;

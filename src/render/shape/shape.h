@@ -68,8 +68,11 @@ class Shape {
   // The size of the smallest thing that the shape may be, in its own space.
   virtual float detail() const;
   // Creates and commits the Embree geometry of triangles larger than this, which are then not part of what
-  // makeGeometry() makes; null if there are none.
-  virtual RTCGeometryTy* makeLargeGeometry(RTCDeviceTy* /*device*/, float /*extent*/) { return nullptr; }
+  // makeGeometry() makes; null if there are none. `whole`: all triangles are, if one is, so that edges are
+  // the same for both of their triangles.
+  virtual RTCGeometryTy* makeLargeGeometry(RTCDeviceTy* /*device*/, float /*extent*/, bool /*whole*/) {
+    return nullptr;
+  }
   // Creates and commits the Embree geometry. Shapes in world space unless they belong to a shape group.
   virtual RTCGeometryTy* makeGeometry(RTCDeviceTy* device) const = 0;
   // The point in world space that `ray` met at `hit`.

@@ -122,7 +122,7 @@ ShapePtr makeSphere(const Properties& node, Builder& builder) {
   if (!isSquare(affine.x, affine.y) || !isSquare(affine.y, affine.z) || !isSquare(affine.z, affine.x))
     builder.warn(node.location, "to_world shears or scales unevenly, which a sphere can't: it stays round");
   const float radius = node.number("radius", kRadiusRange, 1.0f);
-  const Vec3d center = affine.point(Vec3d(node.vector("center", Vec3(0, 0, 0))));
+  const Vec3d center = affine.point(node.preciseVector("center", Vec3d(0, 0, 0)));
   // Orthonormal axes, also if the transform's are not quite.
   const double scale = std::sqrt(affine.x.dot(affine.x));
   const Vec3d x = affine.x / scale, z = x.cross(affine.y).normalized(), y = z.cross(x);

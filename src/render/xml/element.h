@@ -34,14 +34,14 @@ bool parseBoolean(const std::string& text, const std::string& what, const Source
 Rgb parseRgb(const std::string& text, const std::string& what, const SourceLocation& at);
 // value="x y z" (or one number for all three where `allowSingle`), or attributes x, y, z where absent ones
 // are `missing`.
-Vec3 parseVector(const XmlElement& element, double missing, bool allowSingle);
+Imath::V3d parseVector(const XmlElement& element, double missing, bool allowSingle);
 // What <rotate> makes of an axis that isn't of unit length.
 enum class RotationAxis {
   normalized,  // turns about its direction: Mitsuba 0.6
   asGiven      // Rodrigues' formula as it stands, which stretches as well: Mitsuba 3
 };
 // The product of <matrix>, <translate>, <rotate>, <scale>, <lookat>; the first listed is applied first.
-Matrix4 parseTransform(const std::vector<XmlElement>& steps, RotationAxis axis);
+Imath::M44d parseTransform(const std::vector<XmlElement>& steps, RotationAxis axis);
 
 // Whether the matrix is affine and has an inverse, as the place of a shape or a sensor must.
 bool isInvertibleAffine(const Matrix4& matrix);

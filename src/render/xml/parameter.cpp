@@ -83,8 +83,8 @@ bool XmlParser::parseNestedValue(const Place& place, const pugi::xml_node& node,
   const std::string& tag = e.tag;
   if (tag == "transform") {
     e.allow({"name"});
-    const Matrix4 matrix = parseTransformSteps(place, node);
-    if (isPlace(e, owner)) rejectSingular(matrix, e.at, owner);
+    const Imath::M44d matrix = parseTransformSteps(place, node);
+    if (isPlace(e, owner)) rejectSingular(Matrix4(matrix), e.at, owner);
     addParameter(owner, e, matrix);
     return true;
   }
@@ -112,7 +112,7 @@ void XmlParser::parseAnimation(const Place& place, const pugi::xml_node& node, c
       throw SceneError(
           key.at,
           fmt::format("found the time {} in <animation> again, expected each transform at another", time));
-    const Matrix4 matrix = parseTransformSteps(place, child);
+    const Matrix4 matrix(parseTransformSteps(place, child));
     if (isPlace(e, owner)) rejectSingular(matrix, key.at, owner);
     if (!animation.empty() && mirrors(matrix) != mirrors(animation.back().toWorld))
       throw SceneError(key.at,
@@ -132,7 +132,7 @@ void XmlParser::parseAnimation(const Place& place, const pugi::xml_node& node, c
   if (animation.size() > 1)
     m_warnings.add(e.at, "'" + e.require("name") + "' of the " + owner.tag + " '" + owner.type +
                              "' can't move, the first transform of the animation is used");
-  addParameter(owner, e, animation.front().toWorld);
+  addParameter(owner, e, Imath::M44d(animation.front().toWorld));
 }
 
 bool XmlParser::parseValue(const Place& place, const pugi::xml_node& node, const XmlElement& e,
@@ -174,15 +174,16 @@ bool XmlParser::parseValue(const Place& place, const pugi::xml_node& node, const
   return true;
 }
 
-Matrix4 XmlParser::parseTransformSteps(const Place& place, const pugi::xml_node& node) {
+Imath::M44d XmlParser::parseTransformSteps(const Place& place, const pugi::xml_node& node) {
   place.file.rejectText(node);
   std::vector<XmlElement> steps;
   for (const pugi::xml_node& child : node.children())
     if (child.type() == pugi::node_element) steps.push_back(element(place, child));
-  const Matrix4 matrix = parseTransform(steps, m_before2 ? RotationAxis::normalized : RotationAxis::asGiven);
+  const Imath::M44d matrix =
+      parseTransform(steps, m_before2 ? RotationAxis::normalized : RotationAxis::asGiven);
   for (const XmlElement& step : steps) noteStretchingAxis(step);
   for (int i = 0; i < 16; ++i)
-    if (!std::isfinite(matrix[i / 4][i % 4]))
+    if (!std::isfinite(float(matrix[i / 4][i % 4])))
       throw SceneError(place.file.locate(node),
                        "the product of the transform is not finite, expected finite numbers");
   return matrix;
@@ -190,7 +191,7 @@ Matrix4 XmlParser::parseTransformSteps(const Place& place, const pugi::xml_node&
 
 void XmlParser::noteStretchingAxis(const XmlElement& step) {
   if (m_before2 || lowerCase(step.tag) != "rotate") return;
-  if (std::abs(length(parseVector(step, 0, false)) - 1) < 1e-3f) return;
+  if (std::abs(parseVector(step, 0, false).length() - 1) < 1e-3) return;
   m_warnings.add(
       step.at, "the axis of <rotate> isn't of unit length, which stretches as well, as it does in Mitsuba 3",
       Effect::same);

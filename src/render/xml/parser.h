@@ -52,7 +52,7 @@ class XmlParser {
                            Properties& owner);
   // Adds the key frames, or the first transform alone where nothing can move.
   void parseAnimation(const Place& place, const pugi::xml_node& node, const XmlElement& e, Properties& owner);
-  Matrix4 parseTransformSteps(const Place& place, const pugi::xml_node& node);
+  Imath::M44d parseTransformSteps(const Place& place, const pugi::xml_node& node);
   void noteStretchingAxis(const XmlElement& step);
   void addObject(Properties& owner, const XmlElement& e, const std::shared_ptr<Properties>& object,
                  const std::string& tag);

@@ -117,6 +117,10 @@ std::string Properties::word(const std::string& name, const char* words, const s
 }
 
 Vec3 Properties::vector(const std::string& name, std::optional<Vec3> fallback) const {
+  return Vec3(preciseVector(name, fallback ? std::optional(Imath::V3d(*fallback)) : std::nullopt));
+}
+
+Imath::V3d Properties::preciseVector(const std::string& name, std::optional<Imath::V3d> fallback) const {
   return get(*this, name, pointer(fallback), "point or vector");
 }
 
@@ -137,6 +141,10 @@ Rgb Properties::color(const std::string& name, const NumberRange& range, std::op
 }
 
 Matrix4 Properties::transform(const std::string& name, const Matrix4& fallback) const {
+  return Matrix4(preciseTransform(name, Imath::M44d(fallback)));
+}
+
+Imath::M44d Properties::preciseTransform(const std::string& name, const Imath::M44d& fallback) const {
   return get(*this, name, &fallback, "transform");
 }
 

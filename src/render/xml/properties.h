@@ -18,7 +18,9 @@
 namespace odis::render {
 
 // A spectrum given as wavelength:value pairs or as a file name is turned into linear RGB by the parser.
-using PropertyValue = std::variant<bool, int64_t, double, std::string, Vec3, Rgb, Matrix4, Animation>;
+// Points and transforms are as precise as the file has them: what is large may touch what is small.
+using PropertyValue =
+    std::variant<bool, int64_t, double, std::string, Imath::V3d, Rgb, Imath::M44d, Animation>;
 
 // What a parameter may be, as the getter that read it has said. The manual's table is checked against these.
 struct Declaration {
@@ -65,9 +67,11 @@ class Properties {
   // One of `words`, "a|b|c", in lower case.
   std::string word(const std::string& name, const char* words, const std::string& fallback) const;
   Vec3 vector(const std::string& name, std::optional<Vec3> fallback = {}) const;  // point or vector
+  Imath::V3d preciseVector(const std::string& name, std::optional<Imath::V3d> fallback = {}) const;
   // A number is a grey.
   Rgb color(const std::string& name, const NumberRange& range, std::optional<Rgb> fallback = {}) const;
   Matrix4 transform(const std::string& name, const Matrix4& fallback = {}) const;  // rows multiply: p * M
+  Imath::M44d preciseTransform(const std::string& name, const Imath::M44d& fallback = {}) const;
   // The key frames of a transform that moves; null if it doesn't. Does not mark it as queried.
   const Animation* animation(const std::string& name) const;
   // A number that may be absent.

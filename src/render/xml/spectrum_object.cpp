@@ -10,7 +10,7 @@ namespace {
 // Numbers that no colour is made of: normals and the like.
 PropertyValue rawConstant(const Properties& node) {
   const auto value = node.parameters.find("value");
-  if (value == node.parameters.end() || !std::holds_alternative<Vec3>(value->second.value))
+  if (value == node.parameters.end() || !std::holds_alternative<Imath::V3d>(value->second.value))
     return node.color("value", kAnyNumber);
   const Vec3 v = node.vector("value");
   return Rgb(v.x, v.y, v.z);

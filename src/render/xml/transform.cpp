@@ -25,7 +25,7 @@ Matrix parseMatrix(const XmlElement& element) {
 Matrix parseRotation(const XmlElement& element, RotationAxis length) {
   element.allow({"x", "y", "z", "value", "angle"});
   const double angle = parseNumber(element.require("angle"), "the angle", element.at) * M_PI / 180;
-  Vector axis(parseVector(element, 0, false));
+  Vector axis = parseVector(element, 0, false);
   if (axis.length() == 0)
     throw SceneError(element.at, "found the rotation axis 0 0 0, expected an axis with a length");
   if (length == RotationAxis::normalized) axis.normalize();
@@ -78,10 +78,10 @@ Matrix parseStep(const XmlElement& element, RotationAxis axis) {
   Matrix result;
   if (tag == "translate") {
     element.allow({"x", "y", "z", "value"});
-    result.setTranslation(Vector(parseVector(element, 0, false)));
+    result.setTranslation(parseVector(element, 0, false));
   } else if (tag == "scale") {
     element.allow({"x", "y", "z", "value"});
-    result.setScale(Vector(parseVector(element, 1, true)));
+    result.setScale(parseVector(element, 1, true));
   } else {
     throw SceneError(element.at, "found <" + element.tag +
                                      "> in a transform, expected matrix, translate, rotate, scale or lookat" +
@@ -92,10 +92,10 @@ Matrix parseStep(const XmlElement& element, RotationAxis axis) {
 
 }  // namespace
 
-Matrix4 parseTransform(const std::vector<XmlElement>& steps, RotationAxis axis) {
+Matrix parseTransform(const std::vector<XmlElement>& steps, RotationAxis axis) {
   Matrix product;
   for (const XmlElement& step : steps) product = product * parseStep(step, axis);
-  return Matrix4(product);
+  return product;
 }
 
 bool mirrors(const Matrix4& matrix) {

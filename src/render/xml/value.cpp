@@ -97,7 +97,7 @@ Rgb parseRgb(const std::string& text, const std::string& what, const SourceLocat
       at, "found " + quoted(text) + " for " + what + ", expected one number, three numbers or #rrggbb");
 }
 
-Vec3 parseVector(const XmlElement& element, double missing, bool allowSingle) {
+Imath::V3d parseVector(const XmlElement& element, double missing, bool allowSingle) {
   if (element.has("value")) {
     for (const char* name : {"x", "y", "z"})
       if (element.has(name))
@@ -107,20 +107,19 @@ Vec3 parseVector(const XmlElement& element, double missing, bool allowSingle) {
     const std::string what =
         element.has("name") ? "'" + element.require("name") + "'" : "<" + element.tag + ">";
     const std::vector<double> v = parseNumbers(text, what, element.at);
-    if (v.size() == 3) return Vec3(float(v[0]), float(v[1]), float(v[2]));
-    if (v.size() == 1 && allowSingle) return Vec3(float(v[0]));
+    if (v.size() == 3) return {v[0], v[1], v[2]};
+    if (v.size() == 1 && allowSingle) return Imath::V3d(v[0]);
     throw SceneError(element.at, "found " + std::to_string(v.size()) + " numbers in " + quoted(text) +
                                      " for " + what + ", expected " + (allowSingle ? "1 or 3" : "3"));
   }
   if (!element.has("x") && !element.has("y") && !element.has("z"))
     throw SceneError(element.at, "<" + element.tag + "> has no numbers, expected x, y, z or value=\"x y z\"");
-  Vec3 result;
+  Imath::V3d result;
   const char* const names[] = {"x", "y", "z"};
   for (int i = 0; i < 3; ++i)
-    result[i] =
-        element.has(names[i])
-            ? float(parseNumber(element.require(names[i]), std::string("'") + names[i] + "'", element.at))
-            : float(missing);
+    result[i] = element.has(names[i])
+                    ? parseNumber(element.require(names[i]), std::string("'") + names[i] + "'", element.at)
+                    : missing;
   return result;
 }
 
