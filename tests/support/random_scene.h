@@ -113,7 +113,7 @@ class RandomScene {
   Text bsdf(int depth = 0) {
     static const Text kNesting[] = {"twosided",  "mask",    "blendbsdf",   "bumpmap",
                                     "normalmap", "coating", "roughcoating"};
-    const bool nests = depth < 3 && m_draws.chance(depth == 0 ? 0.6 : 0.35);
+    const bool nests = depth < 3 && m_draws.chance(0.4);
     return nests ? nesting(kNesting[m_draws.below(std::size(kNesting))], depth + 1) : plainBsdf();
   }
   Text nesting(const Text& type, int depth) {
@@ -200,7 +200,7 @@ class RandomScene {
 
   // From the unit of a shape or a lamp to the world.
   Text placement(bool mirrored) {
-    const double size = m_draws.pick({1.0, 1.0, 0.3, 0.01, 20.0, 1e3}) * m_scale;
+    const double size = m_draws.pick({1.0, 1.0, 1.0, 1.0, 0.3, 0.01, 20.0, 1e3}) * m_scale;
     const bool uneven = m_draws.chance(0.2);
     Text scale = "<scale x='" + number(mirrored ? -size : size) + "' y='" + number(size) + "' z='" +
                  number(uneven ? size * m_draws.pick({0.1, 1e-3, 10.0}) : size) + "'/>";
@@ -278,7 +278,7 @@ class RandomScene {
   }
   Text film() {
     static const char* const kFilters[] = {"box", "tent", "gaussian", "mitchell", "catmullrom", "lanczos"};
-    const int width = 3 + int(m_draws.below(6)), height = 3 + int(m_draws.below(6));
+    const int width = 4 + int(m_draws.below(12)), height = 4 + int(m_draws.below(12));
     const Text side = m_draws.pick<Text>({"1", "2"});
     const Text crop = element("integer", "crop_offset_x", "1") + element("integer", "crop_offset_y", "1") +
                       element("integer", "crop_width", side) + element("integer", "crop_height", side);

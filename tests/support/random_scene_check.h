@@ -17,7 +17,7 @@ struct Rendering {
   bool cached;
 };
 // As few samples as let the guides be built more than once.
-inline constexpr Rendering kRenderings[] = {{"path", render::IntegratorKind::path, 2, false},
+inline constexpr Rendering kRenderings[] = {{"path", render::IntegratorKind::path, 8, false},
                                             {"odis", render::IntegratorKind::odis, 6, false},
                                             {"odis --cached", render::IntegratorKind::odis, 6, true},
                                             {"ppg", render::IntegratorKind::ppg, 3, false}};
