@@ -87,10 +87,10 @@ TEST_F(TextureFactories, BitmapOfMitsuba06) {
 }
 
 TEST_F(TextureFactories, BitmapTakesATransform) {
-  Matrix4 toUv;
-  toUv.setScale(Vec3(2, 3, 1));
-  toUv[3][0] = 0.1f;
-  toUv[3][1] = 0.2f;
+  Imath::M44d toUv;
+  toUv.setScale(Imath::V3d(2, 3, 1));
+  toUv[3][0] = 0.1;
+  toUv[3][1] = 0.2;
   expectNear(bitmap({{"to_uv", toUv}})->rgb({0.3f, 0.4f}), bitmap({})->rgb({0.7f, 1.4f}), 1e-6f);
 }
 
