@@ -9,7 +9,8 @@
 //     ... direction: odis::VertexMap<float> with odis::bsdfFraction(view, cell, roughness),
 //         mixed as odis/mixture.h shows
 //     ... light: odis::learnedLights(view, cell)
-//     ... an end, if the image may be biased: odis::cachedRadiance(view, place, cell, throughput, footprint)
+//     ... an end, if the image may be biased:
+//         odis::cachedRadiance(view, place, cell, throughput, footprint, radiance)
 //   }
 #pragma once
 
@@ -184,20 +185,27 @@ ODIS_HOST_DEVICE inline Real segmentFootprint(Real distance, Real pdf, Real cosi
   return distance / sqrt(max(pdf * cosine, Real(1e-20f)));
 }
 
-// The cached radiance that a path which arrives in a cell may end with in place of what it would find; null
-// where it has to go on. `throughput` as for survivalProbability; `footprint`: the sum over its segments.
+// What is left of cached radiance for a path that a limit of depth is about to end; 0 where it has to go on.
+ODIS_HOST_DEVICE inline float cachedShare(const GuideView& view, uint32_t depth) {
+  if (!view.cachedShares || depth == 0) return 1;
+  const uint32_t left = depth < view.maxDepth ? view.maxDepth - depth : 0;
+  return left < view.cachedShareCount ? view.cachedShares[left] : 1;
+}
+
+// Whether a path that arrives in a cell may end there, and with what radiance in place of what it would find.
+// `throughput` as for survivalProbability; `footprint`: the sum over its segments.
 // Only vertices that are diffuse or rough and scatter mostly by lobes that may be guided should end paths:
 // what they scatter differs little from direction to direction.
-ODIS_HOST_DEVICE inline const CachedRadiance* cachedRadiance(const GuideView& view, const Place& place,
-                                                             uint32_t cell, float throughput,
-                                                             float footprint) {
-  if (!view.cached) return nullptr;
+ODIS_HOST_DEVICE inline bool cachedRadiance(const GuideView& view, const Place& place, uint32_t cell,
+                                            float throughput, float footprint, Float3& radiance) {
+  if (!view.cached) return false;
   assert(cell < view.cellCount);
   const CachedRadiance& cached = view.cached[2 * size_t(cell) + pathHalf(place.pixel, place.sample)];
   const float edge = CellGrid(view.grid).edge(view.keys[cell]);
-  const bool ends = throughput * cached.error < view.rules.cachedError &&
-                    footprint >= view.rules.leastCachedFootprint * edge;
-  return ends ? &cached : nullptr;
+  const float share = cachedShare(view, place.depth);
+  radiance = cached.radiance * share;
+  return throughput * cached.error < view.rules.cachedError &&
+         footprint >= view.rules.leastCachedFootprint * edge && share > 0;
 }
 
 }  // namespace odis

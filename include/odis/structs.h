@@ -149,6 +149,10 @@ typedef struct OdisGuideOptions {
   bool pixelDirectLight ODIS_DEFAULT(true);
   // Whether maps are multiplied by the cosine at a vertex.
   bool cosineProduct ODIS_DEFAULT(true);
+  // The host's limit of depth, for cachedError: vertices are scattered at depths 1 to maxDepth - 1
+  // (OdisPathVertex.depth), and paths that end with cached radiance bring as much as such paths find. 0:
+  // none.
+  uint32_t maxDepth ODIS_DEFAULT(0);
 } OdisGuideOptions;
 
 typedef struct OdisFrameOptions {

@@ -14,6 +14,8 @@ typedef struct OdisPlace {
   uint32_t pixel ODIS_DEFAULT(0), sample ODIS_DEFAULT(0);
   // Whether no vertex of the path before this one had lobes that may be guided: maps at pixels are for these.
   bool first ODIS_DEFAULT(false);
+  // Of the vertex, as OdisPathVertex.depth, for cached radiance where OdisGuideOptions.maxDepth is given.
+  uint32_t depth ODIS_DEFAULT(0);
 } OdisPlace;
 
 // A direction drawn from a map, and its density.
@@ -112,6 +114,11 @@ typedef struct OdisGuideView {
   // without such maps. These cells come after those of the grid, and no key leads to them.
   const uint32_t* pixelCells ODIS_DEFAULT(NULL);
   uint32_t pixelCount ODIS_DEFAULT(0);
+  // OdisGuideOptions.maxDepth, and what cached radiance is multiplied by where a path may be scattered so
+  // many times, here included: [count], 1 beyond, 0 where no path may end. NULL without a limit.
+  uint32_t maxDepth ODIS_DEFAULT(0);
+  const float* cachedShares ODIS_DEFAULT(NULL);
+  uint32_t cachedShareCount ODIS_DEFAULT(0);
 } OdisGuideView;
 
 // What a frame asks the host to trace.

@@ -132,7 +132,15 @@ void bindDecisions(nb::class_<Guide>& guide) {
                 self, data, {data ? view.cellCount : 0, size_t(2), kFloats});
           },
           "(cells, 2, 4), float32: radiance (3) that a path of each half may end with in a cell, and its\n"
-          "standard error; (0, 2, 4) without GuideOptions.cached_error.");
+          "standard error; (0, 2, 4) without GuideOptions.cached_error.")
+      .def_prop_ro(
+          "cached_shares",
+          [](Self self) {
+            const GuideView view = self.p->view();
+            return shown<Floats>(self, view.cachedShares, {size_t(view.cachedShareCount)});
+          },
+          "(count,), float32 in [0, 1]: what cached radiance is multiplied by where a path may be scattered\n"
+          "so many times, here included; 1 beyond, 0: the path goes on. Empty without a max_depth.");
 }
 
 void bindRules(nb::module_& module) {

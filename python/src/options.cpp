@@ -53,6 +53,8 @@ pixel_share: float in [0, 1] (1): share of a pixel's map; the rest is the map of
 pixel_direct_light: bool (True): whether histograms and oracles at pixels hold what next-event estimation
     covers
 cosine_product: bool (True): whether maps are multiplied by the cosine at a vertex
+max_depth: int (0): the host's limit of depth, for cached_error: vertices are scattered at depths 1 to
+    max_depth - 1; 0: none
 light_groups: int <= 32 (0): groups of lights that the vertices tell apart; 0: learn nothing about lights
 light_parts: list of (first, count) ([]): groups that are equal parts of one light
 
@@ -91,8 +93,8 @@ void bindGuideOptions(nb::module_& module) {
           [](GuideOptions* self, std::optional<Model> model, int32_t cellsPerDiagonal,
              const PriorSamples& samples, float floor, float clamp, float fixedBsdfFraction,
              bool controlVariate, float cachedError, OdisPixelMaps pixelMaps, uint32_t pixelTile,
-             float pixelShare, bool pixelDirectLight, bool cosineProduct, uint32_t lightGroups,
-             const Ranges& parts) {
+             float pixelShare, bool pixelDirectLight, bool cosineProduct, uint32_t maxDepth,
+             uint32_t lightGroups, const Ranges& parts) {
             new (self) GuideOptions{{}, model ? *model : Model(), {}};
             self->cellsPerDiagonal = cellsPerDiagonal;
             setPriorSamples(*self, samples);
@@ -106,6 +108,7 @@ void bindGuideOptions(nb::module_& module) {
             self->pixelShare = pixelShare;
             self->pixelDirectLight = pixelDirectLight;
             self->cosineProduct = cosineProduct;
+            self->maxDepth = maxDepth;
             self->lightGroups = lightGroups;
             setLightParts(*self, parts);
           },
@@ -115,8 +118,8 @@ void bindGuideOptions(nb::module_& module) {
           "control_variate"_a = defaults.controlVariate, "cached_error"_a = defaults.cachedError,
           "pixel_maps"_a = ODIS_PIXEL_MAPS_NONE, "pixel_tile"_a = defaults.pixelTile,
           "pixel_share"_a = defaults.pixelShare, "pixel_direct_light"_a = defaults.pixelDirectLight,
-          "cosine_product"_a = defaults.cosineProduct, "light_groups"_a = defaults.lightGroups,
-          "light_parts"_a = Ranges())
+          "cosine_product"_a = defaults.cosineProduct, "max_depth"_a = defaults.maxDepth,
+          "light_groups"_a = defaults.lightGroups, "light_parts"_a = Ranges())
       .def_rw("model", &GuideOptions::model)
       .def_rw("cells_per_diagonal", &GuideOptions::cellsPerDiagonal)
       .def_prop_rw("prior_samples", priorSamples, setPriorSamples)
@@ -132,6 +135,7 @@ void bindGuideOptions(nb::module_& module) {
       .def_rw("pixel_share", &GuideOptions::pixelShare)
       .def_rw("pixel_direct_light", &GuideOptions::pixelDirectLight)
       .def_rw("cosine_product", &GuideOptions::cosineProduct)
+      .def_rw("max_depth", &GuideOptions::maxDepth)
       .def_rw("light_groups", &GuideOptions::lightGroups)
       .def_prop_rw("light_parts", lightParts, setLightParts);
 }

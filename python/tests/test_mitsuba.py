@@ -326,7 +326,7 @@ class Maps(unittest.TestCase):
         throughput, footprint = random.random(count, np.float32), (3 * random.random(count)).astype(np.float32)
         radiance, ends = guide_tables.cached_radiance(
             tables, array_of(mi.UInt32, cell), array_of(mi.UInt32, half), mi.Float(throughput), mi.Float(footprint),
-            mi.Bool(True))
+            mi.Float(0.5), mi.Bool(True))
         row = guide.cached_radiance[cell, half]
         edge = guide.finest_edge * 2.0 ** (guide.cell_keys[cell] >> np.uint64(60)).astype(float)
         expected = (throughput * row[:, 3] < guide.rules.cached_error) & \
@@ -335,7 +335,7 @@ class Maps(unittest.TestCase):
         self.assertGreater((~expected).sum(), 100)
         self.assertEqual(guide.rules.cached_error, 0.5)
         self.assertLess((np.array(ends) != expected).sum(), 3)  # edges are rounded
-        np.testing.assert_allclose(np.array(radiance).T[expected], row[expected, :3])
+        np.testing.assert_allclose(np.array(radiance).T[expected], 0.5 * row[expected, :3])
 
     def test_density(self):
         """Of axis-aligned normals the density is nearly the library's: within blocks the cosine is rounded."""

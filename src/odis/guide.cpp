@@ -73,6 +73,9 @@ GuideView Guide::view() const {
   view.lightTables = m_data->lightTables.data();
   view.cached = m_data->cached.empty() ? nullptr : m_data->cached.data();
   view.rules.cachedError = m_data->cachedError;
+  view.maxDepth = m_data->maxDepth;
+  view.cachedShares = m_data->cachedShares.empty() ? nullptr : m_data->cachedShares.data();
+  view.cachedShareCount = uint32_t(m_data->cachedShares.size());
   view.pixelCells = m_data->pixelCells.empty() ? nullptr : m_data->pixelCells.data();
   view.pixelCount = uint32_t(m_data->pixelCells.size());
   return view;
@@ -134,8 +137,9 @@ VertexSamples GuideBuilder::takeUnguided(ArrayView<const PathVertex> vertices, u
   if (m_data->options.cellsPerDiagonal == 0) return {};
   VertexSamples result;
   const VertexRules rules = m_data->rules(true);
-  result.m_data = std::make_unique<VertexSamples::Data>(VertexSamples::Data{
-      takeSamples({vertices}, rules), takeFractionSamples(vertices, fractionStride(seen), rules)});
+  result.m_data = std::make_unique<VertexSamples::Data>(
+      VertexSamples::Data{m_data->store.takeWithoutCells({vertices}, rules),
+                          takeFractionSamples(vertices, fractionStride(seen), rules)});
   return result;
 }
 void GuideBuilder::add(ArrayView<VertexSamples> samples) {
@@ -227,7 +231,11 @@ void GuideBuilder::Data::addRouletteAndLights(Guide::Data& guide,
                                               const std::vector<CellStatistics>& cells) const {
   fillRoulette(store.tasks(), guide.decisions, cells, guide.prediction.image, options.controlVariate);
   guide.cachedError = options.cachedError;
-  if (guide.cachedError > 0) guide.cached = cacheRadiance(store.tasks(), cells);
+  if (guide.cachedError > 0) {
+    guide.cached = cacheRadiance(store.tasks(), cells);
+    guide.maxDepth = store.depthShares().maxDepth();
+    guide.cachedShares.assign(store.depthShares().shares().begin(), store.depthShares().shares().end());
+  }
   guide.lightGroups = options.lightGroups;
   if (guide.lightGroups > 0)
     guide.lightTables =

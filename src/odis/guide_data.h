@@ -52,6 +52,8 @@ struct Guide::Data {
   std::vector<CellDecisions> decisions;
   std::vector<CachedRadiance> cached;  // [cell][half]; empty without GuideOptions::cachedError
   float cachedError = 0;
+  uint32_t maxDepth = 0;
+  std::vector<float> cachedShares;  // [bounces left]; empty without maxDepth
   std::vector<float> lightTables;
   uint32_t lightGroups = 0;
   std::vector<uint32_t> pixelCells;  // [pixel]; empty without maps at pixels
@@ -78,6 +80,7 @@ struct GuideBuilder::Data {
     if (options.pixelMaps == ODIS_PIXEL_MAPS_HISTOGRAM) pixels = pixelHistogram(radianceOf(options));
     if (options.pixelMaps == ODIS_PIXEL_MAPS_NETWORK && !pixels)
       throw std::invalid_argument("OdisGuideOptions.model: expected one with a network for maps at pixels");
+    if (options.cachedError > 0) store.cache(options.maxDepth);
     options.model = nullptr;
     options.lightParts = lightParts.data();
   }

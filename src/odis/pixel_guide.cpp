@@ -37,6 +37,8 @@ std::shared_ptr<Guide::Data> Guide::Data::withRoom(size_t more) const {
   result->index = index;
   result->rim = rim;
   result->cachedError = cachedError;
+  result->maxDepth = maxDepth;
+  result->cachedShares = cachedShares;
   result->lightGroups = lightGroups;
   result->prediction = prediction;
   std::copy_n(texels.data(), count * kMapTexels, result->texels.at(0));

@@ -45,6 +45,8 @@ void Guide::save(ArchiveWriter& file) const {
   file.add("guide.lightTables", m_data->lightTables);
   file.add("guide.cached", m_data->cached);
   file.addValue("guide.cachedError", m_data->cachedError);
+  file.addValue("guide.maxDepth", m_data->maxDepth);
+  file.add("guide.cachedShares", m_data->cachedShares);
   file.addValue("guide.prediction", m_data->prediction);
   file.add("guide.pixelCells", m_data->pixelCells);
   file.addValue("guide.rim", m_data->rim);
@@ -99,6 +101,12 @@ Guide Guide::load(const Archive& file) {
     data.cached = file.get<CachedRadiance>("guide.cached", data.cachedError > 0 ? 2 * keys.size() : 0);
     for (const CachedRadiance& cached : data.cached)
       file.require(isSound(cached), "guide.cached: is damaged");
+  }
+  if (file.contains("guide.cachedShares")) {
+    data.maxDepth = file.value<uint32_t>("guide.maxDepth");
+    data.cachedShares = file.get<float>("guide.cachedShares");
+    for (const float share : data.cachedShares)
+      file.require(share >= 0 && share <= 1, "guide.cachedShares: are damaged");
   }
   data.prediction = file.value<GuidingPrediction>("guide.prediction");
   return guide;

@@ -19,7 +19,7 @@ void addVertex(CellStatistics& cell, uint32_t half, double light) {
   cell.count += 1;
   for (double& sum : cell.outgoing) sum += light;
   cell.outgoingSquares += light * light;
-  if (half == 1) addTo(cell.secondHalf, {1, {light, light, light}, light * light});
+  addTo(cell.halves[half], {1, {light, light, light}, light * light, {}});
 }
 
 // One vertex in ten finds light: 10, where the mean is 1.
@@ -35,9 +35,9 @@ std::vector<CellStatistics> cellsOfRareLight(size_t count, int perHalf) {
 }
 
 TEST(CachedRadiance, IsRightOnAverageWhereItIsTrusted) {
-  const std::vector<CellStatistics> cells = cellsOfRareLight(20000, 20);
+  const std::vector<CellStatistics> cells = cellsOfRareLight(20000, 80);
   const std::vector<CachedRadiance> cached = cacheRadiance(*libraryTasks(), cells);
-  constexpr float kTrusted = 0.5f;
+  constexpr float kTrusted = 0.33f;
   test::Average trusted, judgedByItself;
   for (size_t i = 0; i < cached.size(); ++i) {
     if (cached[i].error < kTrusted) trusted.add(cached[i].radiance.x);
@@ -71,8 +71,10 @@ TEST(CachedRadiance, OfCellsWithoutVerticesIsNotTrusted) {
   cells[1].level = kCellLevels - 2;
   cells[1].parent = 0;
   for (int i = 0; i < 4; ++i) addVertex(cells[0], 0, 1);
+  for (int i = 0; i < 100; ++i) addVertex(cells[0], 1, 1);
   const std::vector<CachedRadiance> cached = cacheRadiance(*libraryTasks(), cells);
   EXPECT_LT(cached[0].error, INFINITY);
+  // The other half is judged by four vertices only.
   for (size_t i = 1; i < cached.size(); ++i) EXPECT_EQ(cached[i].error, INFINITY) << i;
 }
 
@@ -116,7 +118,8 @@ class CacheOfOneCell : public testing::Test {
     m_view.rules.cachedError = 0.1f;
   }
   bool ends(float throughput, float footprint) const {
-    return cachedRadiance(m_view, {{}, {}, 0, 0}, 0, throughput, footprint) != nullptr;
+    Float3 radiance;
+    return cachedRadiance(m_view, {{}, {}, 0, 0}, 0, throughput, footprint, radiance);
   }
 
   CachedRadiance m_cached[2] = {{{1, 2, 3}, 1}, {{1, 2, 3}, 1}};
@@ -143,6 +146,24 @@ TEST_F(CacheOfOneCell, NeverEndsPathsWhereImagesAreToBeUnbiased) {
   EXPECT_TRUE(ends(0, 1e10f));
   m_view.cached = nullptr;
   EXPECT_FALSE(ends(0, 1e10f));
+}
+
+TEST_F(CacheOfOneCell, BringsWhatALimitOfDepthLeaves) {
+  const float shares[] = {0, 0, 0.75f};
+  m_view.maxDepth = 8;
+  m_view.cachedShares = shares;
+  m_view.cachedShareCount = 3;
+  Float3 radiance;
+  const auto endsAt = [&](uint32_t depth) {
+    return cachedRadiance(m_view, {{}, {}, 0, 0, false, depth}, 0, 0.05f, 100, radiance);
+  };
+  EXPECT_TRUE(endsAt(6));
+  EXPECT_FLOAT_EQ(radiance.y, 0.75f * 2);
+  for (const uint32_t depth : {1u, 5u}) {
+    EXPECT_TRUE(endsAt(depth));
+    EXPECT_FLOAT_EQ(radiance.y, 2) << depth;
+  }
+  for (const uint32_t depth : {7u, 8u, 100u}) EXPECT_FALSE(endsAt(depth)) << depth;
 }
 
 TEST(CachedRadiance, ArrivesAtTheVertexBefore) {

@@ -60,6 +60,10 @@ class GuideTables:
     cached: object = None
     cached_footprints: object = None  # Float [cell]: that a path has to have for that
     cached_error: object = None  # that it may make, over the pixel's value
+    # Float [bounces left]: the part of it that a path still finds; the last for all that are left more. None without a
+    # limit of depth.
+    cached_shares: object = None
+    last_share: object = None  # UInt32
 
 
 def grid_box(guide):
@@ -153,6 +157,9 @@ def make_guide_tables(guide, both_sides):
         tables.cached = array_of(mi.Float, guide.cached_radiance)
         tables.cached_footprints = array_of(mi.Float, (rules.least_cached_footprint * edges).astype(np.float32))
         tables.cached_error = mi.Float(rules.cached_error)
+        if guide.cached_shares.size:
+            tables.cached_shares = array_of(mi.Float, np.append(guide.cached_shares, np.float32(1)))
+            tables.last_share = mi.UInt32(guide.cached_shares.size)
     dr.make_opaque(tables)
     return tables
 
@@ -229,13 +236,20 @@ def segment_footprint(distance, pdf, cosine):
     return distance * dr.rsqrt(dr.maximum(pdf * cosine, 1e-20))
 
 
-def cached_radiance(tables, cell, half, throughput, footprint, active):
+def cached_share(tables, bounces_left, active):
+    """What is left of cached radiance for a path that may be scattered so many times yet (odis::cachedShare)."""
+    if tables.cached_shares is None:
+        return mi.Float(1)
+    return dr.gather(mi.Float, tables.cached_shares, dr.minimum(bounces_left, tables.last_share), active)
+
+
+def cached_radiance(tables, cell, half, throughput, footprint, share, active):
     """The radiance that a path which arrives in a cell may end with, and whether it does (odis::cachedRadiance)."""
     active = active & (cell != odis.NO_CELL)
     row = dr.gather(mi.ArrayXf, tables.cached, 2 * cell + half, active, shape=(4, -1))
     least = dr.gather(mi.Float, tables.cached_footprints, cell, active)
-    ends = active & (throughput * row[3] < tables.cached_error) & (footprint >= least)
-    return mi.Color3f(row[0], row[1], row[2]), ends
+    ends = active & (throughput * row[3] < tables.cached_error) & (footprint >= least) & (share > 0)
+    return mi.Color3f(row[0], row[1], row[2]) * share, ends
 
 
 def half_floats(numbers):

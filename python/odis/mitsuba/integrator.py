@@ -247,7 +247,7 @@ def make_integrator():
             width, height = film.crop_size()
             cached = self.cached and not 0 <= self.settings.max_depth < LEAST_CACHED_MAX_DEPTH
             self.frame = frame = odis.Frame(
-                self.given.frame_options(width, height, spp, seed, self.known.lights, cached))
+                self.given.frame_options((width, height), spp, seed, self.known.lights, cached, self.settings.max_depth))
             pixels_per_recorded = PIXELS_PER_RECORDED_IF_CACHED if cached else PIXELS_PER_RECORDED
             has_alpha = mi.has_flag(film.flags(), mi.FilmFlags.Alpha)
             valid = np.zeros(width * height) if has_alpha else None  # samples of each pixel

@@ -9,7 +9,8 @@ import odis
 
 # Time of a ray of a guided path over that of a ray of another, in the kernels.
 GUIDED_COST = 1.4
-# Paths that end with cached radiance bring light of any depth. Below this max_depth it would be too bright.
+# With a smaller max_depth nothing is cached: how much light comes from how many bounces differs too much from place to
+# place.
 LEAST_CACHED_MAX_DEPTH = 8
 # How far off cached radiance may be in an image of one sample per pixel, over the pixel's value.
 CACHED_ERROR_OF_ONE_SAMPLE = 0.6
@@ -124,8 +125,9 @@ class GivenSettings:
         except ValueError:
             raise ValueError(f"odis: settings: {key}: expected {kind.values}, found {value}") from None
 
-    def frame_options(self, width, height, spp, seed, lights, cached):
-        """odis.FrameOptions of an image. lights: LightTable; cached: whether paths may end with cached radiance."""
+    def frame_options(self, size, spp, seed, lights, cached, max_depth):
+        """odis.FrameOptions of an image of this width and height. lights: LightTable; cached: whether paths may end with
+        cached radiance; max_depth: Mitsuba's."""
         guide = dict(self.guide)
         learned_lights = self.model.get("lights", "network")
         if learned_lights != "hierarchy":
@@ -139,5 +141,5 @@ class GivenSettings:
         if guide.get("pixel_maps") == odis.PixelMaps.NETWORK and self.model.get("pixels"):
             model = model.with_pixel_network(self.model["pixels"])
         return odis.FrameOptions(
-            width, height, samples_per_pixel=spp, seed=seed, **{"guided_cost": GUIDED_COST, **self.frame},
-            guide=odis.GuideOptions(model=model, cached_error=error if cached else 0, **guide))
+            *size, samples_per_pixel=spp, seed=seed, **{"guided_cost": GUIDED_COST, **self.frame},
+            guide=odis.GuideOptions(model=model, cached_error=error if cached else 0, max_depth=max(max_depth, 0), **guide))

@@ -75,7 +75,8 @@ float odisGetLearnedLights(const OdisGuideView* view, uint32_t cell, const float
 bool odisGetCachedRadiance(const OdisGuideView* view, const OdisPlace* place, uint32_t cell, float throughput,
                            float footprint, OdisFloat3* radiance) {
   if (!hasCell(view, cell) || !place || !radiance) return false;
-  const odis::CachedRadiance* cached = odis::cachedRadiance(*view, *place, cell, throughput, footprint);
-  if (cached) *radiance = cached->radiance;
-  return cached;
+  odis::Float3 cached;
+  const bool ends = odis::cachedRadiance(*view, *place, cell, throughput, footprint, cached);
+  if (ends) *radiance = cached;
+  return ends;
 }

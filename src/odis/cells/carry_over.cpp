@@ -10,12 +10,11 @@ namespace {
 constexpr double kLeastSamples = 0.01;
 
 CellStatistics weighted(CellStatistics cell, double weight) {
-  ReturnedSums& half = cell.secondHalf;
-  for (double* sum : {&cell.count, &cell.lightCount, &cell.sum, &cell.sumSquares, &cell.outgoingSquares,
-                      &cell.rays, &half.count, &half.squares})
+  for (double* sum :
+       {&cell.count, &cell.lightCount, &cell.sum, &cell.sumSquares, &cell.outgoingSquares, &cell.rays})
     *sum *= weight;
   for (double& sum : cell.outgoing) sum *= weight;
-  for (double& sum : half.outgoing) sum *= weight;
+  for (ReturnedSums& half : cell.halves) scale(half, weight);
   for (double& sum : cell.lightSquares) sum *= weight;
   for (float& texel : cell.histogram) texel *= float(weight);
   cell.normal = cell.normal * float(weight);
@@ -42,6 +41,7 @@ CellStore& CellStore::operator=(CellStore&&) noexcept = default;
 void CellStore::forget() {
   CellStore empty(m_clamp, m_looksAround, m_tasks);
   empty.m_mostCells = m_mostCells;
+  if (m_caches) empty.cache(m_depthShares.maxDepth());
   empty.m_numbering = m_numbering + 1;
   *this = std::move(empty);
 }
@@ -60,6 +60,8 @@ void CellStore::carryOver(const CellGrid& grid, double weight) {
   carried.m_placed = m_placed;
   carried.m_grid = grid;
   carried.m_mostCells = m_mostCells;
+  carried.m_caches = m_caches;
+  carried.m_depthShares = m_depthShares;
   carried.m_coarsening = m_coarsening;
   carried.m_samplesLeftOut = m_samplesLeftOut;
   carried.m_vertexCounts = m_vertexCounts;

@@ -50,8 +50,8 @@ BatchSamples takeSamples(const VertexBatch& batch, const VertexRules& rules) {
       const float rays = 1 + (std::isnan(v.raysAfter) ? 0 : v.raysAfter);
       const float square = lightSquare(v);
       result.samples.push_back({v.position, v.normal, v.wi, v.distance, value, returnedRadiance(v), rays,
-                                square, uint16_t(square > 0 ? v.lightGroup : 0),
-                                uint16_t(pathHalf(v.pixel, v.sample))});
+                                square, uint8_t(square > 0 ? v.lightGroup : 0),
+                                uint8_t(pathHalf(v.pixel, v.sample)), v.depth});
     }
   return result;
 }

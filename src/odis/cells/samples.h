@@ -6,6 +6,7 @@
 
 #include "odis/cell_grid.h"
 #include "odis/cells/batches.h"
+#include "odis/cells/depth_shares.h"
 #include "odis/guide_view.h"
 #include "odis/path_vertex.h"
 #include "odis/record/vertex_check.h"
@@ -28,8 +29,9 @@ struct CellSample {
   float rays;       // traced at the vertex and beyond
   // Estimate of the squared next-event estimate from one group of lights; kNoLights: not to be counted.
   float lightSquare;
-  uint16_t lightGroup;
-  uint16_t half;  // of the paths (pathHalf) that it belongs to
+  uint8_t lightGroup;
+  uint8_t half;  // of the paths (pathHalf) that it belongs to
+  uint16_t depth;
 };
 inline constexpr float kNoLights = -1;
 
@@ -45,6 +47,7 @@ struct BatchSamples {
   std::vector<uint32_t> cellOf;  // index of each sample's cell in `cells`
   std::vector<Cell> cells;
   VertexCounts counts;
+  EnergyByDepth energy;  // of all vertices, if it is asked for
 
   bool haveCells() const { return cellOf.size() == samples.size(); }
   // Lets go of all but the counts.

@@ -18,7 +18,7 @@ void forEachColumn(const Body& body) {
   body("outgoing", &CellStatistics::outgoing);
   body("outgoingSquares", &CellStatistics::outgoingSquares);
   body("rays", &CellStatistics::rays);
-  body("secondHalf", &CellStatistics::secondHalf);
+  body("halves", &CellStatistics::halves);
   body("centroid", &CellStatistics::centroid);
   body("normal", &CellStatistics::normal);
   body("lightSquares", &CellStatistics::lightSquares);
@@ -35,6 +35,7 @@ void CellStore::save(ArchiveWriter& file) const {
   file.addValue("cells.leftOut", m_samplesLeftOut);
   file.addValue("cells.counts", m_vertexCounts);
   file.add("cells.keys", keys());
+  file.add("cells.depthShares", m_depthShares.shares());
   forEachColumn([&]<class T>(const std::string& name, T CellStatistics::*member) {
     std::vector<T> column;
     for (const CellStatistics& cell : m_cells)
@@ -55,6 +56,7 @@ void CellStore::load(const Archive& file) {
   m_coarsening = file.value<int32_t>("cells.coarsening");
   m_samplesLeftOut = file.value<uint64_t>("cells.leftOut");
   m_vertexCounts = file.value<VertexCounts>("cells.counts");
+  m_depthShares.set(file.get<float>("cells.depthShares"));
   const std::vector<uint64_t> keys = file.get<uint64_t>("cells.keys");
   for (const uint64_t key : keys) {
     const uint32_t next = m_index.size();

@@ -109,10 +109,6 @@ void accumulate(CellStatistics& cell, LightField* field, const Float3& middle, f
     cell.outgoingSquares += brightness * brightness;
     cell.rays += sample.rays;
     // Added for every sample, as zeros where it does not count: branches would be mispredicted.
-    const double half = sample.half;
-    addTo(
-        cell.secondHalf,
-        {half, {half * outgoing.x, half * outgoing.y, half * outgoing.z}, half * (brightness * brightness)});
     assert(sample.lightGroup < kMaxLightGroups);
     cell.lightCount += sample.lightSquare != kNoLights;
     cell.lightSquares[sample.lightGroup] += std::max(sample.lightSquare, 0.0f);
@@ -135,8 +131,16 @@ void CellStore::add(VertexParts parts, int cellsPerDiagonal, const VertexRules& 
   add(batches, cellsPerDiagonal);
 }
 
-BatchSamples CellStore::take(const VertexBatch& batch, const VertexRules& rules) const {
+BatchSamples CellStore::takeWithoutCells(const VertexBatch& batch, const VertexRules& rules) const {
   BatchSamples result = takeSamples(batch, rules);
+  if (m_depthShares.areUnknown())
+    for (const ArrayView<const PathVertex>& piece : batch)
+      for (const PathVertex& v : piece) result.energy.add(v);
+  return result;
+}
+
+BatchSamples CellStore::take(const VertexBatch& batch, const VertexRules& rules) const {
+  BatchSamples result = takeWithoutCells(batch, rules);
   if (m_placed) assignCells(result, m_grid);
   return result;
 }
@@ -215,12 +219,11 @@ void CellStore::add(std::span<BatchSamples* const> batches, int cellsPerDiagonal
       if (!order.of(c).empty())
         accumulate(m_cells[c], field, m_grid.middle(m_links[parent].key), limit, order.of(c));
   });
-}
-
-void addTo(ReturnedSums& sum, const ReturnedSums& more) {
-  sum.count += more.count;
-  for (size_t i = 0; i < 3; ++i) sum.outgoing[i] += more.outgoing[i];
-  sum.squares += more.squares;
+  if (!m_caches) return;
+  EnergyByDepth energy;
+  for (const BatchSamples* batch : batches) energy.add(batch->energy);
+  m_depthShares.learn(energy);
+  addReturned(order);
 }
 
 void addTo(CellStatistics& sum, const CellStatistics& cell) {
@@ -232,7 +235,7 @@ void addTo(CellStatistics& sum, const CellStatistics& cell) {
   for (size_t i = 0; i < 3; ++i) sum.outgoing[i] += cell.outgoing[i];
   sum.outgoingSquares += cell.outgoingSquares;
   sum.rays += cell.rays;
-  addTo(sum.secondHalf, cell.secondHalf);
+  for (size_t half = 0; half < 2; ++half) addTo(sum.halves[half], cell.halves[half]);
   sum.lightCount += cell.lightCount;
   for (size_t g = 0; g < sum.lightSquares.size(); ++g) sum.lightSquares[g] += cell.lightSquares[g];
   sum.normal = sum.normal + cell.normal;

@@ -10,6 +10,8 @@
 #include <vector>
 
 #include "odis/cells/cell_index.h"
+#include "odis/cells/depth_shares.h"
+#include "odis/cells/returned.h"
 #include "odis/cells/samples.h"
 #include "odis/maps/histogram.h"
 
@@ -24,25 +26,17 @@ class ArchiveWriter;
 class LightPoints;
 struct LightField;
 
-// Sums over vertices of what they scatter back along their paths.
-struct ReturnedSums {
-  double count = 0;                  // number of vertices
-  std::array<double, 3> outgoing{};  // red, green, blue
-  double squares = 0;                // of its luminance
-};
-void addTo(ReturnedSums& sum, const ReturnedSums& more);
-
 struct CellStatistics {
   uint32_t parent = kNoCell;
   int level = 0;
-  double count = 0;                  // number of samples
-  double lightCount = 0;             // number of samples that tell of lights
-  double sum = 0;                    // sum of the samples' values, radiance * cos / pdf as luminance
-  double sumSquares = 0;             // sum of the squares of the values
-  std::array<double, 3> outgoing{};  // sum of what the vertices scatter back, in red, green and blue
-  double outgoingSquares = 0;        // sum of the squares of its luminance
-  double rays = 0;                   // sum of the rays traced at the vertices and beyond
-  ReturnedSums secondHalf;           // the part of the above that paths of half 1 (pathHalf) brought
+  double count = 0;                      // number of samples
+  double lightCount = 0;                 // number of samples that tell of lights
+  double sum = 0;                        // sum of the samples' values, radiance * cos / pdf as luminance
+  double sumSquares = 0;                 // sum of the squares of the values
+  std::array<double, 3> outgoing{};      // sum of what the vertices scatter back, in red, green and blue
+  double outgoingSquares = 0;            // sum of the squares of its luminance
+  double rays = 0;                       // sum of the rays traced at the vertices and beyond
+  std::array<ReturnedSums, 2> halves{};  // of the paths (pathHalf); only of a store that caches
   // Mean position of the first batch's samples, or of a coarser cell's children; directions are re-aimed
   // from here.
   Float3 centroid;
@@ -103,6 +97,8 @@ class CellStore {
   // Keeps the number of cells below a limit: the first call of `add` makes them as much larger as it takes,
   // later ones leave out the samples of cells that there is no more room for.
   void limitCells(size_t most) { m_mostCells = most; }
+  // Lets the store gather what a radiance cache needs, of paths of this max_depth (0: none).
+  void cache(uint32_t maxDepth);
   // How many times larger the cells' edges are for that, and how many samples were left out.
   int coarsening() const { return m_coarsening; }
   uint64_t samplesLeftOut() const { return m_samplesLeftOut; }
@@ -123,6 +119,7 @@ class CellStore {
   // The same in two steps: many threads take samples, with their cells if there is a grid by then; one call
   // adds them up and finds the cells of those that have none.
   BatchSamples take(const VertexBatch& batch, const VertexRules& rules = {}) const;
+  BatchSamples takeWithoutCells(const VertexBatch& batch, const VertexRules& rules) const;
   void add(std::span<BatchSamples* const> batches, int cellsPerDiagonal);
   // The cells, with the coarser levels and what lies around filled in. They stay as they are until more is
   // added.
@@ -142,6 +139,7 @@ class CellStore {
   // What the last `add` needed on top of the cells, the samples that it was given included.
   uint64_t transientBytes() const { return m_transientBytes; }
   float clamp() const { return m_clamp; }
+  const DepthShares& depthShares() const { return m_depthShares; }
   const Tasks& tasks() const { return *m_tasks; }
 
  private:
@@ -151,6 +149,7 @@ class CellStore {
   void carryFields(CellStore& carried, std::span<const uint32_t> newCell, double weight) const;
   uint32_t insert(uint64_t key);
   void addNewCells();
+  void addReturned(const CellOrder<CellSample>& order);
   void lookAround();
   void fillSurroundings(const LightPoints& points, std::span<const uint32_t> pointsOf);
   std::span<const uint32_t> childrenOf(size_t cell) const {
@@ -159,6 +158,8 @@ class CellStore {
 
   float m_clamp;
   bool m_looksAround;
+  bool m_caches = false;
+  DepthShares m_depthShares;
   std::shared_ptr<const Tasks> m_tasks;
   bool m_placed = false;
   uint64_t m_numbering = 0;

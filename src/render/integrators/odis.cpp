@@ -1,5 +1,6 @@
 // odis: path tracing guided by what a pilot saw (docs/guiding.md). The library decides what is traced and
 // what samples weigh; here it is told of the scene's lights and of the options.
+#include <algorithm>
 #include <cmath>
 
 #include "render/integrators/frame_integrator.h"
@@ -27,6 +28,7 @@ GuideOptions guideOptions(const RenderJob& job) {
     guide.lightParts = job.lights().dividedLights();
   }
   guide.cachedError = cachedError(options);
+  guide.maxDepth = uint32_t(std::max(options.maxDepth, 0));
   guide.model = options.model;
   if (options.guide != GuideKind::network) guide.model = guide.model.withDirectionFormula();
   if (options.lights != LightChoiceKind::network) guide.model = guide.model.withLightFormula();

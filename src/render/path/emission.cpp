@@ -89,8 +89,8 @@ namespace {
 // Smoother surfaces end no paths: what they scatter depends too much on the direction. The same is true of
 // those that scatter mostly by lobes that may not be guided.
 constexpr float kLeastCachedRoughness = 0.3f, kLeastCachedGuidable = 0.5f;
-// Cached radiance holds what comes back from vertices of any depth, so that paths that end with it may bring
-// light of more bounces than max_depth allows. Below this max_depth that light is too bright to be ignored.
+// With a smaller max_depth there is little to gain, and how much comes from how many bounces differs too much
+// from place to place.
 constexpr int kLeastCachedMaxDepth = 8;
 
 bool scattersEvenly(const Arrival& arrival) {
@@ -113,11 +113,12 @@ void endInCache(const PathSettings& settings, Batch& batch, Bounces& bounces) {
       path.footprint += segmentFootprint(length(vertex.at.p - path.ray.origin), path.directionPdf,
                                          std::abs(dot(vertex.at.shading.n, path.ray.direction)));
     if (arrival.cell == kNoCell) continue;
-    const CachedRadiance* cached =
-        cachedRadiance(*settings.guide, {{}, {}, path.identity.pixel, path.identity.sample}, arrival.cell,
-                       luminance(path.throughput) / path.pixelValue, path.footprint);
-    if (!cached || !scattersEvenly(arrival)) continue;
-    const Float3& radiance = cached->radiance;
+    const Place place{{}, {}, path.identity.pixel, path.identity.sample, false, uint32_t(bounces.depth)};
+    Float3 radiance;
+    if (!cachedRadiance(*settings.guide, place, arrival.cell, luminance(path.throughput) / path.pixelValue,
+                        path.footprint, radiance) ||
+        !scattersEvenly(arrival))
+      continue;
     path.radiance += path.throughput * Rgb(radiance.x, radiance.y, radiance.z);
     arrival.scatters = false;
     if (batch.recording) batch.recorder.cached(path.handle, radiance);
