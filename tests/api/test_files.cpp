@@ -37,9 +37,11 @@ TEST(ApiFiles, AGuideIsReadAsItWasWritten) {
   GuideOptions options;
   options.lightGroups = 2;
   options.cachedError = 0.5f;
+  options.cellsPerDiagonal = 2;  // so that each cell has vertices enough to be trusted
   GuideBuilder builder(options);
   std::vector<OdisPathVertex> vertices = apiVertices();
   for (size_t i = 0; i < vertices.size(); ++i) {
+    vertices[i].pixel = uint32_t(i);
     vertices[i].lightGroup = i % 2;
     vertices[i].lightGroupProbability = 0.5f;
     vertices[i].direct = {i % 2 ? 1.0f : 0.1f, 1, 1};
@@ -56,7 +58,7 @@ TEST(ApiFiles, AGuideIsReadAsItWasWritten) {
   EXPECT_EQ(std::memcmp(a.cached, b.cached, 2 * a.cellCount * sizeof(CachedRadiance)), 0);
   EXPECT_EQ(b.rules.cachedError, 0.5f);
   for (const OdisPathVertex& v : vertices) {
-    const OdisPlace place{v.position, v.normal};
+    const OdisPlace place{v.position, v.normal, v.pixel, v.sample};
     const uint32_t cell = odisFindCell(&a, &place);
     EXPECT_EQ(cell, odisFindCell(&b, &place));
     OdisFloat3 radiance;

@@ -27,8 +27,8 @@ RenderOptions cachedOptions(int spp, uint64_t seed = 0) {
 // Paths of an image end with the same few numbers, so that only many images tell of their mean.
 TEST(Cached, FurnaceIsAsBright) {
   const auto scene = test::loadScene(
-      test::furnace("<bsdf type=\"diffuse\"><rgb name=\"reflectance\" value=\"0.5\"/></bsdf>"));
-  const int images = test::imagesToCompare(400);
+      test::furnace("<bsdf type=\"diffuse\"><rgb name=\"reflectance\" value=\"0.5\"/></bsdf>", 32));
+  const int images = test::imagesToCompare(25);
   test::Average brightness;
   for (int seed = 0; seed < images; ++seed)
     brightness.add(meanOf(test::renderScene(*scene, cachedOptions(8, uint64_t(seed))).image));
@@ -39,9 +39,9 @@ TEST(Cached, FurnaceIsAsBright) {
 
 // Many images of few samples, whose guides know little: light that estimates lost would be missing here.
 TEST(Cached, KeepsTheEnergyOfARoom) {
-  const auto scene = test::loadScene(test::indirectRoom(32));
+  const auto scene = test::loadScene(test::indirectRoom(64));
   constexpr double kTolerance = 0.01;
-  const int images = test::imagesToCompare(100);
+  const int images = test::imagesToCompare(30);
   test::Average difference;
   uint64_t cachedRays = 0, rays = 0;
   for (int seed = 0; seed < images; ++seed) {
@@ -61,6 +61,28 @@ TEST(Cached, KeepsTheEnergyOfARoom) {
   EXPECT_LT(difference.standardError(), kTolerance / 4) << "too few images to tell";
   EXPECT_LT(std::abs(difference.mean()), kTolerance + 4 * difference.standardError());
   EXPECT_LT(double(cachedRays), 0.9 * double(rays));  // otherwise hardly a path ended
+}
+
+// Inside a white sphere that shines with 1: (1 - 0.9^d) / 0.1, whether roulette ends paths early or late.
+TEST(Cached, KeepsTheEnergyOfAFiniteDepth) {
+  const auto scene = test::loadScene(
+      test::furnace("<bsdf type=\"diffuse\"><rgb name=\"reflectance\" value=\"0.9\"/></bsdf>", 32));
+  const int images = test::imagesToCompare(12);
+  for (const int rrDepth : {5, 1000}) {
+    RenderOptions options = cachedOptions(32);
+    options.maxDepth = 32;
+    options.rrDepth = rrDepth;
+    options.costs.guidedRay = 0;
+    test::Average brightness;
+    for (int seed = 0; seed < images; ++seed) {
+      options.seed = uint64_t(seed);
+      brightness.add(meanOf(test::renderScene(*scene, options).image));
+    }
+    if (images < 10) return;
+    const double expected = (1 - std::pow(0.9, 32)) / 0.1;
+    EXPECT_LT(brightness.standardError(), 0.005 * expected);
+    EXPECT_NEAR(brightness.mean(), expected, 0.01 * expected + 3 * brightness.standardError()) << rrDepth;
+  }
 }
 
 TEST(Cached, SameBitsForAnyNumberOfThreads) {
@@ -88,8 +110,10 @@ TEST(Cached, OnlyRoughMetalEndsPaths) {
     const auto scene = test::loadScene(
         test::furnace("<bsdf type=\"roughconductor\"><string name=\"material\" value=\"none\"/>"
                       "<rgb name=\"specular_reflectance\" value=\"0.5\"/><float name=\"alpha\" value=\"" +
-                      std::string(alpha) + "\"/></bsdf>"));
-    RenderOptions options = cachedOptions(8);
+                          std::string(alpha) + "\"/></bsdf>",
+                      32));
+    RenderOptions options = cachedOptions(16);
+    options.costs.guidedRay = 0;  // guiding does not pay in a furnace
     const RenderResult cached = test::renderScene(*scene, options);
     options.cached = false;
     EXPECT_EQ(test::sameBits(cached.image.color, test::renderScene(*scene, options).image.color), !ends)

@@ -37,8 +37,8 @@ inline std::string sensor(const std::string& lookAt, float fov, int width, int h
 
 // The inside of a unit sphere that emits radiance 1 and reflects half of what it receives: radiance 1 / (1 -
 // 0.5) = 2 arrives everywhere from every direction.
-inline std::string furnace(const std::string& bsdf) {
-  return sensor("origin=\"0.1,0.2,0.1\" target=\"1,0,0\" up=\"0,1,0\"", 60, 8, 8) +
+inline std::string furnace(const std::string& bsdf, int size = 8) {
+  return sensor("origin=\"0.1,0.2,0.1\" target=\"1,0,0\" up=\"0,1,0\"", 60, size, size) +
          "<shape type=\"sphere\"><boolean name=\"flip_normals\" value=\"true\"/>" + bsdf +
          "<emitter type=\"area\"><rgb name=\"radiance\" value=\"1\"/></emitter></shape>";
 }

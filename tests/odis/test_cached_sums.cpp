@@ -3,6 +3,7 @@
 
 #include <cmath>
 #include <random>
+#include <utility>
 
 #include "odis/cells/statistics.h"
 #include "odis/floor_under_patch.h"
@@ -57,7 +58,7 @@ TEST(CachedSums, KeepTheEnergyOfWildVertices) {
   const std::vector<CellStatistics>& cells = store.rollUp();
   const std::vector<CachedRadiance> cached = cacheRadiance(*libraryTasks(), cells);
   double expected[2] = {}, found[2] = {}, passedOn = 0, rest = 0;
-  for (const auto* vertices : {&first, &second})
+  for (const std::vector<PathVertex>* vertices : {&std::as_const(first), &second})
     for (const PathVertex& v : *vertices) expected[halfOf(v)] += v.direct.x;
   for (size_t c = 0; c < cells.size(); ++c)
     for (size_t half = 0; half < 2 && cells[c].level == 0; ++half) {

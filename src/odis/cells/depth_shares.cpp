@@ -10,7 +10,7 @@ namespace odis::core {
 namespace {
 
 // Vertices of smaller shares have no part in the cache.
-constexpr double kLeastShare = 0.5;
+constexpr double kLeastDepthShare = 0.5;
 // Deeper vertices are not told apart.
 constexpr size_t kMostDepths = 1024;
 
@@ -35,7 +35,7 @@ void DepthShares::learn(const EnergyByDepth& energy) {
   m_shares.assign(1, 0);
   for (size_t left = 1; left < count; ++left) {
     const double share = std::max(1 - energy.beyond[left] / energy.all, double(m_shares.back()));
-    m_shares.push_back(share >= kLeastShare ? float(share) : 0);
+    m_shares.push_back(share >= kLeastDepthShare ? float(share) : 0);
   }
 }
 
