@@ -15,6 +15,11 @@ using odis::test::kSanitized, odis::test::kThreadSanitized;
 // A shell starts what runs in the background with Ctrl-C ignored, and so it stays.
 const std::string kInBackground = "env --default-signal=INT '" ODIS_COMMAND "' ";
 
+// Waits for a condition, or for the end of what runs in the background.
+std::string until(const std::string& condition) {
+  return "until " + condition + " || ! kill -0 $!; do sleep 0.02; done; ";
+}
+
 class Failures : public odis::test::Odis {
  protected:
   // Runs `odis` after a shell command that limits it.
@@ -80,11 +85,10 @@ TEST_F(Failures, NoMemory) {
 // The pilot is done within no time, the rest would take for ever.
 TEST_F(Failures, SignalsEndWithAnImage) {
   for (const auto& [signal, code] : {std::pair("INT", 130), std::pair("TERM", 143)}) {
-    // The log of the run before must not be taken for this one's.
-    const Outcome outcome = runShell("rm -f log; " + kInBackground +
-                                     "render room.xml --spp 16000000 2> log & until grep -qs "
-                                     "pilot log; do sleep 0.02; done; kill -" +
-                                     std::string(signal) + " $!; wait $!");
+    // The file of the run before must not be taken for this one's.
+    const Outcome outcome = runShell(
+        "rm -f room.exr.odis; " + kInBackground + "render room.xml --spp 16000000 --save-every 0.002 & " +
+        until("[ -e room.exr.odis ]") + "kill -" + std::string(signal) + " $!; wait $!");
     EXPECT_EQ(outcome.code, code) << outcome.text;
     EXPECT_EQ(odis::render::readExr(file("room.exr").string()).metadata.at("odis:interrupted"), "yes");
     fs::remove(file("room.exr"));
@@ -93,11 +97,11 @@ TEST_F(Failures, SignalsEndWithAnImage) {
 
 // With less than a sample per pixel some pixels are black: an image that is there is worth more.
 TEST_F(Failures, InterruptedTooEarlyKeepsTheOldImage) {
-  const std::string interrupted =
-      "rm -f log; " + kInBackground +
-      "render room.xml --integrator path --resolution 2000x2000 --spp 1 "
-      "--threads 1 -o i.exr 2> log & until grep -qs path log; do sleep 0.02; done; kill -INT $!; wait "
-      "$!; code=$?; cat log; exit $code";
+  const std::string interrupted = "rm -f log; " + kInBackground +
+                                  "render room.xml --integrator path --resolution 2000x2000 --spp 1 "
+                                  "--threads 1 -v -o i.exr 2> log & " +
+                                  until("grep -qs loaded log") +
+                                  "sleep 0.3; kill -INT $!; wait $!; code=$?; cat log; exit $code";
   write("i.exr", "old");
   const Outcome outcome = runShell(interrupted);
   EXPECT_EQ(outcome.code, 130) << outcome.text;
@@ -110,9 +114,8 @@ TEST_F(Failures, InterruptedTooEarlyKeepsTheOldImage) {
 
 TEST_F(Failures, IgnoredInterruptsStayIgnored) {
   const Outcome outcome =
-      runShell("trap '' INT; rm -f log; '" ODIS_COMMAND
-               "' render room.xml --spp 20000 2> log & until grep -qs pilot log; do sleep "
-               "0.02; done; kill -INT $!; wait $!");
+      runShell("trap '' INT; rm -f log; '" ODIS_COMMAND "' render room.xml --spp 20000 -v 2> log & " +
+               until("grep -qs loaded log") + "kill -INT $!; wait $!");
   EXPECT_EQ(outcome.code, 0) << outcome.text;
   EXPECT_EQ(odis::render::readExr(file("room.exr").string()).metadata.at("odis:interrupted"), "no");
 }
@@ -120,9 +123,8 @@ TEST_F(Failures, IgnoredInterruptsStayIgnored) {
 // What was rendered counts: tables and page are written, and the same comparison goes on later.
 TEST_F(Failures, InterruptedComparisonKeepsWhatItHas) {
   const std::string arguments = "compare room.xml -o out --seeds 1 --reference-spp 16 --spp 2";
-  const Outcome outcome = runShell(kInBackground + arguments +
-                                   ",16000000 2> log & until grep -qs 'path, 16000000' log; do sleep 0.02; "
-                                   "done; kill -INT $!; wait $!");
+  const Outcome outcome = runShell(kInBackground + arguments + ",16000000 & " +
+                                   until("grep -qs . out/results.jsonl") + "kill -INT $!; wait $!");
   EXPECT_EQ(outcome.code, 130) << outcome.text;
   EXPECT_NE(outcome.text.find("| room"), std::string::npos) << outcome.text;
   EXPECT_TRUE(exists("out/report.html"));
