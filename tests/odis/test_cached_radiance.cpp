@@ -35,9 +35,9 @@ std::vector<CellStatistics> cellsOfRareLight(size_t count, int perHalf) {
 }
 
 TEST(CachedRadiance, IsRightOnAverageWhereItIsTrusted) {
-  const std::vector<CellStatistics> cells = cellsOfRareLight(20000, 80);
+  const std::vector<CellStatistics> cells = cellsOfRareLight(8000, 256);
   const std::vector<CachedRadiance> cached = cacheRadiance(*libraryTasks(), cells);
-  constexpr float kTrusted = 0.33f;
+  constexpr float kTrusted = 0.185f;
   test::Average trusted, judgedByItself;
   for (size_t i = 0; i < cached.size(); ++i) {
     if (cached[i].error < kTrusted) trusted.add(cached[i].radiance.x);
@@ -55,11 +55,11 @@ TEST(CachedRadiance, IsShrunkTowardsTheParentAndTrustsTheLargestSpread) {
   cells[0].level = kCellLevels - 1;
   cells[1].level = kCellLevels - 2;
   cells[1].parent = 0;
-  for (int i = 0; i < 400; ++i) addVertex(cells[0], uint32_t(i % 2), i % 4 < 2 ? 0 : 4);
+  for (int i = 0; i < 1000; ++i) addVertex(cells[0], uint32_t(i % 2), i % 4 < 2 ? 0 : 4);
   for (int i = 0; i < 8; ++i) addVertex(cells[1], uint32_t(i % 2), 1);
   const std::vector<CachedRadiance> cached = cacheRadiance(*libraryTasks(), cells);
   EXPECT_FLOAT_EQ(cached[0].radiance.x, 2);
-  EXPECT_FLOAT_EQ(cached[0].error, std::sqrt(4.0f / 200));
+  EXPECT_FLOAT_EQ(cached[0].error, std::sqrt(4.0f / 500));
   EXPECT_GT(cached[2].radiance.x, 1);
   EXPECT_LT(cached[2].radiance.x, 2);
   EXPECT_FLOAT_EQ(cached[2].error, std::sqrt(4.0f / 4));  // its own vertices know of no spread
@@ -71,7 +71,7 @@ TEST(CachedRadiance, OfCellsWithoutVerticesIsNotTrusted) {
   cells[1].level = kCellLevels - 2;
   cells[1].parent = 0;
   for (int i = 0; i < 4; ++i) addVertex(cells[0], 0, 1);
-  for (int i = 0; i < 100; ++i) addVertex(cells[0], 1, 1);
+  for (int i = 0; i < 256; ++i) addVertex(cells[0], 1, 1);
   const std::vector<CachedRadiance> cached = cacheRadiance(*libraryTasks(), cells);
   EXPECT_LT(cached[0].error, INFINITY);
   // The other half is judged by four vertices only.

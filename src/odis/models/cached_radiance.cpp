@@ -11,9 +11,9 @@ namespace {
 
 // Weight of the coarser level beside a cell's own samples of one half, in samples.
 constexpr double kCachedPriorSamples = 25;
-// A mean is trusted from so many vertices on, if the other half has as many in the coarsest cell: fewer know
+// A mean is trusted from so many vertices on, if the other half has so many in the coarsest cell: fewer know
 // too little of how far off they are, and guided paths that come because of what they found dilute it.
-constexpr double kLeastVertices = 4, kLeastOtherVertices = 64;
+constexpr double kLeastVertices = 4, kLeastOtherVertices = 256;
 // What no coarser cell can bear is spread over all cells: how uncertain that makes them, over its size.
 constexpr double kErrorOfRest = 2;
 
