@@ -116,17 +116,22 @@ class OtherDecisions(unittest.TestCase):
 
 class Cached(unittest.TestCase):
     def test_means_rays_and_noise(self):
-        """Cached radiance moves the image little, and leaves fewer rays and less noise."""
-        scene, images, rays = mi.load_dict(box()), {}, {}
-        for cached in (False, True):
-            # In so few pixels it would not pay to refine what cells know.
-            integrator = mi.load_dict({"type": "odis", "cached": cached, "settings": "guided-cost=0"})
-            images[cached] = np.array([np.array(mi.render(scene, integrator=integrator, spp=16, seed=seed))[..., :3]
-                                       for seed in range(SEEDS)], np.float64)
-            rays[cached] = integrator.rays
-        self.assertLess(rays[True], 0.9 * rays[False])
-        self.assertLess(images[True].var(0).mean(), images[False].var(0).mean())
-        self.assertAlmostEqual(images[True].mean() / images[False].mean(), 1, delta=0.02)
+        """Cached radiance moves the image little, and leaves fewer rays and less noise, with a finite depth as well."""
+        changed = box()
+        changed["sensor"]["film"] |= {"width": 3 * SIZE, "height": 3 * SIZE}  # so that cells know enough
+        scene = mi.load_dict(changed)
+        for max_depth in (-1, 12):
+            images, rays = {}, {}
+            for cached in (False, True):
+                # In so few pixels it would not pay to refine what cells know.
+                integrator = mi.load_dict({"type": "odis", "cached": cached, "settings": "guided-cost=0",
+                                           "max_depth": max_depth, "rr_depth": 5 if max_depth < 0 else 1000})
+                images[cached] = np.array([np.array(mi.render(scene, integrator=integrator, spp=16, seed=seed))[..., :3]
+                                           for seed in range(4)], np.float64)
+                rays[cached] = integrator.rays
+            self.assertLess(rays[True], 0.9 * rays[False])
+            self.assertLess(images[True].var(0).mean(), images[False].var(0).mean())
+            self.assertAlmostEqual(images[True].mean() / images[False].mean(), 1, delta=0.01)
 
     def test_what_is_seen_through_is_no_coat(self):
         inside = {"type": "diffuse"}

@@ -230,7 +230,7 @@ def trace(scene, camera, settings, known, tables, recorder, samples):
                     & (roughness >= LEAST_CACHED_ROUGHNESS)
                 may_end = active & (depth > 0) & scatters_evenly
                 # With an endless max_depth there are no shares, and the number of bounces left is not looked at.
-                share = guide_tables.cached_share(tables, mi.UInt32(settings.max_depth) - 1 - depth, may_end)
+                share = guide_tables.cached_share(tables, mi.UInt32(max(settings.max_depth, 1)) - 1 - depth, may_end)
                 there, ends_here = guide_tables.cached_radiance(
                     tables, cell, guide_tables.path_half(pixel, number), relative, footprint, share, may_end)
                 radiance += dr.select(ends_here, throughput * there, 0)
