@@ -80,7 +80,7 @@ static OdisGuide buildGuide(OdisContext context, const OdisPathVertex* array) {
 
 // Looks the guide up at a place on the floor, as a renderer does wherever a path is scattered.
 static void guidePath(const OdisGuideView* view) {
-  OdisPlace place = {{0.5f, 0.5f, 0}, {0, 0, 1}, 0, 0, false};
+  OdisPlace place = {{0.5f, 0.5f, 0}, {0, 0, 1}, 0, 0, false, 1};
   const float uv[2] = {0.3f, 0.7f};  // two random numbers
   OdisMapSample sample;
 

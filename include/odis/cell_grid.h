@@ -48,7 +48,7 @@ class CellGrid {
     const Float3 local = (position - m_origin) * m_inverseEdge;
     const int ring = ringAround(local);
     const float scale = powerOfTwo(-exponentOf(ring));
-    const float limit = m_inverseReach > 0 ? float(kRingStride / 2 - 1) : float(kMiddle - 1);
+    const float limit = m_inverseReach > 0 ? float(kRingMiddle - 1) : float(kMiddle - 1);
     return pack((coordinate(local.x * scale, limit) + ring * kRingStride) >> level,
                 coordinate(local.y * scale, limit) >> level, coordinate(local.z * scale, limit) >> level,
                 dominantAxis(normal), level);
@@ -86,6 +86,7 @@ class CellGrid {
   static constexpr uint64_t kMask = (uint64_t(1) << kBits) - 1;
   // Coordinates of all rings stay below half a stride, and those of the outermost one within 19 bits.
   static constexpr int kRingBits = 11, kRingStride = 1 << kRingBits, kMostRing = 120;
+  static constexpr int kRingMiddle = kRingStride / 2;
   // The cells of the first ring are so many powers of two larger than those within reach.
   static constexpr int kRingExponent = 2;
 
@@ -109,7 +110,7 @@ class CellGrid {
   }
   ODIS_HOST_DEVICE int ringOf(uint64_t key) const {
     const int level = levelOf(key) & 3;
-    const int ring = (unpacked(key, 0) + (kRingStride / 2 >> level)) >> (kRingBits - level);
+    const int ring = (unpacked(key, 0) + (kRingMiddle >> level)) >> (kRingBits - level);
     return m_inverseReach > 0 ? min(max(ring, 0), kMostRing) : 0;
   }
 

@@ -97,11 +97,11 @@ TEST_F(Failures, SignalsEndWithAnImage) {
 
 // With less than a sample per pixel some pixels are black: an image that is there is worth more.
 TEST_F(Failures, InterruptedTooEarlyKeepsTheOldImage) {
-  const std::string interrupted = "rm -f log; " + kInBackground +
+  const std::string interrupted = "rm -f i.exr.odis; " + kInBackground +
                                   "render room.xml --integrator path --resolution 2000x2000 --spp 1 "
-                                  "--threads 1 -v -o i.exr 2> log & " +
-                                  until("grep -qs loaded log") +
-                                  "sleep 0.3; kill -INT $!; wait $!; code=$?; cat log; exit $code";
+                                  "--threads 1 --save-every 0.002 -o i.exr 2> log & " +
+                                  until("[ -e i.exr.odis ]") +
+                                  "kill -INT $!; wait $!; code=$?; cat log; exit $code";
   write("i.exr", "old");
   const Outcome outcome = runShell(interrupted);
   EXPECT_EQ(outcome.code, 130) << outcome.text;

@@ -128,7 +128,8 @@ void keepOnFilm(const FilmSettings& film, std::span<const Vec2i> pixels, CameraS
   const int reach = film.sampleBorder ? 0 : film.filter->reach();
   for (size_t i = 0; i < pixels.size(); ++i) {
     samples.weights[i] = 1;
-    const Vec2i before = pixels[i], after(film.width - 1 - before.x, film.height - 1 - before.y);
+    const Vec2i& before = pixels[i];
+    const Vec2i after(film.width - 1 - before.x, film.height - 1 - before.y);
     if (std::min({before.x, before.y, after.x, after.y}) >= reach) continue;
     const FilterPart x = film.filter->part(before.x, after.x), y = film.filter->part(before.y, after.y);
     samples.u[i] = x.number(samples.u[i]);
