@@ -37,7 +37,7 @@ class CellGrid {
   static constexpr float kLeastReach = 8, kMostReach = 640;
   Float3 origin() const { return m_origin; }
   float finestEdge() const { return 1 / m_inverseEdge; }
-  // The grid with cells so many times as large, out to the same place.
+  // Returns a grid whose cells have `times` the edge and reach equally far.
   CellGrid coarser(int times) const {
     const float reach = m_inverseReach > 0 ? max(1 / m_inverseReach / float(times), kLeastReach) : 0;
     return CellGrid(m_origin, float(times) * finestEdge(), reach);
@@ -87,11 +87,11 @@ class CellGrid {
   // Coordinates of all rings stay below half a stride, and those of the outermost one within 19 bits.
   static constexpr int kRingBits = 11, kRingStride = 1 << kRingBits, kMostRing = 120;
   static constexpr int kRingMiddle = kRingStride / 2;
-  // The cells of the first ring are so many powers of two larger than those within reach.
+  // Cells of ring r have 2^(r + kRingExponent) times the edge of those within reach.
   static constexpr int kRingExponent = 2;
 
   ODIS_HOST_DEVICE static int exponentOf(int ring) { return ring > 0 ? ring + kRingExponent : 0; }
-  // Of an exponent of normal numbers.
+  // 2 to the power of `exponent`, which is in [-126, 127].
   ODIS_HOST_DEVICE static float powerOfTwo(int exponent) {
     const uint32_t bits = uint32_t(exponent + 127) << 23;
     float result;

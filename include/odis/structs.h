@@ -237,7 +237,7 @@ typedef struct OdisFrameStatistics {
   uint64_t guideBytes ODIS_DEFAULT(0);
   uint64_t buildingBytes ODIS_DEFAULT(0);  // held at most while guides were built
   double pilotFraction ODIS_DEFAULT(0);    // of the pilot's samples in the mean of the image's weights
-  // That passes asked for and did not get; those of an interrupted pass are none of them.
+  // Samples that passes asked for and did not get. Interrupted passes do not count.
   uint64_t missingSamples ODIS_DEFAULT(0);
   // Passes that wanted vertices and got none, though their samples have more rays than those of the camera:
   // nothing was learned from them.

@@ -14,7 +14,7 @@ typedef struct OdisPlace {
   uint32_t pixel ODIS_DEFAULT(0), sample ODIS_DEFAULT(0);
   // Whether no vertex of the path before this one had lobes that may be guided: maps at pixels are for these.
   bool first ODIS_DEFAULT(false);
-  // Of the vertex, as OdisPathVertex.depth, for cached radiance where OdisGuideOptions.maxDepth is given.
+  // The vertex's depth, as in OdisPathVertex; cached radiance needs it if OdisGuideOptions.maxDepth is set.
   uint32_t depth ODIS_DEFAULT(0);
 } OdisPlace;
 

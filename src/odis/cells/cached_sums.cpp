@@ -9,7 +9,7 @@ namespace {
 
 using HalfSpreads = std::array<Spread, 2>;
 
-// Of each cell and half: the largest variance that the other half has seen there and in the ancestors.
+// For each cell and half, the largest variance that the other half has seen there and in the ancestors.
 std::vector<std::array<double, 2>> largestVariances(const Tasks& tasks, std::span<const CellStatistics> cells,
                                                     std::span<const HalfSpreads> spreads,
                                                     const HalfSpreads& all) {
