@@ -23,7 +23,7 @@ struct BeckmannSlope {
   float tangent, target, low, high, x;
 
   // `cosTheta` and `sinTheta` are of the angle of view, u in [0, 1) draws the slope.
-  static BeckmannSlope begin(float cosTheta, float sinTheta, float u) {
+  [[gnu::always_inline]] static BeckmannSlope begin(float cosTheta, float sinTheta, float u) {
     u = std::min(std::max(u, 1e-6f), 1 - 1e-6f);
     const float tangent = std::min(sinTheta / cosTheta, 1e6f);
     const float cotangent = cosTheta / std::max(sinTheta, 1e-6f);
