@@ -26,7 +26,8 @@ Imath::Box3d Sphere::bounds() const {
   return {m_center - Vec3d(m_radius), m_center + Vec3d(m_radius)};
 }
 
-bool Sphere::hit(const PreciseRay& ray, double& t) const {
+// Inlined into the callbacks of this file, which alone call it: shadow rays spend much of their time here.
+[[gnu::always_inline]] inline bool Sphere::hit(const PreciseRay& ray, double& t) const {
   // From the point of the ray nearest to the centre, both hits are equally far.
   const Vec3d fromCenter = ray.origin - m_center;
   const double squared = ray.direction.dot(ray.direction);
