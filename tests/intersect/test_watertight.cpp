@@ -60,7 +60,8 @@ int escaped(const Scene& scene) {
 TEST(Watertight, NoRayLeavesAClosedMesh) {
   const TemporaryFile ball("ball.obj", ballObj());
   EXPECT_EQ(escaped(*sceneWith(ball, asked(true))), 0);
-  // What it is asked for: a millionth part of the rays at least would.
+  // Without it a millionth part of the rays at least gets out; not so by Embree's code for older processors.
+  if (!__builtin_cpu_supports("avx2")) return;
   EXPECT_GT(escaped(*sceneWith(ball, asked(false))), 0);
   EXPECT_GT(escaped(*sceneWith(ball, "")), 0);
 }
