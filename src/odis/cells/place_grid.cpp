@@ -27,7 +27,7 @@ constexpr double kCompact = 0.32;
 constexpr double kLeastShare = 0.0033, kLeastCount = 0.5;
 // At least this share of the vertices stays.
 constexpr double kCore = 0.65;
-// Of vertices that are many times as far out as the densest part of all are wide, more may be left out.
+// More may be left out of the vertices beyond this multiple of the radius of the densest share of all.
 constexpr double kDensest = 0.4, kAbsurdlyFar = 128;
 
 struct Distant {

@@ -7,7 +7,7 @@ namespace odis::core {
 
 namespace {
 
-// By how many standard errors a vertex may move a mean.
+// The most standard errors that one vertex may move a mean by.
 constexpr double kMostErrors = 4;
 // So many vertices of a cell of the coarsest level are needed to know of its spread.
 constexpr double kLeastForSpread = 64;

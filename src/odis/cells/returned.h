@@ -45,7 +45,7 @@ double largestVarianceOfCoarsest(const Spread& cell, const Spread& all);
 
 // How much of what a vertex scatters back may count in the means of a cell and its ancestors, as luminance.
 using ReturnedLimits = std::array<double, kCellLevels>;
-// The limit of a mean of so many vertices: then one moves it by a few standard errors at most.
+// Returns the limit with which one of `count` vertices moves their mean by a few standard errors at most.
 double returnedLimit(double count, double variance);
 // Notes which parts of a vertex's radiance are too large for the means of the cell and its ancestors.
 void passOn(ReturnedSums& sums, const Float3& outgoing, const ReturnedLimits& limits);
