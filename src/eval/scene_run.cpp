@@ -104,7 +104,9 @@ std::optional<std::vector<Measurement>> SceneRun::known(const Method& method, co
     const Measurement* known = m_log.find(each);
     if (!known || (seed == 0 && !fs::exists(m_settings.folder + "/" + known->image))) return {};
     found.push_back(*known);
-    found.back().method = method.name;  // the same options may go by another name today
+    // The same scene and the same options may go by other names today.
+    found.back().scene = m_record.name;
+    found.back().method = method.name;
   }
   return found;
 }

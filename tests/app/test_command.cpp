@@ -338,6 +338,22 @@ TEST_F(Odis, InterruptedComparisonGoesOn) {
   EXPECT_TRUE(exists("out/" + after[0].at("image").get<std::string>()));
 }
 
+// Results of the first scene are those of the second, which is the same, by the second one's name.
+TEST_F(Odis, ScenesOfTheSameContentCanBeCompared) {
+  fs::create_directories(file("hall"));
+  fs::copy_file(file("room.xml"), file("hall/scene.xml"));
+  const Outcome outcome =
+      run("compare room.xml hall/scene.xml -o out --spp 2 --seeds 1 --reference-spp 16 --equal-time");
+  ASSERT_EQ(outcome.code, 0) << outcome.text;
+  EXPECT_NE(outcome.text.find("hall"), std::string::npos) << outcome.text;
+  std::ifstream stream(file("out/comparison.json"));
+  const nlohmann::json json = nlohmann::json::parse(stream);
+  std::map<std::string, int> rows;
+  for (const nlohmann::json& row : json.at("rows")) ++rows[row.at("scene")];
+  EXPECT_GT(rows["room"], 0);
+  EXPECT_EQ(rows["hall"], rows["room"]);
+}
+
 // The script behind `make bench`: what it leaves, and what of a page it replaces.
 TEST_F(Odis, BenchWritesReportAndTables) {
   fs::create_directories(file("scenes/hall"));
