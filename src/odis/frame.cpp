@@ -115,10 +115,9 @@ SampleRange Frame::Data::samples(uint32_t pixel) const {
   return schedule.remaining(pixel, done, end);
 }
 
-void Frame::Data::requirePixel(uint32_t pixel, const char* function) const {
-  if (pixel >= pilot.size())
-    throw std::out_of_range(std::string(function) + ": expected a pixel of the frame, found " +
-                            std::to_string(pixel) + " of " + std::to_string(pilot.size()));
+void Frame::Data::refusePixel(uint32_t pixel, const char* function) const {
+  throw std::out_of_range(std::string(function) + ": expected a pixel of the frame, found " +
+                          std::to_string(pixel) + " of " + std::to_string(pilot.size()));
 }
 
 // Whether vertices were forgotten: a sample with more than the camera's ray has been at a surface. Hosts that

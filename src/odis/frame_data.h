@@ -63,7 +63,10 @@ struct Frame::Data {
 
   bool learns() const { return done < schedule.lastRefinement(); }
   SampleRange samples(uint32_t pixel) const;
-  void requirePixel(uint32_t pixel, const char* function) const;
+  void requirePixel(uint32_t pixel, const char* function) const {
+    if (pixel >= pilot.size()) refusePixel(pixel, function);
+  }
+  [[noreturn]] void refusePixel(uint32_t pixel, const char* function) const;
   bool lacksVertices() const;
   float pilotWeightOf(uint32_t pixel) const { return pilotWeight(options, schedule, pixel, later[pixel]); }
 

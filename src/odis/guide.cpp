@@ -137,9 +137,10 @@ VertexSamples GuideBuilder::takeUnguided(ArrayView<const PathVertex> vertices, u
   if (m_data->options.cellsPerDiagonal == 0) return {};
   VertexSamples result;
   const VertexRules rules = m_data->rules(true);
-  result.m_data = std::make_unique<VertexSamples::Data>(
-      VertexSamples::Data{m_data->store.takeWithoutCells({vertices}, rules),
-                          takeFractionSamples(vertices, fractionStride(seen), rules)});
+  BatchSamples cells = m_data->store.takeWithoutCells({vertices}, rules);
+  const bool areUsable = refusedVertices(cells.counts) == cells.counts.discrete;
+  result.m_data = std::make_unique<VertexSamples::Data>(VertexSamples::Data{
+      std::move(cells), takeFractionSamples(vertices, fractionStride(seen), areUsable ? nullptr : &rules)});
   return result;
 }
 void GuideBuilder::add(ArrayView<VertexSamples> samples) {
@@ -246,10 +247,10 @@ Guide GuideBuilder::build(VertexParts parts, ArrayView<const float> pixelValues)
   const uint64_t seen = countItems(parts);
   const std::vector<VertexBatch> batches = makeBatches(parts);
   std::vector<std::vector<FractionSample>> samples(batches.size());
+  const VertexRules rules = m_data->rules(true);
   m_data->store.tasks().forEach(batches.size(), [&](size_t b) {
     for (const ArrayView<const PathVertex>& piece : batches[b]) {
-      const std::vector<FractionSample> taken =
-          takeFractionSamples(piece, fractionStride(seen), m_data->rules(true));
+      const std::vector<FractionSample> taken = takeFractionSamples(piece, fractionStride(seen), &rules);
       samples[b].insert(samples[b].end(), taken.begin(), taken.end());
     }
   });

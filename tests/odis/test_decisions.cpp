@@ -231,7 +231,7 @@ TEST(BsdfFraction, WhatIsNoNumberCountsAsTheLimit) {
   v.indirect = NAN;
   v.emission = INFINITY;
   v.light = NAN;
-  addVertex(sums, fractionSampleOf(v), 1, 0);
+  addVertex(sums, fractionSampleOf(v, true), 1, 0);
   for (const double moment : sums.secondMoment) EXPECT_TRUE(std::isfinite(moment));
 }
 
@@ -245,10 +245,10 @@ TEST(BsdfFraction, PrefersTheMapWhereItMatchesTheLight) {
   v.raysAfter = 2;
   v.indirect = 5;
   v.emission = v.light = 0;
-  for (int i = 0; i < 100; ++i) addVertex(sums, fractionSampleOf(v), 1.0f, 0);
+  for (int i = 0; i < 100; ++i) addVertex(sums, fractionSampleOf(v, true), 1.0f, 0);
   matched = sums;
   sums = {};
-  for (int i = 0; i < 100; ++i) addVertex(sums, fractionSampleOf(v), 0.001f, 0);
+  for (int i = 0; i < 100; ++i) addVertex(sums, fractionSampleOf(v, true), 0.001f, 0);
   opposed = sums;
   const ImageMoments totals{100 * 25, 1e9};  // rays don't matter here
   EXPECT_LT(kBsdfFractions[chooseFraction(matched, totals)], 0.3f);
@@ -266,7 +266,7 @@ TEST(BsdfFraction, SecondMomentOfTheMixtureIsPredicted) {
     const bool second = i % 10 == 0;  // as often as the BSDF draws it
     v.pdf = v.guidablePdf = second ? 0.1f : 0.9f;
     v.indirect = second ? 10.0f : 0.0f;
-    addVertex(sums, fractionSampleOf(v), 0.5f, 0);
+    addVertex(sums, fractionSampleOf(v, true), 0.5f, 0);
   }
   for (size_t a = 0; a < kBsdfFractions.size(); ++a) {
     const double q = kBsdfFractions[a] * 0.1 + (1 - kBsdfFractions[a]) * 0.5;

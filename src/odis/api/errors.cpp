@@ -73,10 +73,11 @@ const char* odisGetVersionText() {
 
 OdisError odisGetError(const char** message) {
   odis::core::ThreadError& error = odis::core::threadError;
-  if (error.code != ODIS_ERROR_NONE)
-    std::memcpy(error.told, error.message, sizeof error.told);
-  else
-    error.told[0] = 0;
+  if (error.code == ODIS_ERROR_NONE) {
+    if (message) *message = "";
+    return ODIS_ERROR_NONE;
+  }
+  std::memcpy(error.told, error.message, sizeof error.told);
   if (message) *message = error.told;
   return std::exchange(error.code, ODIS_ERROR_NONE);
 }

@@ -119,10 +119,15 @@ Break findBreak(std::span<const double> logarithms, double least) {
 // what reaches far begins near, where it can't be told from the rest.
 size_t leaveOutFar(std::vector<Float3>& positions) {
   leaveOutAbsurdlyFar(positions);
-  const size_t count = positions.size(), core = shareOf(count, kCore);
-  const Float3 centre = medianOf(positions);
+  // Some thousands of them tell as much as all.
+  constexpr size_t kSeen = 16384;
+  const size_t step = std::max<size_t>(1, positions.size() / kSeen);
+  std::vector<Float3> seen;
+  for (size_t i = 0; i < positions.size(); i += step) seen.push_back(positions[i]);
+  const size_t count = seen.size(), core = shareOf(count, kCore);
+  const Float3 centre = medianOf(seen);
   std::vector<Distant> distances;
-  for (const Float3& p : positions) distances.push_back({squaredDistance(p, centre), p});
+  for (const Float3& p : seen) distances.push_back({squaredDistance(p, centre), p});
   const auto isNearer = [](const Distant& a, const Distant& b) { return a.squared < b.squared; };
   if (!(nthOf(distances, core, isNearer).squared > 0)) return 0;
   const std::span<Distant> outer = std::span(distances).subspan(core);
@@ -131,7 +136,7 @@ size_t leaveOutFar(std::vector<Float3>& positions) {
   if (far.first == outer.size()) return 0;
   const double most = outer[far.first - 1].squared;
   std::erase_if(positions, [&](const Float3& p) { return squaredDistance(p, centre) > most; });
-  return std::min(far.nextOctave / 2, count / 50);
+  return step * std::min(far.nextOctave / 2, count / 50);
 }
 
 double lengthOf(const Float3& extent) {

@@ -9,7 +9,7 @@ namespace odis::core {
 
 inline constexpr uint32_t kTileSize = 16;  // in pixels, across and down
 
-// The place of a sample's pixel in its tile, and the sample's number among those that are due there.
+// The place of a sample's pixel in its tile, and the sample's number in the pixel.
 struct SampleSlot {
   uint32_t place, number;
 };
@@ -27,8 +27,9 @@ class TileClaims {
   // Lets go of memory once all samples are in.
   void end() { m_isClaimed = {}; }
 
-  // Claims the samples at slotAt(0), slotAt(1), ...; answers how many come before one that is claimed
-  // already. Where that is not `count`, none is claimed.
+  // Claims the samples at slotAt(0), slotAt(1), ..., which are due; answers how many come before one that is
+  // claimed already. Where that is not `count`, none is claimed. slotAt.firstDue() is the first number that is
+  // due in the pixel of the last slot asked for.
   template <class SlotAt>
   size_t claim(size_t count, const SlotAt& slotAt) {
     m_areInOrder = m_count == 0 && areAll(count, slotAt);
@@ -62,20 +63,21 @@ class TileClaims {
   template <class SlotAt>
   bool areAll(size_t count, const SlotAt& slotAt) const {
     if (count != m_due.all) return false;
-    uint64_t next[kTileSize * kTileSize] = {};
+    uint32_t next[kTileSize * kTileSize] = {};
+    bool ascends = true;
     for (size_t i = 0; i < count; ++i) {
       const SampleSlot slot = slotAt(i);
-      if (slot.number < next[slot.place]) return false;
-      next[slot.place] = uint64_t(slot.number) + 1;
+      ascends &= slot.number >= next[slot.place];
+      next[slot.place] = slot.number + 1;
     }
-    return true;
+    return ascends;
   }
   // Sets bits; answers how many there are before one that has the value already.
   template <class SlotAt>
   size_t set(bool value, size_t count, const SlotAt& slotAt) {
     for (size_t i = 0; i < count; ++i) {
       const SampleSlot slot = slotAt(i);
-      const uint64_t bit = slot.place * m_due.most + slot.number;
+      const uint64_t bit = slot.place * m_due.most + (slot.number - slotAt.firstDue());
       if (m_isClaimed[bit] == value) return i;
       m_isClaimed[bit] = value;
     }

@@ -39,12 +39,6 @@ uint32_t TileCollector::placeInTile(uint32_t pixel) const {
   return ((y / 4) * 4 + x / 4) * 16 + (y % 4) * 4 + x % 4;
 }
 
-bool TileCollector::isDue(uint32_t pixel, uint32_t sample) const {
-  if (pixel >= m_width * m_height) return false;
-  const SampleRange range = m_due(pixel);
-  return sample >= range.first && sample - range.first < range.count;
-}
-
 SamplesDue TileCollector::samplesDue(uint32_t tile) const {
   const uint32_t x0 = tile % m_columns * kTileSize, y0 = tile / m_columns * kTileSize;
   SamplesDue due;
@@ -77,16 +71,21 @@ void TileCollector::beginPass(Due due, Sink sink) {
 // Whether all samples and vertices are of this tile and due.
 bool TileCollector::allIn(uint32_t tile, ArrayView<const FrameSample> samples,
                           ArrayView<const PathVertex> vertices) const {
-  for (const FrameSample& s : samples)
-    if (!isDue(s.pixel, s.sample) || tileOf(s.pixel) != tile) return false;
-  uint32_t pixel = ~0u, sample = 0;
-  for (const PathVertex& v : vertices) {
-    if (v.pixel == pixel && v.sample == sample) continue;
-    if (!isDue(v.pixel, v.sample) || tileOf(v.pixel) != tile) return false;
-    pixel = v.pixel;
-    sample = v.sample;
-  }
-  return true;
+  // Neighbours are of one pixel for the most part.
+  const auto areIn = [&](const auto& all) {
+    uint32_t pixel = ~0u;
+    SampleRange due;
+    for (const auto& each : all) {
+      if (each.pixel != pixel) {
+        pixel = each.pixel;
+        if (pixel >= m_width * m_height || tileOf(pixel) != tile) return false;
+        due = m_due(pixel);
+      }
+      if (each.sample < due.first || each.sample - due.first >= due.count) return false;
+    }
+    return true;
+  };
+  return areIn(samples) && areIn(vertices);
 }
 
 void TileCollector::add(ArrayView<const FrameSample> samples, const VertexSource& vertices) {
@@ -140,14 +139,14 @@ struct TileCollector::SlotsOf {
     if (s.pixel != pixel) {
       pixel = s.pixel;
       place = collector.placeInTile(pixel);
-      first = collector.m_due(pixel).first;
     }
-    return {place, s.sample - first};
+    return {place, s.sample};
   }
+  uint32_t firstDue() const { return collector.m_due(pixel).first; }
 
   const TileCollector& collector;
   const SampleAt& sampleAt;
-  mutable uint32_t pixel = ~0u, place = 0, first = 0;
+  mutable uint32_t pixel = ~0u, place = 0;
 };
 
 // Claims samples of a tile for the call that brings them; answers how many come before one that another

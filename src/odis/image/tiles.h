@@ -70,7 +70,6 @@ class TileCollector {
   using Order = std::vector<std::pair<uint64_t, size_t>>;
   uint32_t tileOf(uint32_t pixel) const;
   uint32_t placeInTile(uint32_t pixel) const;
-  bool isDue(uint32_t pixel, uint32_t sample) const;
   SamplesDue samplesDue(uint32_t tile) const;
   bool allIn(uint32_t tile, ArrayView<const FrameSample> samples, ArrayView<const PathVertex> vertices) const;
   template <class Body>

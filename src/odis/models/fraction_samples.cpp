@@ -6,7 +6,7 @@
 
 namespace odis::core {
 
-FractionSample fractionSampleOf(const PathVertex& v, const VertexRules& rules) {
+FractionSample fractionSampleOf(const PathVertex& v, bool isUsable) {
   const GuidablePart guidable = guidablePartOf(v);
   return {.position = v.position,
           .normal = v.normal,
@@ -28,7 +28,7 @@ FractionSample fractionSampleOf(const PathVertex& v, const VertexRules& rules) {
           .raysAfter = v.raysAfter,
           .pixel = v.pixel,
           .isFirst = v.depth == 1,
-          .isUsable = v.discrete || checkVertex(v, rules) == VertexState::usable,
+          .isUsable = isUsable,
           .discrete = v.discrete,
           .scattersBothSides = v.scattersBothSides};
 }
@@ -44,14 +44,17 @@ bool isForFractions(uint32_t pixel, uint32_t stride) {
 }
 
 std::vector<FractionSample> takeFractionSamples(ArrayView<const PathVertex> vertices, uint32_t stride,
-                                                const VertexRules& rules) {
+                                                const VertexRules* rules) {
+  const auto isUsable = [rules](const PathVertex& v) {
+    return !rules || v.discrete || checkVertex(v, *rules) == VertexState::usable;
+  };
   const auto isTaken = [stride](const PathVertex& v) {
     return isForFractions(v.pixel, stride) && knowsContributions(v);
   };
   std::vector<FractionSample> samples;
   samples.reserve(size_t(std::count_if(vertices.begin(), vertices.end(), isTaken)));
   for (const PathVertex& v : vertices)
-    if (isTaken(v)) samples.push_back(fractionSampleOf(v, rules));
+    if (isTaken(v)) samples.push_back(fractionSampleOf(v, isUsable(v)));
   return samples;
 }
 

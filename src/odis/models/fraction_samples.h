@@ -27,15 +27,16 @@ struct FractionSample {
 // Samples as they lie in memory.
 using FractionParts = ArrayView<const ArrayView<const FractionSample>>;
 
-FractionSample fractionSampleOf(const PathVertex& vertex, const VertexRules& rules = {});
+FractionSample fractionSampleOf(const PathVertex& vertex, bool isUsable);
 
 // The choice is made from a quarter of the vertices, within bounds: from one pixel in `stride`, all of its
 // path. What is chosen among more vertices is a part of what is chosen among fewer.
 uint32_t fractionStride(uint64_t vertices);
 bool isForFractions(uint32_t pixel, uint32_t stride);
 
-// Those of the chosen pixels whose contributions are known.
+// Returns those of the chosen pixels whose contributions are known. They are checked against the rules;
+// without rules all are usable.
 std::vector<FractionSample> takeFractionSamples(ArrayView<const PathVertex> vertices, uint32_t stride,
-                                                const VertexRules& rules);
+                                                const VertexRules* rules);
 
 }  // namespace odis::core

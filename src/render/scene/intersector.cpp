@@ -56,12 +56,18 @@ bool isTraceable(const RTCRay& ray) {
 
 // Rays that Embree does not take meet nothing: they become others, which are not valid.
 void dropUntraceable(RTCRay8& packet, int* valid) {
-  int usable[kPacket], all = 1;
+  // Coordinates whose sum is in range are in range, each of them.
+  float sums[kPacket];
+  for (size_t i = 0; i < kPacket; ++i)
+    sums[i] = std::abs(packet.org_x[i]) + std::abs(packet.org_y[i]) + std::abs(packet.org_z[i]) +
+              std::abs(packet.dir_x[i]) + std::abs(packet.dir_y[i]) + std::abs(packet.dir_z[i]);
+  int all = 1;
+  for (size_t i = 0; i < kPacket; ++i) all &= (sums[i] <= kMostCoordinate) & !std::isnan(packet.tfar[i]);
+  if (all) return;
+  int usable[kPacket];
   for (size_t i = 0; i < kPacket; ++i) usable[i] = !std::isnan(packet.tfar[i]);
   for (const float* x : {packet.org_x, packet.org_y, packet.org_z, packet.dir_x, packet.dir_y, packet.dir_z})
     for (size_t i = 0; i < kPacket; ++i) usable[i] &= std::abs(x[i]) <= kMostCoordinate;
-  for (size_t i = 0; i < kPacket; ++i) all &= usable[i];
-  if (all) return;
   for (size_t i = 0; i < kPacket; ++i) {
     if (usable[i]) continue;
     valid[i] = 0;
