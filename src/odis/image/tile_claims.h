@@ -27,9 +27,9 @@ class TileClaims {
   // Lets go of memory once all samples are in.
   void end() { m_isClaimed = {}; }
 
-  // Claims the samples at slotAt(0), slotAt(1), ..., which are due; answers how many come before one that is
-  // claimed already. Where that is not `count`, none is claimed. slotAt.firstDue() is the first number that is
-  // due in the pixel of the last slot asked for.
+  // Claims the samples at slotAt(0), slotAt(1), ..., which are due; returns how many come before one that is
+  // claimed already. Where that is not `count`, none is claimed. slotAt.firstDue() is the number of the first
+  // sample that is due in the pixel of the last slot.
   template <class SlotAt>
   size_t claim(size_t count, const SlotAt& slotAt) {
     m_areInOrder = m_count == 0 && areAll(count, slotAt);
