@@ -1,5 +1,5 @@
 if(TARGET odis_app)
-  target_link_libraries(test_app PRIVATE odis_commands)
+  target_link_libraries(test_app PRIVATE odis_commands OpenEXR::OpenEXR)
   target_compile_definitions(test_app PRIVATE ODIS_COMMAND="$<TARGET_FILE:odis_app>"
     ODIS_SOURCE="${PROJECT_SOURCE_DIR}")
   add_dependencies(test_app odis_app)
