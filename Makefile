@@ -58,5 +58,5 @@ format-check:        ## Fail if `make format` would change anything
 lint:                ## Run clang-tidy on all sources
 	@scripts/lint
 
-clean:               ## Remove what was built and what the demo wrote
-	@rm -rf build out
+clean:               ## Remove what was built and the demo's pictures; data sets, weights and comparisons in out stay
+	@rm -rf build out/demo
