@@ -107,7 +107,7 @@ int runCommandLine(int argc, char** argv) {
   } catch (const learn::TrainError& error) {
     return fail(kUsageError, error.what());
   } catch (const learn::GenerateError& error) {
-    return fail(kWriteError, error.what());
+    return fail(kUsageError, error.what());
   } catch (const render::MissingFiles& error) {
     for (const render::SceneError& file : error.files()) fail(kSceneError, file.what());
     return kSceneError;

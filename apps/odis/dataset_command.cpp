@@ -13,8 +13,8 @@
 #include "dataset_range.h"
 #include "learn/data/dataset.h"
 #include "learn/data/dataset_info.h"
+#include "learn/data/folder_settings.h"
 #include "render/files/read_json.h"
-#include "render/files/replace_file.h"
 #include "validators.h"
 
 namespace odis::app {
@@ -33,7 +33,9 @@ int merge(const DatasetArguments& a) {
     if (a.folders.size() > 1) throw UsageError("several folders are merged into another one: expected -o");
     folder = a.folders.front();
   } else {
-    render::makeFolder(folder);
+    const nlohmann::json settings = learn::commonSettings(a.folders);
+    if (settings.is_null()) throw UsageError("there are no shards to merge");
+    learn::claimFolder(folder, settings, {});
     learn::gatherShards(a.folders, folder, countingOn(a.quiet));
   }
   if (a.seeds.empty()) return collectManifest(folder, {}, a.quiet);

@@ -3,7 +3,9 @@
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>
 
+#include <algorithm>
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <thread>
 
@@ -11,17 +13,19 @@
 #include "counter.h"
 #include "dataset_manifest.h"
 #include "dataset_range.h"
-#include "render/files/replace_file.h"
+#include "learn/data/folder_settings.h"
 #include "validators.h"
 
 namespace odis::app {
+
+namespace fs = std::filesystem;
 
 namespace {
 
 struct GenerateArguments {
   std::string scenes, seeds, shards, output, hdri, textures, furniture, kind = "cells";
   int of = 1, jobs = 0;
-  bool quick = false, quality = false, quiet = false;
+  bool quick = false, quality = false, dryRun = false, quiet = false;
 };
 
 // Shows what is done, and remembers what failed.
@@ -67,7 +71,19 @@ int generate(const GenerateArguments& a) {
   if (a.kind == "incident-radiance") settings = settings.incidentRadiance();
   const learn::Assets assets(a.hdri, a.textures, a.furniture);
   const std::vector<learn::ShardSource> sources = sourcesOf(a);
-  render::makeFolder(a.output);
+  const auto made = learn::shardSettings(settings, assets, a.scenes.empty());
+  std::vector<std::string> names;
+  for (const learn::ShardSource& source : sources) names.push_back(source.name);
+  if (a.dryRun) {
+    learn::checkFolder(a.output, made, names);
+    const auto isThere = [&](const std::string& name) {
+      return fs::exists(learn::shardFile(a.output, name));
+    };
+    fmt::print("{} of {} shards are to be made\n",
+               std::count_if(names.begin(), names.end(), std::not_fn(isThere)), names.size());
+    return kOk;
+  }
+  learn::claimFolder(a.output, made, names);
   const int jobs = a.jobs > 0 ? a.jobs : int(std::max(1u, std::thread::hardware_concurrency()));
 
   const InterruptScope interruptible;
@@ -93,7 +109,9 @@ Command addDatasetGenerate(CLI::App& parent) {
       app->add_option("--seeds", a->seeds, "Of scenes to generate, as in `odis scenes generate`: FIRST-LAST");
   CLI::Option* scenes = app->add_option("--scenes", a->scenes, "Folder of scenes to use instead");
   scenes->excludes(seeds);
-  app->add_option("-o,--output", a->output, "Folder to make them in; what is there already is left alone")
+  app->add_option("-o,--output", a->output,
+                  "Folder to make them in, whose shards are all made with the same options; those that are "
+                  "there already are left alone")
       ->required();
   app->add_option("--shards", a->shards,
                   "Make these parts only, FIRST-LAST of the parts that --of cuts the seeds into");
@@ -114,6 +132,7 @@ Command addDatasetGenerate(CLI::App& parent) {
   CLI::Option* quick = app->add_flag("--quick", a->quick, "Small pilots, few targets: for a first look");
   app->add_flag("--quality", a->quality, "Pilots as large as images, more and smoother targets")
       ->excludes(quick);
+  app->add_flag("--dry-run", a->dryRun, "Say how many are to be made, or why none can be; make nothing");
   app->add_flag("-q,--quiet", a->quiet, "Print errors and the summary only");
   return {app, [a] {
             if (a->seeds.empty() == a->scenes.empty())

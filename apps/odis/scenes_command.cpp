@@ -48,12 +48,16 @@ int generate(const ScenesArguments& a) {
   if (a.seed > kSeed.most - uint64_t(a.count - 1))
     throw UsageError(fmt::format("--count: found {}, expected seeds that end before 2^64", a.count));
   const learn::Assets assets(a.hdri, a.textures, a.furniture);
+  const auto kindAt = [&](uint64_t seed) -> const learn::Kind& { return only ? *only : learn::kindOf(seed); };
+  // Nothing is made if something of it is there that was made in another way.
+  for (uint64_t i = 0; i < uint64_t(a.count) && std::filesystem::exists(a.output); ++i)
+    learn::checkScene(a.seed + i, kindAt(a.seed + i), assets, a.output);
   render::makeFolder(a.output);
   const InterruptScope interruptible;
   Counter counter(size_t(a.count), a.quiet);
   for (int i = 0; i < a.count && !InterruptScope::interrupted(); ++i) {
     const uint64_t seed = a.seed + uint64_t(i);
-    const learn::Kind& kind = only ? *only : learn::kindOf(seed);
+    const learn::Kind& kind = kindAt(seed);
     const bool made = learn::generateScene(seed, kind, assets, a.output);
     const std::string name = learn::sceneName(seed, kind);
     if (made)

@@ -9,6 +9,7 @@ using odis::test::Outcome;
 // Makes a file a seed. It is ill at part 2 in the way that the file "ill" names: "always", or once.
 constexpr const char* kOdis = R"sh(#!/usr/bin/env bash
 set -eu
+[[ $* == *--dry-run ]] && exit "$(cat refuse 2> /dev/null || echo 0)"
 echo "$*" >> calls
 [[ $2 == merge ]] && exec ls out/{5,6,7,8,9,10,11}.shard
 part=${!#}
@@ -121,6 +122,21 @@ TEST_F(Cluster, SlurmMakesADataSet) {
   EXPECT_EQ(outcome.code, 0) << outcome.text;
   EXPECT_EQ(run("dataset check data --quiet").code, 0) << output("cat log");
   EXPECT_EQ(output("ls data/*.shard | wc -l"), "2\n");
+}
+
+// Whatever the program refuses to make is not submitted.
+TEST_F(Cluster, AsksTheProgramFirst) {
+  write("refuse", "2");
+  EXPECT_EQ(make("slurm").code, 2);
+  EXPECT_FALSE(exists("submitted"));
+  EXPECT_FALSE(exists("out"));
+  const std::string odis = "slurm --parts 2 '" ODIS_COMMAND "' -- --seeds 117-118 -o data ";
+  EXPECT_EQ(script(odis + "--quick").code, 0);
+  std::filesystem::remove(file("submitted"));
+  const Outcome outcome = script(odis + "--quality");
+  EXPECT_EQ(outcome.code, 2);
+  EXPECT_NE(outcome.text.find("shards are made with --seeds --quick"), std::string::npos) << outcome.text;
+  EXPECT_FALSE(exists("submitted"));
 }
 
 TEST_F(Cluster, ParallelRunsATaskAgain) {

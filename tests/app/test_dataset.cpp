@@ -49,7 +49,7 @@ TEST_F(Dataset, PartsMakeEveryShardOnce) {
   expectOk(std::string(kAll) + "-o two --shards 2-3 --of 3");
   std::set<std::string> both = filesIn("one");
   both.merge(filesIn("two"));
-  EXPECT_EQ(both.size(), 5u);
+  EXPECT_EQ(both.size(), 6u) << "shards and settings.json";
   both.insert("manifest.json");
   EXPECT_EQ(both, filesIn("whole"));
   expectOk("dataset merge one two -o all -q", "scenes");
@@ -82,8 +82,6 @@ TEST_F(Dataset, IncidentRadianceIsMadeLikeTheOther) {
   expectOk("dataset info whole/scene1.shard --json", "view0/window/albedoVariance");
   expectOk("dataset preview whole -o maps.png --count 3");
   EXPECT_TRUE(exists("maps.png"));
-  // Kinds don't mix.
-  expectFailure(std::string(kAll) + "-o whole", 3, "was made with other settings");
 }
 
 TEST_F(Dataset, TwoAtOnceDontHarmEachOther) {
@@ -92,7 +90,7 @@ TEST_F(Dataset, TwoAtOnceDontHarmEachOther) {
   const Outcome outcome = runShell(one + " > a.log 2>&1 & first=$!; " + one +
                                    " > b.log 2>&1; second=$?; wait $first && exit $second");
   EXPECT_EQ(outcome.code, 0) << bytesOf("a.log") << bytesOf("b.log");
-  EXPECT_EQ(filesIn("data").size(), 13u) << "12 shards and the manifest, nothing half-made";
+  EXPECT_EQ(filesIn("data").size(), 14u) << "12 shards, settings and manifest, nothing half-made";
   expectOk("dataset check data", "12 shards are as the manifest says");
 }
 
@@ -103,12 +101,70 @@ TEST_F(Dataset, GoesOnWhereItStopped) {
   expectOk(std::string(kAll) + "-o data");
   expectOk(std::string(kAll) + "-o data", ": is there already");
   EXPECT_EQ(std::filesystem::last_write_time(file("data/scene1.shard")), before);
-  expectFailure("dataset generate --scenes scenes -o data", 3, "was made with other settings");
-  EXPECT_EQ(std::filesystem::last_write_time(file("data/scene1.shard")), before);
   // A scene that can't be read fails alone.
   write("scenes/scene2/scene.xml", "<scene");
   expectFailure(std::string(kAll) + "-o other", 3, "scene2");
-  EXPECT_EQ(filesIn("other"), std::set<std::string>{"scene1.shard"});
+  EXPECT_EQ(filesIn("other"), (std::set<std::string>{"scene1.shard", "settings.json"}));
+}
+
+// Each other kind of shards that a folder may be asked to take beside those that it has.
+TEST_F(Dataset, AFolderTakesShardsOfOneKind) {
+  writeScenes(2);
+  expectOk(std::string(kAll) + "-o data --shards 1 --of 2");
+  const std::set<std::string> before = filesIn("data");
+  const std::pair<const char*, const char*> cases[] = {
+      {"--scenes scenes", "shards are made with --scenes --quick, not with --scenes: expected another"},
+      {"--scenes scenes --quality", "--scenes --quick, not with --scenes --quality"},
+      {"--scenes scenes --quick --kind incident-radiance",
+       "not with --scenes --quick --kind incident-radiance"},
+      {"--seeds 7 --quick", "made with --scenes --quick, not with --seeds --quick"}};
+  for (const auto& [options, message] : cases)
+    for (const char* more : {"", " --shards 1 --of 1", " --dry-run"})
+      expectFailure(std::string("dataset generate -o data ") + options + more, 2, message);
+  EXPECT_EQ(filesIn("data"), before);
+  // What the shards themselves say counts where the folder has no settings.json.
+  std::filesystem::remove(file("data/settings.json"));
+  expectFailure("dataset generate --scenes scenes -o data", 2, "data: scene1.shard is made with");
+  expectFailure("dataset generate --seeds 7 --quick -o data", 2, "data: scene1.shard is made with");
+  EXPECT_EQ(filesIn("data"), std::set<std::string>{"scene1.shard"});
+  write("data/settings.json", "[]");
+  expectFailure(std::string(kAll) + "-o data", 3, "data/settings.json: expected an object");
+  // A copied shard.
+  std::filesystem::remove(file("data/settings.json"));
+  expectOk("dataset generate --scenes scenes --kind incident-radiance --quick -o other --shards 2 --of 2");
+  std::filesystem::rename(file("other/scene2.shard"), file("data/scene2.shard"));
+  expectFailure(std::string(kAll) + "-o data", 2, "data: scene2.shard is made with");
+}
+
+TEST_F(Dataset, AssetsOfAFolderStayTheSame) {
+  std::filesystem::create_directory(file("textures"));
+  expectOk("montage '" ODIS_SOURCE "/docs/images/paper.jpg' -o textures/a.png");
+  expectOk("dataset generate --seeds 3 --quick -o data");
+  expectFailure("dataset generate --seeds 4 --quick --textures textures -o data", 2,
+                "made with other --hdri, --textures or --furniture, not with these");
+  // Scenes without data as well: none of them is made if one of them is there.
+  expectOk("scenes generate --seed 4 -o scenes");
+  expectFailure("scenes generate --seed 3 --count 2 --textures textures -o scenes", 2, "was made with other");
+  EXPECT_EQ(filesIn("scenes").size(), 1u);
+}
+
+TEST_F(Dataset, OfTwoKindsAtOnceOneIsMade) {
+  writeScenes(6);
+  const std::string one = "'" ODIS_COMMAND "' " + std::string(kAll) + "-o data --jobs 1";
+  const Outcome outcome =
+      runShell(one + " > a.log 2>&1 & first=$!; " + one +
+               " --kind incident-radiance > b.log 2>&1; second=$?; wait $first; echo $? $second");
+  EXPECT_TRUE(outcome.text == "0 2\n" || outcome.text == "2 0\n")
+      << outcome.text << bytesOf("a.log") << bytesOf("b.log");
+  expectOk("dataset check data", "6 shards are as the manifest says");
+}
+
+TEST_F(Dataset, SaysHowMuchIsToBeMade) {
+  writeScenes(3);
+  expectOk(std::string(kAll) + "-o data --dry-run", "3 of 3 shards are to be made");
+  EXPECT_FALSE(exists("data"));
+  expectOk(std::string(kAll) + "-o data --shards 1 --of 3");
+  expectOk(std::string(kAll) + "-o data --dry-run", "2 of 3 shards are to be made");
 }
 
 TEST_F(Dataset, GeneratedScenesHaveTheirSeeds) {
@@ -159,6 +215,16 @@ TEST_F(Dataset, MergeRefusesWhatDoesNotBelongTogether) {
   expectFailure("dataset merge data other -o all", 3, "have the same name and are not the same");
   expectFailure("dataset merge data other", 2, "expected -o");
   EXPECT_FALSE(exists("all/manifest.json"));
+  expectOk("dataset generate --scenes scenes --quick --kind incident-radiance -o pixels");
+  expectFailure("dataset merge data pixels -o both", 2, "pixels: scene1.shard is made with");
+  expectFailure("dataset merge pixels -o data", 2, "data: by its settings.json, shards are made with");
+  EXPECT_FALSE(exists("both"));
+  std::filesystem::create_directory(file("empty"));
+  expectFailure("dataset merge empty -o both", 2, "there are no shards to merge");
+  // A training's folder is none for shards.
+  std::filesystem::create_directory(file("run"));
+  write("run/checkpoint", "");
+  expectFailure(std::string(kAll) + "-o run", 2, "run: holds a training");
   write("data/manifest.json", "{}");
   expectFailure("dataset check data", 3, "data/manifest.json: is no manifest of format 1");
   expectFailure("dataset info data", 3, "is no manifest");

@@ -11,6 +11,7 @@
 #include <thread>
 
 #include "learn/data/dataset.h"
+#include "learn/scenes/generate.h"
 #include "learn/train/train.h"
 #include "learn/train/validation.h"
 #include "odis/models/direction_formula.h"
@@ -275,6 +276,25 @@ TEST_F(Training, GoesOnAsIfNothingHadHappened) {
   TrainConfig other = config();
   other.batch = 32;
   EXPECT_THROW(train(other, run("whole"), {}, patient), TrainError);
+}
+
+TEST_F(Training, RefusesOtherDataAndFoldersOfData) {
+  if (!canTrain()) GTEST_SKIP() << "built without libtorch";
+  TrainObserver patient;
+  TrainConfig c = config();
+  c.data = run("copied");
+  fs::copy(config().data, c.data);
+  c.steps = c.roundSteps = c.validateSteps = 2;
+  ASSERT_TRUE(train(c, run("on-copied"), {}, patient));
+  ASSERT_TRUE(train(c, run("on-copied"), {}, patient)) << "the same shards";
+  EXPECT_THROW(train(c, c.data, {}, patient), TrainError) << "a data set's folder";
+  EXPECT_FALSE(fs::exists(c.data + "/config.json"));
+  // A shard of the same name that was made anew, in another way.
+  const std::string shard = shardFile(c.data, "000005-" + std::string(kindOf(5).name));
+  ASSERT_TRUE(fs::remove(shard));
+  ASSERT_TRUE(makeShard(seedSources(5, 5).front(), DataSettings::quick(), Assets{}, c.data));
+  EXPECT_THROW(train(c, run("on-copied"), {}, patient), TrainError);
+  EXPECT_THROW(train(c, run("mixed"), {}, patient), GenerateError) << "shards made in two ways";
 }
 
 TEST_F(Training, TwoProcessesLearnTheSame) {

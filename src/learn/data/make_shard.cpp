@@ -6,6 +6,7 @@
 
 #include <filesystem>
 
+#include "learn/data/folder_settings.h"
 #include "learn/scenes/generate.h"
 #include "learn/scenes/random.h"
 #include "odis_version.h"
@@ -245,8 +246,7 @@ void removeAbandoned(const std::string& folder) {
 bool makeShard(const ShardSource& source, const DataSettings& settings, const Assets& assets,
                const std::string& folder) {
   const std::string file = shardFile(folder, source.name);
-  nlohmann::ordered_json made = toJson(settings);
-  if (source.kind) made["assets"] = assets.fingerprint();
+  const nlohmann::ordered_json made = shardSettings(settings, assets, source.kind != nullptr);
   if (fs::exists(file)) {
     if (ShardHeader(file).header().value("settings", nlohmann::json()) != nlohmann::json(made))
       throw GenerateError(

@@ -113,6 +113,11 @@ std::string sceneName(uint64_t seed, const Kind& kind) {
   return fmt::format("{:06}-{}", seed, kind.name);
 }
 
+void checkScene(uint64_t seed, const Kind& kind, const Assets& assets, const std::string& folder) {
+  const fs::path final = fs::path(folder) / sceneName(seed, kind);
+  if (fs::exists(final)) checkSame(final, assets);
+}
+
 bool generateScene(uint64_t seed, const Kind& kind, const Assets& assets, const std::string& folder) {
   const fs::path final = fs::path(folder) / sceneName(seed, kind);
   if (fs::exists(final)) {
@@ -122,7 +127,7 @@ bool generateScene(uint64_t seed, const Kind& kind, const Assets& assets, const 
   const TemporaryFolder temporary(fmt::format("{}.part-{}", final.string(), getpid()));
   for (int attempt = 0;; ++attempt) {
     if (attempt == kDrafts)
-      throw GenerateError(fmt::format("no draft of {} shows anything", sceneName(seed, kind)));
+      throw std::runtime_error(fmt::format("no draft of {} shows anything", sceneName(seed, kind)));
     temporary.remove();
     Draft draft(kind.name, streamOf(seed) + uint64_t(attempt), assets);
     kind.build(draft);

@@ -8,7 +8,7 @@
 
 namespace odis::learn {
 
-// A folder of scenes that was made with other options, or can't be used.
+// A folder that holds what was made with other options than what is to be made.
 class GenerateError : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
@@ -24,5 +24,7 @@ std::string sceneName(uint64_t seed, const Kind& kind);
 // temporary name; what is there already stays as it is, if it was made of the same assets, else
 // GenerateError. Returns whether it was made. Throws WriteError, std::filesystem::filesystem_error.
 bool generateScene(uint64_t seed, const Kind& kind, const Assets& assets, const std::string& folder);
+// Throws the GenerateError that generateScene would; makes nothing.
+void checkScene(uint64_t seed, const Kind& kind, const Assets& assets, const std::string& folder);
 
 }  // namespace odis::learn

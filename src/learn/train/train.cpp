@@ -8,6 +8,7 @@
 #include <thread>
 
 #include "learn/data/dataset.h"
+#include "learn/data/folder_settings.h"
 #include "learn/train/task.h"
 #include "odis_version.h"
 #include "render/files/read_json.h"
@@ -79,6 +80,9 @@ class Training {
   // The folder is this training's, or nobody's yet.
   void claimFolder() {
     render::makeFolder(m_folder);
+    if (!shardsIn(m_folder).empty())
+      throw TrainError(
+          fmt::format("\"{}\" holds shards of a data set, expected a folder for the training", m_folder));
     for (const char* name : {"losses.csv", "validation.csv", "events.out.tfevents.odis", "curves.png",
                              "odis.weights", "checkpoint"})
       render::checkOutput(m_folder + "/" + name);
@@ -97,8 +101,9 @@ class Training {
                                 "\n");
   }
 
-  // The data's shards of one side of the split, by name.
+  // The data's shards of one side of the split, by name. Throws GenerateError if not all were made alike.
   std::vector<std::string> shardsOf(Split split) const {
+    commonSettings({m_config.data});
     std::vector<std::string> names;
     for (const std::string& name : shardsIn(m_config.data))
       if (ShardHeader(shardFile(m_config.data, name)).header().value("split", nlohmann::json()) ==
@@ -229,6 +234,7 @@ class Training {
                                     {"inSum", m_inSum},
                                     {"seconds", m_seconds},
                                     {"shards", m_shards},
+                                    {"data", m_task->fingerprint()},
                                     {"losses", losses},
                                     {"validations", validations}});
   }
@@ -252,6 +258,12 @@ class Training {
     const std::vector<uint8_t> state = reader.read<uint8_t>("learner");
     m_learner.restore({reinterpret_cast<const char*>(state.data()), state.size()});
     load(h.at("shards").get<std::vector<std::string>>());
+    // Shards of the same names may have been made anew.
+    if (const auto before = h.find("data"); before != h.end() && *before != m_task->fingerprint())
+      throw TrainError(fmt::format(
+          "\"{}\" is of a training on other shards than those of these names in \"{}\"; expected the same "
+          "shards or an empty folder",
+          checkpointPath(), m_config.data));
     return true;
   }
 

@@ -24,7 +24,8 @@ class TrainObserver {
 // validation.csv, curves.png, an event file for TensorBoard, checkpoint and odis.weights. Where there is a
 // checkpoint it goes on from there: the same weights to the bit as without the pause, unless shards arrived
 // meanwhile. Returns false if cancelled, after a checkpoint. Throws TrainError (the folder holds another
-// training), ConfigError, ShardError, WriteError.
+// training, or a data set), GenerateError (the data's shards were not made alike), ConfigError, ShardError,
+// WriteError.
 bool train(const TrainConfig& config, const std::string& folder, const Processes& processes,
            TrainObserver& observer);
 

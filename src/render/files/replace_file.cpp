@@ -4,6 +4,7 @@
 #include <unistd.h>
 
 #include <atomic>
+#include <cerrno>
 #include <climits>
 #include <filesystem>
 #include <new>
@@ -73,6 +74,19 @@ void replaceFile(const std::string& path, const std::function<void(CheckedStream
 
 void writeFile(const std::string& path, std::string_view bytes) {
   replaceFile(path, [&](CheckedStream& stream) { stream.write(bytes.data(), bytes.size()); });
+}
+
+bool writeNewFile(const std::string& path, std::string_view bytes) {
+  if (fs::exists(path)) return false;
+  const TemporaryFile temporary{temporaryName(path)};
+  writeFile(temporary.path, bytes);
+  if (link(temporary.path.c_str(), path.c_str()) == 0) return true;
+  if (errno == EEXIST) return false;
+  // A file system without hard links.
+  std::error_code error;
+  fs::rename(temporary.path, path, error);
+  if (error) throw writeError(path, error.message().c_str());
+  return true;
 }
 
 void makeFolder(const std::string& path) {

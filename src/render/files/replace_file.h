@@ -20,6 +20,10 @@ void replaceFile(const std::string& path, const std::function<void(CheckedStream
 // The same of bytes.
 void writeFile(const std::string& path, std::string_view bytes);
 
+// Writes a file that is not there yet. False if it is there, also where another process was quicker; what is
+// there is complete then. Throws WriteError.
+bool writeNewFile(const std::string& path, std::string_view bytes);
+
 // Makes a folder and those above it, where they aren't there yet. Throws WriteError with path and reason.
 void makeFolder(const std::string& path);
 
