@@ -137,6 +137,18 @@ TEST(Parameters, AreRefusedOutsideOfTheirRangesAndTakenAtTheirEnds) {
   EXPECT_GT(count, 2500);
 }
 
+TEST(Parameters, ThatAreRequiredAreMissed) {
+  const ElementMaker maker;
+  int count = 0;
+  for (const ElementType& type : allElementTypes())
+    for (const auto& [name, declaration] : maker.make(type).declarations) {
+      if (declaration.fallbackText() != "required") continue;
+      ++count;
+      EXPECT_NE(maker.make(type, name, "").error.find(name), std::string::npos) << type.type << " " << name;
+    }
+  EXPECT_GT(count, 10);
+}
+
 TEST(Parameters, ThatAreMisspeltGetAWarningWithTheNameThatWasMeant) {
   const ElementMaker maker;
   for (const ElementType& type : allElementTypes())
@@ -154,15 +166,15 @@ TEST(Parameters, ThatAreMisspeltGetAWarningWithTheNameThatWasMeant) {
     }
 }
 
-// Rows of the manual: heading, parameter, values, type.
-using Rows = std::set<std::array<std::string, 4>>;
+// Rows of the manual: heading, parameter, values, default, type.
+using Rows = std::set<std::array<std::string, 5>>;
 
 Rows rowsOfProgram() {
   const ElementMaker maker;
   Rows rows;
   for (const ElementType& type : allElementTypes())
     for (const auto& [name, declaration] : maker.make(type).declarations)
-      rows.insert({type.heading(), name, declaration.text(), type.type});
+      rows.insert({type.heading(), name, declaration.text(), declaration.fallbackText(), type.type});
   return rows;
 }
 
@@ -173,10 +185,10 @@ void addRowsOfPage(const char* page, Rows& rows) {
     if (begins(line, "## ")) heading = line.substr(3);
     const std::vector<std::string> cells =
         begins(line, "| `") ? cellsOfRow(line) : std::vector<std::string>();
-    if (cells.size() != 3) continue;
-    std::istringstream types(cells[2]);
+    if (cells.size() != 4) continue;
+    std::istringstream types(cells[3]);
     for (std::string type; std::getline(types, type, ',');)
-      rows.insert({heading, cells[0].substr(1, cells[0].size() - 2), cells[1],
+      rows.insert({heading, cells[0].substr(1, cells[0].size() - 2), cells[1], cells[2],
                    type.substr(type.find_first_not_of(' '))});
   }
 }
@@ -188,14 +200,14 @@ Rows rowsOfManual() {
   return rows;
 }
 
+std::string textOf(const std::array<std::string, 5>& row) {
+  return fmt::format("{} | {} | {} | {} | {}", row[0], row[1], row[2], row[3], row[4]);
+}
+
 TEST(Parameters, AreAllInTheManual) {
   const Rows program = rowsOfProgram(), manual = rowsOfManual();
-  for (const auto& row : program)
-    EXPECT_TRUE(manual.count(row)) << "missing: " << row[0] << " | " << row[1] << " | " << row[2] << " | "
-                                   << row[3];
-  for (const auto& row : manual)
-    EXPECT_TRUE(program.count(row)) << "wrong: " << row[0] << " | " << row[1] << " | " << row[2] << " | "
-                                    << row[3];
+  for (const auto& row : program) EXPECT_TRUE(manual.count(row)) << "missing: " << textOf(row);
+  for (const auto& row : manual) EXPECT_TRUE(program.count(row)) << "wrong: " << textOf(row);
 }
 
 }  // namespace

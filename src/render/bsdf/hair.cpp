@@ -223,7 +223,8 @@ BsdfPtr makeHair(const Properties& properties, Builder& builder) {
   const float eumelanin = properties.number("eumelanin", range, 1.3f),
               pheomelanin = properties.number("pheomelanin", range, 0.2f),
               scale = properties.number("scale", range, 1.0f);
-  const TexturePtr sigmaA = builder.optionalTexture(properties, "sigma_a", {"colour or texture", range});
+  const TexturePtr sigmaA = builder.optionalTexture(
+      properties, "sigma_a", {.type = "colour or texture", .range = range, .otherwise = "of the pigments"});
   if (!sigmaA)
     return std::make_shared<Hair>(
         fibre, Rgb(0.419f, 0.697f, 1.37f) * eumelanin + Rgb(0.187f, 0.4f, 1.05f) * pheomelanin, 1.0f);

@@ -24,7 +24,7 @@ constexpr NamedDielectric kNamedDielectrics[] = {
 }  // namespace
 
 float readIor(const Properties& properties, const std::string& name, const std::string& fallback) {
-  properties.declare(name, {"number or material", kIndexRange});
+  properties.declare(name, {.type = "number or material", .range = kIndexRange, .fallback = fallback});
   const auto found = properties.parameters.find(name);
   const bool given = found != properties.parameters.end();
   if (given && !std::holds_alternative<std::string>(found->second.value))

@@ -35,7 +35,8 @@ BsdfPtr makeNormalMap(BsdfPtr nested, TexturePtr normals, const PerturbationOpti
 }
 
 BsdfPtr makeNormalMap(const Properties& properties, Builder& builder) {
-  TexturePtr normals = builder.optionalTexture(properties, "normalmap", {"texture"});
+  TexturePtr normals =
+      builder.optionalTexture(properties, "normalmap", {.type = "texture", .otherwise = "any texture in it"});
   if (!normals) {
     // Files of earlier versions nest the texture under any name.
     const Properties* nested = properties.child("texture");

@@ -57,10 +57,12 @@ RoughnessParameters readRoughness(const Properties& properties, Builder& builder
                      "of the same roughness");
   }
   result.sampleVisible = properties.boolean("sample_visible", true);
-  const Declaration declaration{"number or texture", kUnit};
-  const TexturePtr alpha = builder.optionalTexture(properties, "alpha", declaration);
-  const TexturePtr alphaU = builder.optionalTexture(properties, "alpha_u", declaration);
-  const TexturePtr alphaV = builder.optionalTexture(properties, "alpha_v", declaration);
+  const auto read = [&](const char* name, const char* otherwise) {
+    return builder.optionalTexture(properties, name,
+                                   {.type = "number or texture", .range = kUnit, .otherwise = otherwise});
+  };
+  const TexturePtr alpha = read("alpha", "0.1"), alphaU = read("alpha_u", "alpha"),
+                   alphaV = read("alpha_v", "alpha");
   if (!alphaU != !alphaV)
     throw SceneError(properties.location, "\"alpha_u\" and \"alpha_v\" must be given together");
   if (alpha && alphaU)
@@ -101,9 +103,11 @@ ComplexIor readComplexIor(const Properties& properties, Builder& builder) {
   const std::string material = properties.string("material", "none");
   // Mirrors are made with a large k.
   // Spectra of coloured metals have negative channels in linear sRGB. Fresnel's equations take the squares.
-  const Declaration declaration{"colour or texture", between(-1e6, 1e6)};
-  const TexturePtr eta = builder.optionalTexture(properties, "eta", declaration),
-                   k = builder.optionalTexture(properties, "k", declaration);
+  const auto read = [&](const char* name, const char* otherwise) {
+    return builder.optionalTexture(
+        properties, name, {.type = "colour or texture", .range = between(-1e6, 1e6), .otherwise = otherwise});
+  };
+  const TexturePtr eta = read("eta", "0, or material's"), k = read("k", "1, or material's");
   if (eta || k || material == "none") {
     if (material != "none")
       builder.warn(properties.location, "found both \"material\" and \"eta\", \"k\"; the material is ignored",

@@ -89,7 +89,9 @@ class PolarizedPlastic final : public Bsdf {
 
 BsdfPtr makePolarizedPlastic(const Properties& properties, Builder& builder) {
   const float relative = readRelativeIor(properties, "polypropylene");
-  const TexturePtr eta = builder.optionalTexture(properties, "eta", {"number or texture", kIndexRange});
+  const TexturePtr eta = builder.optionalTexture(
+      properties, "eta",
+      {.type = "number or texture", .range = kIndexRange, .otherwise = "int_ior / ext_ior"});
   if (eta && (properties.has("int_ior") || properties.has("ext_ior")))
     throw SceneError(properties.placeOf("eta"),
                      "found both \"eta\" and \"int_ior\" or \"ext_ior\", expected one or the other");

@@ -103,6 +103,7 @@ class Principled final : public Bsdf {
 
 float readEta(const Properties& properties, bool transparent) {
   const std::optional<float> eta = properties.optionalNumber("eta", kIndexRange);
+  properties.describeFallback("eta", "by specular");
   const float specular = properties.number("specular", kUnit, 0.5f);
   if (eta) {
     if (properties.has("specular"))

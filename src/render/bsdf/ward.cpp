@@ -110,7 +110,8 @@ BsdfPtr makeWard(const Properties& properties, Builder& builder) {
   p.variant = variant == "ward" ? Variant::ward : variant == "ward-duer" ? Variant::duer : Variant::balanced;
   const ScalarParameter alpha = readScalar(properties, builder, "alpha", kUnit, 0.1f);
   const auto readAlpha = [&](const char* name) {
-    const TexturePtr texture = builder.optionalTexture(properties, name, {"number or texture", kUnit});
+    const TexturePtr texture = builder.optionalTexture(
+        properties, name, {.type = "number or texture", .range = kUnit, .otherwise = "alpha"});
     return texture ? ScalarParameter(texture, kUnit) : alpha;
   };
   p.alphaU = readAlpha("alpha_u");

@@ -62,12 +62,14 @@ std::vector<EmitterPtr> makeSpot(const Properties& node, Builder& builder) {
   const Matrix4 toWorld = node.transform("to_world");
   const float cutoff = node.number("cutoff_angle", between(0.001, 180), 20.0f);
   float beamWidth = node.number("beam_width", between(0, 180), cutoff * 0.75f);
+  node.describeFallback("beam_width", "3/4 of cutoff_angle");
   if (beamWidth > cutoff) {
     builder.warn(node.placeOf("beam_width"),
                  "the beam_width of a spot light is more than its cutoff_angle; it is clamped");
     beamWidth = cutoff;
   }
-  const TexturePtr texture = builder.optionalTexture(node, "texture", {"colour or texture", kEmissionRange});
+  const TexturePtr texture = builder.optionalTexture(
+      node, "texture", {.type = "colour or texture", .range = kEmissionRange, .otherwise = "none"});
   if (texture && !isFinite(texture->mean()))
     throw SceneError(node.placeOf("texture"), "the texture of a spot light is not a finite number");
   if (!isInvertibleAffine(toWorld))

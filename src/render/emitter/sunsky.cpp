@@ -93,6 +93,7 @@ Daylight readDaylight(const Properties& node) {
   for (const char* parameter : {"latitude", "longitude", "timezone", "year", "month", "day", "hour"})
     refuseBoth(node, "sun_direction", parameter);
   const Vec3 ofTime = directionFromTime(node, zUp), given = node.vector("sun_direction", ofTime);
+  node.describeFallback("sun_direction", "by time and place");
   Vec3 toSun = node.has("sun_direction") ? transformVector(result.toWorld.inverse(), given) : ofTime;
   if (!isFinite(toSun) || !(length(toSun) > 0))
     throw SceneError(node.location, "the direction of the sun is not a finite vector other than zero");
@@ -118,6 +119,7 @@ EmitterPtr sunLight(const Properties& node, const Daylight& daylight, float scal
   // At most the whole sphere.
   const float scaled = kSunDiameter * node.number("sun_radius_scale", between(0, 670), 1.0f);
   const float diameter = node.number("sun_aperture", between(0, 360), scaled);
+  node.describeFallback("sun_aperture", "0.5358 sun_radius_scale");
   // The stretch moves the sun along with the sky about it.
   Vec3 local = daylight.sunDirection;
   const float horizontal = std::hypot(local.x, local.z), zenith = daylight.sunZenith * daylight.stretch;
@@ -156,6 +158,8 @@ std::vector<EmitterPtr> makeSunSky(const Properties& node, Builder& builder) {
   const float scale = emissionScale(node, "scale", 1.0f);
   const float skyScale = emissionScale(node, "sky_scale", scale),
               sunScale = emissionScale(node, "sun_scale", scale);
+  node.describeFallback("sky_scale", "scale");
+  node.describeFallback("sun_scale", "scale");
   std::vector<EmitterPtr> lights;
   if (skyScale > 0) lights.push_back(skyLight(node, daylight, skyScale));
   if (sunScale > 0) lights.push_back(sunLight(node, daylight, sunScale));

@@ -89,7 +89,9 @@ std::optional<Placed> Builder::placed(const Properties& node, Scale scale) {
 
 TexturePtr Builder::texture(const Properties& parent, const std::string& name, const Declaration& declaration,
                             const Rgb& fallback) {
-  if (TexturePtr found = optionalTexture(parent, name, declaration)) return found;
+  Declaration withFallback = declaration;
+  withFallback.fallback = fallback;
+  if (TexturePtr found = optionalTexture(parent, name, withFallback)) return found;
   return std::make_shared<ConstantTexture>(fallback);
 }
 

@@ -32,7 +32,11 @@ std::string sizeFault(const Crop& crop) {
 }
 
 std::shared_ptr<const Filter> loadMitchell(const Properties& node) {
-  const auto number = [&](const char* name) { return node.number(name, kMitchellRange, 1.0f / 3.0f); };
+  const auto number = [&](const char* name) {
+    const float value = node.number(name, kMitchellRange, 1.0f / 3.0f);
+    node.describeFallback(name, "1/3");
+    return value;
+  };
   const float a = number("a"), b = number("b"), c = number("c");
   // The two are called b and c, or a and b.
   return node.has("a") ? makeMitchellFilter(a, b) : makeMitchellFilter(b, c);
@@ -90,6 +94,8 @@ FilmSettings loadFilm(const Properties* node, const LoadOptions& options, Warnin
                 y = film.integer("crop_offset_y", kOffsets, 0),
                 width = film.integer("crop_width", kSizes, result.width),
                 height = film.integer("crop_height", kSizes, result.height);
+  film.describeFallback("crop_width", "width");
+  film.describeFallback("crop_height", "height");
   warnOfMisspelt(film, warnings);
   result.crop = {0, 0, result.width, result.height};
   if (options.crop) {

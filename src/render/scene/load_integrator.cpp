@@ -74,6 +74,7 @@ int readSampleCount(const Properties& sampler, Warnings& warnings) {
                  "in place of the sampler '" + sampler.type + "' this program's draws as many samples",
                  Effect::same);
   const int64_t count = sampler.integer("sample_count", between(1, kMost), 1);
+  sampler.describeFallback("sample_count", "4");
   warnOfMisspelt(sampler, warnings);
   return sampler.has("sample_count") ? int(count) : 0;
 }

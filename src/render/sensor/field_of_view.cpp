@@ -11,8 +11,9 @@ constexpr NumberRange kFocalLengthRange = between(0.1, 1e6);    // mm
 
 // The angle along the diagonal of 35 mm film.
 double fromFocalLength(const Properties& node) {
-  node.declare("focal_length", {"string", kFocalLengthRange});
-  std::string text = node.string("focal_length", "50mm");
+  const std::string fallback = "50mm";
+  node.declare("focal_length", {.type = "string", .range = kFocalLengthRange, .fallback = fallback});
+  std::string text = node.string("focal_length", fallback);
   const std::string found = text;
   const size_t unit = text.find_last_not_of("0123456789.eE+- \t");
   if (unit != std::string::npos && unit >= 1 && text.compare(unit - 1, 2, "mm") == 0) text.resize(unit - 1);
@@ -27,6 +28,7 @@ double fromFocalLength(const Properties& node) {
 double horizontalFieldOfView(const Properties& node, const Vec2i& resolution) {
   const double aspect = double(resolution.x) / resolution.y;
   const std::optional<float> degrees = node.optionalNumber("fov", kFieldOfViewRange);
+  node.describeFallback("fov", "by focal_length");
   std::string axis = node.word("fov_axis", "x|y|diagonal|smaller|larger", "x");
   double angle = 0;
   if (degrees) {

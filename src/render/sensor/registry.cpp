@@ -41,6 +41,7 @@ SensorPtr makeThinLens(const Properties& node, const Vec2i& resolution, Warnings
   const ClipRange clip = readClipRange(node);
   const Lens lens{node.number("aperture_radius", between(0, 1e15)),
                   node.number("focus_distance", kSensorDistances, clip.farthest)};
+  node.describeFallback("focus_distance", "far_clip");
   return std::make_shared<ThinLens>(rigidToWorld(node, warnings), readProjection(node, resolution), clip,
                                     lens);
 }
@@ -110,6 +111,7 @@ Shutter readShutter(const Properties& node) {
   constexpr NumberRange times = between(-1e15, 1e15);
   const float open = node.number("shutter_open", times, 0.0f);
   const Shutter shutter{open, node.number("shutter_close", times, std::max(open, 0.0f))};
+  node.describeFallback("shutter_close", "shutter_open, at least 0");
   if (shutter.close < shutter.open)
     node.refuse("shutter_close", fmt::format("{}", shutter.close),
                 fmt::format("at least the {} of shutter_open", shutter.open));

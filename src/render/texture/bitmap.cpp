@@ -61,6 +61,7 @@ float tame(float x) {
 
 WrapMode readWrapMode(const Properties& node, const std::string& name, WrapMode fallback) {
   const std::string mode = node.word(name, "repeat|clamp|mirror|zero|one", "");
+  node.describeFallback(name, name == "wrap_mode" ? "repeat" : "wrap_mode");
   if (mode == "repeat") return WrapMode::repeat;
   if (mode == "clamp") return WrapMode::clamp;
   if (mode == "mirror") return WrapMode::mirror;
@@ -71,6 +72,7 @@ WrapMode readWrapMode(const Properties& node, const std::string& name, WrapMode 
 
 std::shared_ptr<const Image> readImage(const Properties& node, Builder& builder) {
   const std::string fileName = node.string("filename"), channel = node.word("channel", "r|g|b|a", "");
+  node.describeFallback("channel", "all");
   const SourceLocation& at = node.placeOf("filename");
   const std::string path = builder.resolvePath(fileName, at);
   const float gamma = node.number("gamma", kGammaRange, -1.0f);

@@ -45,7 +45,9 @@ const Properties::Parameter* find(const Properties& node, const std::string& nam
 // A getter for values that are stored as they are asked for.
 template <class T>
 T get(const Properties& node, const std::string& name, const T* fallback, const char* type) {
-  const Properties::Parameter* parameter = find(node, name, fallback != nullptr, {type});
+  Declaration declaration{.type = type};
+  if (fallback) declaration.fallback = *fallback;
+  const Properties::Parameter* parameter = find(node, name, fallback != nullptr, declaration);
   if (!parameter) return *fallback;
   if (const T* value = std::get_if<T>(&parameter->value)) return *value;
   node.refuse(name, describe(parameter->value), withArticle(type));
@@ -70,9 +72,34 @@ std::string Declaration::text() const {
   return type + (limits == "any" ? "" : ", " + limits) + (clamped ? ", clamped" : "");
 }
 
+std::string Declaration::fallbackText() const {
+  if (*otherwise || !fallback) return *otherwise ? otherwise : "required";
+  return std::visit(
+      [](const auto& value) -> std::string {
+        using T = std::decay_t<decltype(value)>;
+        if constexpr (std::is_same_v<T, double>) {
+          return fmt::format("{}", float(value));
+        } else if constexpr (std::is_same_v<T, Rgb>) {
+          return value.x == value.y && value.y == value.z
+                     ? fmt::format("{}", value.x)
+                     : fmt::format("{}, {}, {}", value.x, value.y, value.z);
+        } else if constexpr (std::is_same_v<T, Imath::V3d>) {
+          return fmt::format("{}, {}, {}", value.x, value.y, value.z);
+        } else if constexpr (std::is_same_v<T, Imath::M44d>) {
+          return value == Imath::M44d() ? "identity" : "a transform";
+        } else if constexpr (std::is_same_v<T, Animation>) {
+          return "an animation";
+        } else {
+          return fmt::format("{}", value);
+        }
+      },
+      *fallback);
+}
+
 float Properties::number(const std::string& name, const NumberRange& range,
                          std::optional<float> fallback) const {
-  const Parameter* parameter = find(*this, name, fallback.has_value(), {"number", range});
+  const Parameter* parameter =
+      find(*this, name, fallback.has_value(), {.type = "number", .range = range, .fallback = fallback});
   if (!parameter) return *fallback;
   const std::optional<double> value = numberIn(parameter->value);
   if (!value) refuse(name, describe(parameter->value), "a number");
@@ -81,13 +108,15 @@ float Properties::number(const std::string& name, const NumberRange& range,
 }
 
 std::optional<float> Properties::optionalNumber(const std::string& name, const NumberRange& range) const {
+  declare(name, {.type = "number", .range = range, .otherwise = "none"});
   const float value = number(name, range, 0.0f);
   return has(name) ? std::optional(value) : std::nullopt;
 }
 
 int64_t Properties::integer(const std::string& name, const NumberRange& range,
                             std::optional<int64_t> fallback) const {
-  const Parameter* parameter = find(*this, name, fallback.has_value(), {"integer", range});
+  const Parameter* parameter =
+      find(*this, name, fallback.has_value(), {.type = "integer", .range = range, .fallback = fallback});
   if (!parameter) return *fallback;
   const int64_t* value = std::get_if<int64_t>(&parameter->value);
   if (!value) refuse(name, describe(parameter->value), "an integer");
@@ -104,7 +133,7 @@ std::string Properties::string(const std::string& name, std::optional<std::strin
 }
 
 std::string Properties::word(const std::string& name, const char* words, const std::string& fallback) const {
-  declare(name, {.type = "string", .words = words});
+  declare(name, {.type = "string", .words = words, .fallback = fallback});
   if (!has(name)) return fallback;
   const std::string given = string(name), found = lowerCase(given);
   std::vector<std::string> known;
@@ -125,7 +154,8 @@ Imath::V3d Properties::preciseVector(const std::string& name, std::optional<Imat
 }
 
 Rgb Properties::color(const std::string& name, const NumberRange& range, std::optional<Rgb> fallback) const {
-  const Parameter* parameter = find(*this, name, fallback.has_value(), {"colour or number", range});
+  const Parameter* parameter = find(*this, name, fallback.has_value(),
+                                    {.type = "colour or number", .range = range, .fallback = fallback});
   if (!parameter) return *fallback;
   if (const std::optional<double> value = numberIn(parameter->value)) {
     if (!range.contains(*value)) refuse(name, fmt::format("{}", *value), range.text());
@@ -155,6 +185,10 @@ const Animation* Properties::animation(const std::string& name) const {
 
 void Properties::declare(const std::string& name, const Declaration& declaration) const {
   m_declarations.emplace(name, declaration);
+}
+
+void Properties::describeFallback(const std::string& name, const char* words) const {
+  m_declarations.at(name).otherwise = words;
 }
 
 std::string Properties::suggestionFor(const std::string& name) const {

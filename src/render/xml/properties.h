@@ -28,9 +28,15 @@ struct Declaration {
   NumberRange range = kAnyNumber;  // of a number, or of each channel of a colour
   const char* words = "";          // of a string that is one of several: "x|y|diagonal"
   bool clamped = false;            // into the range, with a warning, instead of refused
+  // What counts where it is not given: a value, or words if that hangs on other things. Neither: it has to be
+  // given.
+  std::optional<PropertyValue> fallback = {};
+  const char* otherwise = "";
 
   // "number, 0 to 1".
   std::string text() const;
+  // "0.5", "bk7", "required".
+  std::string fallbackText() const;
 };
 
 class Properties {
@@ -87,6 +93,8 @@ class Properties {
   std::string suggestionFor(const std::string& name) const;
   // Says what a parameter may be; the getters do so themselves. The first to say it counts.
   void declare(const std::string& name, const Declaration& declaration) const;
+  // Says in words what counts where a parameter that has been asked for is not given.
+  void describeFallback(const std::string& name, const char* words) const;
   // Where the parameter stands; the element itself if it has none of this name.
   const SourceLocation& placeOf(const std::string& name) const;
   // Throws SceneError: "found 2 for 'alpha', expected 0 to 1".
