@@ -141,6 +141,21 @@ TEST(LightTree, EveryLightThatShinesCanBeDrawn) {
   EXPECT_GT(excluded, 2000) << "lights that look away are worth leaving out";
 }
 
+// What docs/figures.md says of memory: a leaf of a mesh, and a light that is an emitter of its own.
+TEST(LightTree, TakesSoManyBytesALight) {
+  constexpr int kLights = 1024, kLeafBytes = 77, kEmitterBytes = 98;
+  Random random(3);
+  const auto mesh = soup(kLights, 0.1f, random);
+  AreaLight area(*mesh, uniform(1));
+  EXPECT_NEAR(double(LightSampler(indexed({&area})).bytes()) / kLights, kLeafBytes, 1);
+
+  std::vector<PointLight> points;
+  for (int i = 0; i < kLights; ++i) points.emplace_back(random.inCube(10), Rgb(1, 1, 1));
+  std::vector<Emitter*> all;
+  for (PointLight& point : points) all.push_back(&point);
+  EXPECT_NEAR(double(LightSampler(indexed(all)).bytes()) / kLights, kEmitterBytes, 1);
+}
+
 TEST(LightTree, LightsThatLookAwayOrLieBehindAreLeftOut) {
   std::vector<LightBounds> lights(3);
   // All face down: one above, one below; a third beyond the horizon.

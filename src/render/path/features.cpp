@@ -22,6 +22,9 @@ FirstHit firstHitAt(const Vertex& vertex, float distance) {
   return first;
 }
 
+// docs/figures.md names it.
+static_assert(sizeof(FeatureSums) == 88);
+
 void FeatureSums::add(const FirstHit& first, float sampleAlpha) {
   alpha += sampleAlpha;
   ++samples;
