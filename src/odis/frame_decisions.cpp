@@ -26,7 +26,7 @@ bool Frame::Data::nextRefinementPays() const {
   PossibleRefinement possible;
   possible.predictedRatio = cells.predictedVarianceRatio();
   possible.raysPerSample = cells.raysPerPath();
-  possible.cells = cells.view().cellCount;
+  possible.cells = builder->visitedCells();
   possible.seen = std::min(pilotSamples, double(kMostPilotSamples)) + done * learnedInPass;
   possible.learned = (next - done) * learnedInPass;
   possible.remaining = (options.samplesPerPixel - next) * pixels - pilotSamples;

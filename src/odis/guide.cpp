@@ -195,6 +195,9 @@ int GuideBuilder::coarsening() const {
 uint64_t GuideBuilder::samplesLeftOut() const {
   return m_data->store.samplesLeftOut();
 }
+double GuideBuilder::visitedCells() const {
+  return m_data->store.visitedCells();
+}
 uint64_t GuideBuilder::heldBytes() const {
   return m_data->store.bytes();
 }
@@ -220,6 +223,11 @@ Guide GuideBuilder::Data::buildMaps(const std::vector<CellStatistics>& cells,
   distributions.resize(cells.size());
   forEachFromCoarse(store.tasks(), cells, [&](size_t c) {
     const uint32_t parent = cells[c].parent;
+    if (!cells[c].hasMap) {
+      distributions[c] = distributions[parent];
+      result.copyMap(parent, c);
+      return;
+    }
     distributions[c] =
         directions->predict(chainOf(cells, c), parent == kNoCell ? nullptr : &distributions[parent]);
     packMap(distributions[c].radiance(), options.floor, result.texels.at(c * kMapTexels),

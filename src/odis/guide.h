@@ -152,6 +152,8 @@ class GuideBuilder {
   uint64_t modelId() const;
   // How many of the vertices added were taken, and how many refused, by reason.
   VertexCounts vertexCounts() const;
+  // How many cells the guide that was built last has that paths come to: one far out counts less than 1.
+  double visitedCells() const;
   // Held at most, samples included while they are added, and held now.
   uint64_t bytes() const;
   uint64_t heldBytes() const;

@@ -36,6 +36,10 @@ struct Guide::Data {
 
   MapArrays maps() const { return {texels.data(), sums.data(), texelDirections().x, rim}; }
   std::shared_ptr<Data> withRoom(size_t more) const;
+  void copyMap(size_t from, size_t to) {
+    std::copy_n(texels.at(from * kMapTexels), kMapTexels, texels.at(to * kMapTexels));
+    std::copy_n(sums.at(from * kSumsPerMap), kSumsPerMap, sums.at(to * kSumsPerMap));
+  }
   void setCosineProduct(bool multiply) { rim = multiply ? MapArrays().rim : kRimWithoutProduct; }
 
   // Beside this, cosines don't matter.

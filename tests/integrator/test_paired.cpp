@@ -185,8 +185,7 @@ TEST_P(Paired, DecisionLeavesTheMean) {
   EXPECT_LT(1.96 * result.error / integral, c.decision.halfWidth / std::sqrt(seedFactor())) << figures;
 }
 
-// Refinement and the spreading of samples need 4 samples per pixel. In the smallest image no cell's vertices
-// are alike enough for their mean to stand in for ended paths.
+// Refinement and the spreading of samples need 4 samples per pixel.
 std::vector<PairedCase> allCases() {
   std::vector<PairedCase> cases;
   for (const Decision& decision : kDecisions)
@@ -195,7 +194,6 @@ std::vector<PairedCase> allCases() {
         for (const int spp : {2, 4}) {
           const std::string name = decision.name;
           if (spp == 2 && (name == "refinement" || name == "samples")) continue;
-          if (size == 16 && name == "ended paths") continue;
           cases.push_back({decision, sampler, size, spp, (sampler == SamplerKind::sobol) == (spp == 4)});
         }
   return cases;

@@ -103,20 +103,27 @@ TEST(PlaceGrid, EdgesDoNotDependOnVerticesFarOut) {
   }
 }
 
-// A plane begins where the room does: half of what is on it lies within twice the room's size.
-TEST(PlaceGrid, PlanesThatBeginNearMakeCellsLittleLarger) {
+// A plane begins where the room does: a half or three fourths of its vertices lie within twice the room's
+// size.
+TEST(PlaceGrid, EdgesDoNotDependOnPlanesThatBeginNear) {
   Draw draw;
   const std::vector<Float3> positions = room(draw, 20000);
   const float without = gridFor(positions, kCells).finestEdge();
-  const FarOut plane = [](Draw& d) {
-    const float angle = d.uniform(0, 6.2831853f), distance = 2.5f / d.uniform(1e-5f, 1);
-    return Float3{2 + distance * std::cos(angle), 0, 2.5f + distance * std::sin(angle)};
+  const auto plane = [](float density, float near) {
+    return [=](Draw& d) {  // of a density that falls with this power of the distance
+      const float angle = d.uniform(0, 6.2831853f);
+      const float distance = near * std::pow(d.uniform(1e-5f, 1), -1 / (density - 2));
+      return Float3{2 + distance * std::cos(angle), 0, 2.5f + distance * std::sin(angle)};
+    };
   };
-  for (const double share : {0.01, 0.05, 0.1, 0.3}) {
-    const float with = gridFor(withFar(draw, positions, share, plane), kCells).finestEdge();
-    EXPECT_GT(with / without, 0.6) << share;
-    EXPECT_LT(with / without, 1.4) << share;
-  }
+  for (const float near : {1.2f, 2.5f})
+    for (const float density : {3.0f, 4.0f})
+      for (const double share : {0.001, 0.01, 0.1, 0.2, 0.3}) {
+        const FarOut farOut = plane(density, near);
+        const float with = gridFor(withFar(draw, positions, share, farOut), kCells).finestEdge();
+        EXPECT_NEAR(with / without, 1, density > 3 ? 0.25 : 0.1)
+            << share << ", " << density << ", from " << near;
+      }
 }
 
 // Where most vertices are those of a sky, the room is still what most of the light is learned for.
@@ -141,6 +148,9 @@ TEST(PlaceGrid, IsTheBoxOfWhatWasSeenElsewhere) {
       [](Draw& draw) {
         return Float3{draw.normal(), draw.normal(), draw.normal()};
       },
+      [](Draw& draw) {  // a long room, seen from near one end
+        return Float3{(draw.engine() % 3 ? 1 : 4) * draw.uniform(), draw.uniform(), draw.uniform()};
+      },
       [](Draw& draw) { return draw.direction() * 3.0f; },
       [](Draw& draw) { return draw.direction() * (draw.engine() % 2 ? 1.0f : 8.0f); }};
   for (const auto& scene : scenes) {
@@ -163,6 +173,16 @@ TEST(PlaceGrid, IsTheBoxOfWhatWasSeenElsewhere) {
     std::shuffle(positions.begin(), positions.end(), draw.engine);
     EXPECT_EQ(gridFor(positions, kCells), gridAround(low, extent, kCells)) << "in another order";
   }
+}
+
+// A floor of 16 x 16 pixels and the wall beside it.
+TEST(PlaceGrid, AWallBesideAVerySmallPictureIsNotFarOut) {
+  Draw draw;
+  std::vector<Float3> positions;
+  for (int i = 0; i < 256; ++i)
+    positions.push_back({draw.uniform(-0.14f, 0.14f), 0, draw.uniform(-0.14f, 0.14f)});
+  for (int i = 0; i < 25; ++i) positions.push_back({1, draw.uniform(0.2f, 1), draw.uniform(-0.6f, 0.6f)});
+  EXPECT_NEAR(gridFor(positions, kCells).finestEdge() * kCells, std::sqrt(1.14 * 1.14 + 1 + 1.2 * 1.2), 0.2);
 }
 
 TEST(PlaceGrid, DegenerateVerticesHaveAGridToo) {
@@ -245,6 +265,41 @@ TEST(PlaceGrid, GuidesKnowTheFloorAndWhatLiesFarOut) {
   for (const float x : {0.2f, 0.5f, 0.8f})
     EXPECT_NEAR(densityAt(with, {x, 0.4f, 0}, kBright) / densityAt(without, {x, 0.4f, 0}, kBright), 1, 0.25);
   EXPECT_GT(densityAt(with, {1.05e6f, 3.5e5f, 0}, {-0.6f, 0, 0.8f}), 5 * 0.8f / kPi);
+}
+
+// Cells that paths seldom come to are not worth a map of their own.
+TEST(PlaceGrid, FewVerticesFarOutHaveTheMapsOfCoarserCells) {
+  std::vector<PathVertex> vertices = floorUnderPatch(kBright, 20000, 1);
+  Draw draw;
+  const auto addFar = [&](int count, const Float3& to) {
+    for (PathVertex v : floorUnderPatch({-0.6f, 0, 0.8f}, count, 2)) {
+      v.position = v.position * 10.0f + to;
+      vertices.push_back(v);
+    }
+  };
+  for (int i = 0; i < 50; ++i) addFar(4, {1e5f, 6e4f * float(i), 0});
+  addFar(2000, {-1e5f, 3e4f, 0});
+  GuideOptions options;
+  options.model = test::formulas();
+  GuideBuilder builder(options);
+  builder.add(vertices);
+  const Guide guide = builder.build(vertices);
+  const GuideView view = guide.view();
+  const auto hasParentsMap = [&](const Float3& position) {
+    const uint64_t key = CellGrid(view.grid).key(position, {0, 0, 1}, 0);
+    const uint32_t cell = findSlot(view.slots, view.slotMask, key),
+                   parent = findSlot(view.slots, view.slotMask, CellGrid::parent(key));
+    EXPECT_NE(cell, kNoCell);
+    const uint16_t* maps = view.maps.texels;
+    return std::equal(maps + cell * kMapTexels, maps + (cell + 1) * kMapTexels, maps + parent * kMapTexels);
+  };
+  EXPECT_TRUE(hasParentsMap(vertices[20000].position));
+  EXPECT_FALSE(hasParentsMap(vertices[20200].position));
+  EXPECT_FALSE(hasParentsMap(vertices[0].position));
+  GuideBuilder ofFloor(options);
+  ofFloor.add(ArrayView<const PathVertex>(vertices.data(), 20000));
+  EXPECT_NEAR(builder.visitedCells() / ofFloor.visitedCells(), 1, 0.04);
+  EXPECT_GT(view.cellCount, 1.03 * builder.visitedCells());
 }
 
 }  // namespace

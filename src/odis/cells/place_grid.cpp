@@ -29,6 +29,15 @@ constexpr double kLeastShare = 0.0033, kLeastCount = 0.5;
 constexpr double kCore = 0.65;
 // More may be left out of the vertices beyond this multiple of the radius of the densest share of all.
 constexpr double kDensest = 0.4, kAbsurdlyFar = 128;
+// So many vertices beyond this multiple of the core's radius are a horizon's, too.
+constexpr double kHorizon = 12, kLeastOfHorizon = 2;
+// What is far out lies apart from the rest, or a share of it lies many times as far: the end of a long room
+// does neither. Where vertices are few it has to lie many times as far, since cells would know little of a
+// wall beside the picture.
+constexpr double kFarther = 10, kLeastShareFarther = 0.003;
+constexpr size_t kFew = 1000;
+// At most this share of the vertices is left out at an end of an axis because of a horizon.
+constexpr double kMostLeftOut = 0.125;
 
 struct Distant {
   double squared;
@@ -115,28 +124,99 @@ Break findBreak(std::span<const double> logarithms, double least) {
   return {last + 1, octave - last - 1};
 }
 
-// Leaves out the positions that lie far out. Returns how many more to leave out at either end of each axis:
-// what reaches far begins near, where it can't be told from the rest.
-size_t leaveOutFar(std::vector<Float3>& positions) {
-  leaveOutAbsurdlyFar(positions);
-  // Some thousands of them tell as much as all.
-  constexpr size_t kSeen = 16384;
-  const size_t step = std::max<size_t>(1, positions.size() / kSeen);
-  std::vector<Float3> seen;
-  for (size_t i = 0; i < positions.size(); i += step) seen.push_back(positions[i]);
-  const size_t count = seen.size(), core = shareOf(count, kCore);
-  const Float3 centre = medianOf(seen);
+// What lies far out.
+struct FarOut {
+  double squared = INFINITY;  // beyond this distance, squared
+  // The vertices of a plane that runs to the horizon begin near, where they can't be told from the room's.
+  // But between one and two times any distance there are this many times as many of them as between two and
+  // four times. 0 where there is no horizon.
+  double horizonGrowth = 0;
+};
+
+// Whether enough of the vertices from `first` on lie many times as far out as those before.
+bool reachesFar(std::span<const Distant> sorted, size_t first) {
+  const auto beyond = size_t(kLeastShareFarther * double(sorted.size() - first));
+  return sorted[sorted.size() - 1 - beyond].squared > kFarther * kFarther * sorted[first - 1].squared;
+}
+
+FarOut findFarOut(std::span<const Float3> positions, const Float3& centre) {
   std::vector<Distant> distances;
-  for (const Float3& p : seen) distances.push_back({squaredDistance(p, centre), p});
+  for (const Float3& p : positions) distances.push_back({squaredDistance(p, centre), p});
   const auto isNearer = [](const Distant& a, const Distant& b) { return a.squared < b.squared; };
-  if (!(nthOf(distances, core, isNearer).squared > 0)) return 0;
+  const size_t count = positions.size(), core = shareOf(count, kCore);
+  const double coreSquared = nthOf(distances, core, isNearer).squared;
+  FarOut result;
+  if (!(coreSquared > 0)) return result;
   const std::span<Distant> outer = std::span(distances).subspan(core);
   std::sort(outer.begin(), outer.end(), isNearer);
   const Break far = findBreak(logarithmsOf(outer), std::max(kLeastCount, kLeastShare * double(count)));
-  if (far.first == outer.size()) return 0;
-  const double most = outer[far.first - 1].squared;
-  std::erase_if(positions, [&](const Float3& p) { return squaredDistance(p, centre) > most; });
-  return step * std::min(far.nextOctave / 2, count / 50);
+  const auto beyond = [&](double squared) {
+    return double(outer.end() - std::ranges::upper_bound(outer, squared, {}, &Distant::squared));
+  };
+  double nearest = 4 * coreSquared;  // of the distances that the horizon is looked for in
+  bool isHorizon = beyond(kHorizon * kHorizon * coreSquared) >= kLeastOfHorizon;
+  const bool isApart = far.nextOctave == 0;
+  if (far.first < outer.size() && ((isApart && count >= kFew) || reachesFar(outer, far.first))) {
+    nearest = result.squared = outer[far.first - 1].squared;
+    isHorizon = !isApart;
+  }
+  if (!isHorizon) return result;
+  const auto within = [&](double from, double to) {
+    return beyond(from * from * nearest) - beyond(to * to * nearest);
+  };
+  // Densities of a plane's vertices fall with the third or fourth power of the distance, most of them.
+  result.horizonGrowth = std::clamp(within(1, 4) / std::max(within(2, 8), 1.0), 1.5, 6.0);
+  return result;
+}
+
+// The box of all but `cut` vertices at either end of each axis.
+struct Box {
+  Float3 low, extent;
+};
+constexpr float Float3::*kAxes[] = {&Float3::x, &Float3::y, &Float3::z};
+Box boxOf(std::span<const Float3> vertices, size_t cut) {
+  Box box;
+  std::vector<float> values(vertices.size());
+  for (float Float3::*const axis : kAxes) {
+    for (size_t i = 0; i < values.size(); ++i) values[i] = vertices[i].*axis;
+    box.low.*axis = nthOf(values, cut);
+    box.extent.*axis = nthOf(values, values.size() - 1 - cut) - box.low.*axis;
+  }
+  return box;
+}
+
+// How far the box reaches to one side of its centre, in front of a horizon. `offsets` are those of all
+// vertices along an axis.
+float reachBeforeHorizon(std::vector<float> offsets, const FarOut& far, size_t cut) {
+  std::sort(offsets.begin(), offsets.end());
+  const auto countUpTo = [&](float x) {
+    return size_t(std::upper_bound(offsets.begin(), offsets.end(), x) - offsets.begin());
+  };
+  const auto most = size_t(kMostLeftOut * double(offsets.size()));
+  for (size_t i = countUpTo(float(std::sqrt(far.squared))); i-- > 0 && offsets[i] > 0;) {
+    const size_t beyond = offsets.size() - i;
+    const size_t twice = countUpTo(2 * offsets[i]), fourTimes = countUpTo(4 * offsets[i]);
+    // More vertices than the horizon's, by two standard errors.
+    const double expected = far.horizonGrowth * double(fourTimes - twice);
+    const double error = std::sqrt((1 + far.horizonGrowth) * expected);
+    if (beyond > most || double(twice - i) > double(cut) + expected + 2 * error) return offsets[i];
+  }
+  return 0;
+}
+
+Box boxBeforeHorizon(std::span<const Float3> vertices, const Float3& centre, const FarOut& far, size_t cut) {
+  Box box;
+  std::vector<float> above(vertices.size()), below(vertices.size());
+  for (float Float3::*const axis : kAxes) {
+    for (size_t i = 0; i < vertices.size(); ++i) {
+      above[i] = vertices[i].*axis - centre.*axis;
+      below[i] = -above[i];
+    }
+    const float down = reachBeforeHorizon(below, far, cut), up = reachBeforeHorizon(above, far, cut);
+    box.low.*axis = centre.*axis - down;
+    box.extent.*axis = down + up;
+  }
+  return box;
 }
 
 double lengthOf(const Float3& extent) {
@@ -145,37 +225,51 @@ double lengthOf(const Float3& extent) {
   return std::sqrt(squaredDistance(extent, {}));
 }
 
-}  // namespace
-
-CellGrid gridAround(const Float3& low, const Float3& extent, int cellsPerDiagonal) {
+// The finest cells are those within `reach` of their edges.
+CellGrid gridReaching(const Float3& low, const Float3& extent, int cellsPerDiagonal, float reach) {
   // An edge and its inverse are normal numbers.
   const auto diagonal = float(std::clamp(lengthOf(extent), 1e-36, double(FLT_MAX) / 8));
   const float edge = lengthOf(extent) > 0 ? std::max(diagonal / float(cellsPerDiagonal), 1e-37f) : 1.0f;
   // An odd offset keeps walls at the ends of the extent off the cells' faces.
   const float offset = 0.37f * edge;
-  // From the middle of a cube that is as wide as the diagonal is long.
-  const auto reach = float(cellsPerDiagonal);
   return CellGrid(low - Float3{offset, offset, offset}, edge,
                   reach <= CellGrid::kMostReach ? std::max(reach, CellGrid::kLeastReach) : 0);
 }
 
+// The side, in edges of the finest cells, of the cube around a box where vertices lie beyond it: of those
+// there are few in any one place near the box.
+float reachOf(const Float3& extent, int cellsPerDiagonal) {
+  const double side = std::max({extent.x, extent.y, extent.z});
+  return float(side / lengthOf(extent) * cellsPerDiagonal) + 1;
+}
+
+}  // namespace
+
+// A cube as wide as the diagonal is long.
+CellGrid gridAround(const Float3& low, const Float3& extent, int cellsPerDiagonal) {
+  return gridReaching(low, extent, cellsPerDiagonal, float(cellsPerDiagonal));
+}
+
 CellGrid gridFor(std::vector<Float3> positions, int cellsPerDiagonal) {
   if (positions.empty()) return gridAround({}, {}, cellsPerDiagonal);
-  const size_t more = leaveOutFar(positions);
+  leaveOutAbsurdlyFar(positions);
+  // Some thousands of them tell as much as all.
+  constexpr size_t kSeen = 16384;
+  const size_t step = std::max<size_t>(1, positions.size() / kSeen);
+  std::vector<Float3> seen;
+  for (size_t i = 0; i < positions.size(); i += step) seen.push_back(positions[i]);
+  const Float3 centre = medianOf(seen);
+  const FarOut far = findFarOut(seen, centre);
+  const auto isNear = [&](const Float3& p) { return squaredDistance(p, centre) <= far.squared; };
+  const auto nearCount =
+      size_t(std::partition(positions.begin(), positions.end(), isNear) - positions.begin());
   // 0.5 % of the vertices at either end of each axis don't count in any case.
-  const size_t cut = positions.size() / 200 + more;
-  std::array<std::vector<float>, 3> axes;
-  for (const Float3& p : positions) {
-    axes[0].push_back(p.x);
-    axes[1].push_back(p.y);
-    axes[2].push_back(p.z);
-  }
-  float low[3], extent[3];
-  for (size_t a = 0; a < 3; ++a) {
-    low[a] = nthOf(axes[a], cut);
-    extent[a] = nthOf(axes[a], positions.size() - 1 - cut) - low[a];
-  }
-  return gridAround({low[0], low[1], low[2]}, {extent[0], extent[1], extent[2]}, cellsPerDiagonal);
+  const size_t cut = nearCount / 200;
+  const Box box = far.horizonGrowth > 0 ? boxBeforeHorizon(positions, centre, far, cut)
+                                        : boxOf(std::span(positions).first(nearCount), cut);
+  if (nearCount == positions.size() && far.horizonGrowth == 0)
+    return gridAround(box.low, box.extent, cellsPerDiagonal);
+  return gridReaching(box.low, box.extent, cellsPerDiagonal, reachOf(box.extent, cellsPerDiagonal));
 }
 
 }  // namespace odis::core

@@ -10,6 +10,16 @@
 
 namespace odis::core {
 
+namespace {
+
+// A cell beyond the grid's reach has a map of its own from so many samples on; one of fewer samples would not
+// save what it costs.
+constexpr double kLeastForMap = 64;
+// With so many samples a half of such a map comes from the cell itself (GuideOptions::priorSamples).
+constexpr double kHalfKnown = 250;
+
+}  // namespace
+
 Float3 reaim(const Float3& position, const Float3& wi, float distance, const Float3& centroid) {
   if (!std::isfinite(distance)) return wi;
   const Float3 direction = position + wi * distance - centroid;
@@ -252,8 +262,26 @@ const std::vector<CellStatistics>& CellStore::rollUp() {
       cell.level = level;
       for (const uint32_t child : childrenOf(c)) addTo(cell, m_cells[child]);
     });
+  forEachCell(*m_tasks, m_cells.size(), [&](size_t c) {
+    CellStatistics& cell = m_cells[c];
+    cell.hasMap = cell.count >= kLeastForMap || cell.parent == kNoCell || isWithinReach(m_links[c].key);
+  });
   if (m_looksAround) lookAround();
   return m_cells;
+}
+
+double CellStore::visitedCells() const {
+  double sum = 0;
+  for (size_t c = 0; c < m_cells.size(); ++c)
+    if (isWithinReach(m_links[c].key))
+      sum += 1;
+    else if (m_cells[c].hasMap)
+      sum += m_cells[c].count / (m_cells[c].count + kHalfKnown);
+  return sum;
+}
+
+bool CellStore::isWithinReach(uint64_t key) const {
+  return m_grid.edge(key) <= float(1 << CellGrid::levelOf(key)) * m_grid.finestEdge();
 }
 
 // Puts the light of coarser cells together from their children's, then lets all cells look at it.
@@ -290,7 +318,7 @@ void CellStore::fillSurroundings(const LightPoints& points, std::span<const uint
     cell.around = &m_around[c];
     if (cell.parent == kNoCell) clear(c, 0);
     if (cell.parent == kNoCell || m_links[cell.parent].parent == kNoCell) clear(c, 1);
-    if (cell.level == 0) return;
+    if (cell.level == 0 || !cell.hasMap) return;
 
     LightField seen;
     for (int i = 0; i < 27; ++i) {
@@ -302,6 +330,7 @@ void CellStore::fillSurroundings(const LightPoints& points, std::span<const uint
     around.add(seen, cell.centroid);
     const auto look = [&](size_t from, size_t map) {
       clear(from, map);
+      if (!m_cells[from].hasMap) return;
       around.addTo(m_around[from][map], 0, m_cells[from].centroid);
     };
     for (const uint32_t child : childrenOf(c)) {

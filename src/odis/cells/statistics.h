@@ -44,6 +44,9 @@ struct CellStatistics {
   std::array<double, kMaxLightGroups> lightSquares{};  // sums of CellSample::lightSquare, for each group
   Histogram histogram{};                               // sums of values by direction
   const Surroundings* around = nullptr;                // null where nothing asked for it
+  // Whether it has a map of its own, not its parent's. Cells beyond the grid's reach that paths seldom come
+  // to have none, so that they cost next to nothing.
+  bool hasMap = true;
 };
 
 // The mean unit normal of a cell's vertices; upwards where there is none.
@@ -125,6 +128,10 @@ class CellStore {
   // added.
   const std::vector<CellStatistics>& rollUp();
 
+  // How many cells there are that paths come to: beyond the grid's reach one counts less than 1, by how many
+  // samples it has.
+  double visitedCells() const;
+
   // Writes all that was added, and reads it into a store without cells. The latter throws FileError.
   void save(ArchiveWriter& file) const;
   void load(const Archive& file);
@@ -150,6 +157,7 @@ class CellStore {
   uint32_t insert(uint64_t key);
   void addNewCells();
   void addReturned(const CellOrder<CellSample>& order);
+  bool isWithinReach(uint64_t key) const;
   void lookAround();
   void fillSurroundings(const LightPoints& points, std::span<const uint32_t> pointsOf);
   std::span<const uint32_t> childrenOf(size_t cell) const {
