@@ -87,7 +87,7 @@ static int runAgreement(const AgreementArguments& a) {
   const eval::Estimate reference = eval::readEstimate(a.reference);
   const InterruptScope interruptible;
   const eval::Estimate image = renderEstimate(a, outputs, reference.width, reference.height);
-  if (InterruptScope::interrupted()) return kInterrupted;
+  if (InterruptScope::interrupted()) return InterruptScope::exitCode();
   const eval::Agreement found = eval::agreement(image, reference);
   const double share = double(found.agreeing) / found.blocks;
   if (!a.picture.empty()) writePicture(a.picture, found, reference);

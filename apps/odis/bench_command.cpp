@@ -98,7 +98,7 @@ static int runBench(BenchArguments& a) {
     tellWarnings(path, warnings, {.quiet = a.quiet});
     row.secondsLoad = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     row.result = eval::benchmark(*scene, a.settings, progress);
-    if (InterruptScope::interrupted()) return kInterrupted;
+    if (InterruptScope::interrupted()) return InterruptScope::exitCode();
     costs.push_back(row.result.costs);
     if (a.json)
       all.push_back(toJson(row));

@@ -46,7 +46,7 @@ std::string statsTable(const RunStats& stats) {
       fmt::format("{:.3f} M, {:.3f} M shadow rays", double(r.rays) * 1e-6, double(r.shadowRays) * 1e-6));
   if (r.cells > 0) {
     row("pilot vertices", fmt::format("{} in {} cells", r.pilotVertices, r.cells));
-    row("pilot weight", fmt::format("{:.3f}", r.pilotWeight));
+    row("pilot's share", fmt::format("{:.3f} of the samples' weight", r.pilotShare));
     row("cost of guiding",
         fmt::format("{:.1f} % of the time is build, a guided sample takes {:.2f} x a pilot's",
                     100 * r.secondsBuild / std::max(seconds, 1e-9), r.guidedCost()));
@@ -82,7 +82,7 @@ std::string statsJson(const RunStats& stats) {
                                  {"shadowRays", r.shadowRays},
                                  {"pilotVertices", r.pilotVertices},
                                  {"cells", r.cells},
-                                 {"pilotWeight", r.pilotWeight},
+                                 {"pilotShare", r.pilotShare},
                                  {"guidedCost", r.guidedCost()},
                                  {"bytes",
                                   {{"peak", stats.bytesPeak},

@@ -189,7 +189,8 @@ ODIS_API bool odisGetPixelMean(OdisFrame frame, uint32_t pixel, OdisPixelMean* m
 ODIS_API uint32_t odisGetSampleCount(OdisFrame frame, uint32_t pixel);
 ODIS_API bool odisGetFrameStatistics(OdisFrame frame, OdisFrameStatistics* statistics);
 ODIS_API bool odisGetFrameVertexCounts(OdisFrame frame, OdisVertexCounts* counts);
-// Another reference to the guide of today; without cells before one is built.
+// Another reference to the guide of today; without cells before one is built, and where none is because no
+// sample follows the pilot (unless the frame learns into a builder of the host's).
 ODIS_API OdisGuide odisGetFrameGuide(OdisFrame frame);
 // Sums over the pilot's samples of each pixel. Valid as long as the frame.
 ODIS_API const OdisPixelSums* odisGetPilotImage(OdisFrame frame);

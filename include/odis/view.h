@@ -131,8 +131,8 @@ typedef struct OdisFramePass {
   // fewer than 16384 pixels, and with maps at pixels, each guide has one of its own
   // (docs/unbiasedness.md#sobol-points).
   uint64_t seed ODIS_DEFAULT(0);
-  // Number of samples of all passes of this kind and all pixels, for progress; about, where pixels have
-  // different numbers.
+  // Number of samples of all passes of this kind and all pixels, for progress; about, until the frame has
+  // settled how many samples each pixel gets.
   uint64_t stageSamples ODIS_DEFAULT(0);
   // Guides paths by what was learned; without cells where nothing was. Valid until the pass ends.
   const OdisGuideView* guide ODIS_DEFAULT(NULL);

@@ -137,7 +137,7 @@ void Frame::Data::describePass() {
   pass.guide = &view;
   if (next == ODIS_PASS_GUIDED) {
     end = schedule.passEnd(done);
-    pass.stageSamples = pixels * schedule.mostRemaining();
+    pass.stageSamples = schedule.remainingSamples();
     pass.wantsVertices = learns();
     if (pixels < kFewPixels) pass.seed ^= guidesBuilt * kGuideSeed;
     if (learns()) passSamples.resize(tiles.tileCount());
@@ -145,21 +145,26 @@ void Frame::Data::describePass() {
     return;
   }
   pass.stageSamples = next == ODIS_PASS_PILOT ? schedule.pilotSamples() : pixels * options.oracleSamples;
-  pass.wantsVertices = true;
+  pass.wantsVertices = needsGuide() || keepsVertices();
   pass.partOfImage = next == ODIS_PASS_PILOT;
   pixelsPerLearned = keepsVertices() || !pass.partOfImage
                          ? 1
                          : pixelsPerLearnedIn(schedule.pilotSamples(), kMostPilotSamples);
   if (next == ODIS_PASS_ORACLE) pass.seed ^= kOracleSeed;
-  const bool isLearnedFrom = next == ODIS_PASS_ORACLE || options.oracleSamples == 0;
+  const bool isLearnedFrom = needsGuide() && (next == ODIS_PASS_ORACLE || options.oracleSamples == 0);
   if (isLearnedFrom) passSamples.resize(tiles.tileCount());
   if (keepsVertices()) passVertices.assign(tiles.tileCount(), {});
 }
 
+// Whether anything is guided: samples that follow the pilot, or what else learns from the builder.
+bool Frame::Data::needsGuide() const {
+  return !ownsBuilder || schedule.mostRemaining() > 0;
+}
+
 // Whoever asks for the pilot's vertices, and maps at pixels, want all of them as they are.
 bool Frame::Data::keepsVertices() const {
-  return next != ODIS_PASS_GUIDED &&
-         (options.keepPilotVertices || guideOptions.pixelMaps != ODIS_PIXEL_MAPS_NONE);
+  const bool forPixels = needsGuide() && guideOptions.pixelMaps != ODIS_PIXEL_MAPS_NONE;
+  return next != ODIS_PASS_GUIDED && (options.keepPilotVertices || forPixels);
 }
 
 // Takes a tile's samples and vertices.
@@ -191,7 +196,7 @@ void Frame::Data::take(uint32_t tile, ArrayView<const FrameSample> samples, Tile
 
 // Makes the maps at pixels that come from the pilot, or gets ready for those of the oracle.
 void Frame::Data::describePixels() {
-  if (!builder) return;
+  if (!builder || !needsGuide()) return;
   const auto width = int(options.width), height = int(options.height);
   if (guideOptions.pixelMaps == ODIS_PIXEL_MAPS_ORACLE)
     pixelOracle = std::make_unique<PixelOracle>(width, height, radianceOf(guideOptions));
@@ -207,7 +212,7 @@ void Frame::Data::endPilot() {
   pilotVertices = std::move(passVertices);
   pilotVertexCount = passVertexCount;
   buildingBytes = keptBytes;
-  next = options.oracleSamples > 0 ? ODIS_PASS_ORACLE : ODIS_PASS_GUIDED;
+  next = needsGuide() && options.oracleSamples > 0 ? ODIS_PASS_ORACLE : ODIS_PASS_GUIDED;
 }
 
 // Adds what was taken from an unguided pass to the cells, and keeps what BSDF sampling fractions are chosen
@@ -364,6 +369,11 @@ void Frame::endPass(bool interrupted) {
   const OdisPassKind kind = d.next;
   if (kind == ODIS_PASS_PILOT) d.endPilot();
   if (interrupted) return;
+  if (!d.needsGuide()) {
+    d.builder.reset();
+    d.finished = false;
+    return;
+  }
   if (kind == ODIS_PASS_PILOT && d.next == ODIS_PASS_GUIDED) d.learnUnguided(true);
   if (kind == ODIS_PASS_ORACLE) d.endOraclePass();
   if (kind == ODIS_PASS_GUIDED)

@@ -46,6 +46,7 @@ struct Frame::Data {
   void take(uint32_t tile, ArrayView<const FrameSample> samples, TileVertices& vertices);
   void endPilot();
   void endOraclePass();
+  bool needsGuide() const;
   bool keepsVertices() const;
   void describePixels();
   void learnUnguided(bool forFractions);

@@ -146,6 +146,27 @@ TEST(Frame, PilotSamplesCountWhereThereAreNoOthers) {
   EXPECT_GT(sum, 0);
 }
 
+// All samples are the pilot's.
+TEST(Frame, BuildsNoGuideThatNothingIsGuidedBy) {
+  FrameOptions options = toyOptions(24, 24, 1);
+  for (const bool keeps : {false, true})
+    for (const uint32_t oracle : {0u, 2u}) {
+      options.keepPilotVertices = keeps;
+      options.oracleSamples = oracle;
+      Frame frame(options);
+      const FramePass* pass = frame.beginPass();
+      ASSERT_TRUE(pass);
+      EXPECT_EQ(pass->wantsVertices, keeps);
+      runPass(frame, *pass, ToyHost({}, 24, 24), 24 * 24);
+      frame.endPass();
+      EXPECT_EQ(frame.beginPass(), nullptr);
+      EXPECT_EQ(frame.statistics().guidesBuilt, 0u);
+      EXPECT_EQ(frame.statistics().cells, 0u);
+      EXPECT_EQ(frame.statistics().samples, 24u * 24);
+      EXPECT_EQ(frame.pilotVertices().empty(), !keeps);
+    }
+}
+
 // docs/unbiasedness.md#sobol-points
 TEST(Frame, EachGuideOfASmallFrameHasNumbersOfItsOwn) {
   for (const uint32_t side : {64u, 128u}) {

@@ -55,7 +55,9 @@ std::vector<uint32_t> pilotCounts(const OdisFrameOptions& options, double pilotS
 }  // namespace
 
 Schedule::Schedule(const OdisFrameOptions& options)
-    : m_spp(options.samplesPerPixel), m_mostRemaining(options.samplesPerPixel) {
+    : m_pixels(uint64_t(options.width) * options.height),
+      m_spp(options.samplesPerPixel),
+      m_mostRemaining(options.samplesPerPixel) {
   double pilotSpp = 0;
   if (options.guided) {
     pilotSpp = pilotSamplesPerPixel(options);
@@ -71,6 +73,12 @@ Schedule::Schedule(const OdisFrameOptions& options)
 
 uint64_t Schedule::pilotSamples() const {
   return std::accumulate(m_pilotCounts.begin(), m_pilotCounts.end(), uint64_t(0));
+}
+
+uint64_t Schedule::remainingSamples() const {
+  const uint64_t all =
+      m_counts.empty() ? m_pixels * m_spp : std::accumulate(m_counts.begin(), m_counts.end(), uint64_t(0));
+  return all - pilotSamples();
 }
 
 SampleRange Schedule::remaining(uint32_t pixel, uint32_t begin, uint32_t end) const {

@@ -25,6 +25,8 @@ class Schedule {
   }
   // The number of samples of all pilots together.
   uint64_t pilotSamples() const;
+  // How many samples remain after them in all pixels together, as far as that is settled.
+  uint64_t remainingSamples() const;
   // How many samples a pixel has in all.
   uint32_t sampleCount(uint32_t pixel) const {
     assert(m_counts.empty() || pixel < m_counts.size());
@@ -61,6 +63,7 @@ class Schedule {
   // before it is settled how many each pixel has.
   uint64_t samplesAfter(uint32_t done) const;
 
+  uint64_t m_pixels;
   uint32_t m_spp;
   std::vector<uint32_t> m_pilotCounts;  // [pixel]; empty: no pilot
   std::vector<uint32_t> m_counts;       // [pixel] all samples; empty: m_spp everywhere

@@ -3,6 +3,8 @@
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
 
+#include <atomic>
+
 #include "render/image/fill_gaps.h"
 
 namespace odis::render {
@@ -39,7 +41,7 @@ FrameOptions frameOptions(const RenderJob& job) {
 
 void FrameIntegrator::beginStage(const FramePass& framePass) {
   const char* stage = stageName(framePass);
-  if (m_stage == stage) return;
+  if (m_stage == stage) return m_job.progress().changeTotal(framePass.stageSamples);
   if (m_stage) m_job.progress().end();
   m_stage = stage;
   const FrameStatistics frame = m_frame.statistics();
@@ -91,17 +93,20 @@ void FrameIntegrator::trace(const FramePass& framePass) {
                     : framePass.kind == ODIS_PASS_ORACLE ? stats.secondsBuild
                                                          : stats.secondsGuided;
   beginStage(framePass);
-  for (bool complete = false; !complete;) {
+  for (bool leftOut = true; leftOut && !m_job.interrupted();) {
     const Stopwatch tracing;
-    m_job.count(runPass(passOf(framePass), m_job.progress(), [this] {
-      return m_job.stop() || m_saver.isDue() || m_job.progress().wantsPicture();
+    std::atomic<bool> paused{false};
+    m_job.count(runPass(passOf(framePass), m_job.progress(), [&] {
+      const bool pause = m_job.stop() || m_saver.isDue() || m_job.progress().wantsPicture();
+      if (pause) paused = true;
+      return pause;
     }));
     seconds += tracing.seconds();
-    const bool interrupted = m_job.stop(), saving = m_saver.isDue();
-    const bool showing = m_job.progress().wantsPicture();
-    complete = interrupted || !(saving || showing);
-    if (interrupted || saving) m_saver.save(m_frame);
-    if (showing && !interrupted) showPicture();
+    leftOut = paused;
+    // No guide is built for samples that there is no time for.
+    const bool interrupted = m_job.interrupted() || (framePass.wantsVertices && m_job.stop());
+    if (interrupted || (leftOut && m_saver.isDue())) m_saver.save(m_frame);
+    if (m_job.progress().wantsPicture() && !interrupted) showPicture();
   }
 }
 
@@ -111,7 +116,7 @@ void FrameIntegrator::run(const FramePass& framePass) {
   if (m_guideIsNew) stats.cellsBuilt += framePass.guide->cellCount;
   trace(framePass);
   const Stopwatch building;
-  m_frame.endPass(m_job.stop());
+  m_frame.endPass(m_job.interrupted());
   m_guideIsNew = kind != ODIS_PASS_GUIDED || framePass.wantsVertices;
   if (m_guideIsNew) stats.secondsBuild += building.seconds();
 }
@@ -138,7 +143,12 @@ Pass FrameIntegrator::passBefore(uint32_t pixel, uint32_t sample) {
 }
 
 void FrameIntegrator::finish(RenderResult& result) {
-  fillPixels(result, m_job.options(), [this](uint32_t pixel) { return m_frame.mean(pixel); });
+  const ArrayView<const PixelSums> pilot = m_frame.pilotImage();
+  fillPixels(result, m_job.options(), [&](uint32_t pixel) {
+    const uint32_t samples = m_frame.sampleCount(pixel), later = samples - pilot[pixel].count;
+    const bool pilotCounts = m_job.options().pilotWeight > 0 || later == 0;
+    return MeanOfSamples{m_frame.mean(pixel), pilotCounts ? samples : later};
+  });
   const FrameStatistics frame = m_frame.statistics();
   RenderStats& stats = result.stats;
   stats.samples = frame.samples;
@@ -147,7 +157,7 @@ void FrameIntegrator::finish(RenderResult& result) {
   stats.cells = frame.cells;
   stats.bytesMaps = frame.guideBytes;
   stats.bytesBuild = frame.buildingBytes;
-  stats.pilotWeight = frame.pilotFraction;
+  stats.pilotShare = frame.pilotFraction;
 }
 
 }  // namespace odis::render

@@ -1,5 +1,7 @@
 #include "render/integrators/integrator.h"
 
+#include <algorithm>
+
 namespace odis::render {
 
 namespace {
@@ -26,12 +28,21 @@ std::unique_ptr<Integrator> makeIntegrator(RenderJob& job) {
   return makeOdisIntegrator(job);
 }
 
+MeanOfSamples meanOfParts(ArrayView<const WeightedSums> parts) {
+  MeanOfSamples result{weightedMean(parts)};
+  for (const WeightedSums& part : parts)
+    if (part.weight > 0) result.samples += part.sums->count;
+  return result;
+}
+
 void fillPixels(RenderResult& result, const RenderOptions& options,
-                const std::function<PixelMean(uint32_t pixel)>& mean) {
+                const std::function<MeanOfSamples(uint32_t pixel)>& mean) {
   RenderedImage& image = result.image;
   const auto pixels = uint32_t(image.width * image.height);
+  uint32_t& fewest = result.stats.fewestSamples = ~uint32_t(0);
   for (uint32_t pixel = 0; pixel < pixels; ++pixel) {
-    const PixelMean value = mean(pixel);
+    const auto [value, samples] = mean(pixel);
+    fewest = std::min(fewest, samples);
     image.color.push_back(toRgb(value.color));
     if (options.variance) image.variance.push_back(toRgb(value.variance));
   }

@@ -33,8 +33,16 @@ std::unique_ptr<Integrator> makeRestirIntegrator(RenderJob& job);
 // The integrator that the job's options name.
 std::unique_ptr<Integrator> makeIntegrator(RenderJob& job);
 
+// The mean of a pixel, and of how many samples it is.
+struct MeanOfSamples {
+  PixelMean mean;
+  uint32_t samples = 0;
+};
+// The mean of all samples of some parts.
+MeanOfSamples meanOfParts(ArrayView<const WeightedSums> parts);
+
 // Sets the pixels of an image from the mean of each.
 void fillPixels(RenderResult& result, const RenderOptions& options,
-                const std::function<PixelMean(uint32_t pixel)>& mean);
+                const std::function<MeanOfSamples(uint32_t pixel)>& mean);
 
 }  // namespace odis::render

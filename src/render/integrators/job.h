@@ -28,8 +28,10 @@ class RenderJob {
   // Runs a pass and counts its rays.
   void run(const Pass& pass);
   void count(const RayCounts& counts);
-  // Whether rendering should end; once it does it stays so.
+  // Whether rendering should end; once it does it stays so. To be asked only while there is more to do.
   bool stop();
+  // Whether stop() has ended it.
+  bool interrupted() const { return m_stopped; }
   std::function<bool()> stopFunction();
   Progress& progress() { return m_progress; }
 

@@ -13,7 +13,7 @@ namespace {
 // A pixel's noise falls with the root of its number of samples, and so does how far off cached radiance may
 // be.
 float cachedError(const RenderOptions& options) {
-  if (!options.cached) return 0;
+  if (!isCaching(options)) return 0;
   if (options.guideOptions.cachedError > 0) return options.guideOptions.cachedError;
   constexpr float kOfOneSample = 0.6f;
   return kOfOneSample / std::sqrt(float(options.spp));
@@ -69,6 +69,13 @@ class OdisIntegrator : public FrameIntegrator {
   explicit OdisIntegrator(RenderJob& job) : FrameIntegrator(job, guidedFrameOptions(job)), m_job(job) {}
 
   bool hasPilot() const override { return true; }
+  void render() override {
+    FrameIntegrator::render();
+    const FrameStatistics all = frame().statistics();
+    if (!m_job.interrupted() && all.samples == all.pilotSamples)
+      m_job.progress().warn(
+          "nothing is guided, this is plain path tracing: all samples are the pilot's (--set pilot-spp)");
+  }
   void finish(RenderResult& result) override {
     FrameIntegrator::finish(result);
     const RenderOptions& options = m_job.options();

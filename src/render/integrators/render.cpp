@@ -8,6 +8,18 @@
 
 namespace odis::render {
 
+bool isGuiding(const RenderOptions& options) {
+  const GuideOptions& guide = options.guideOptions;
+  return options.integrator == IntegratorKind::odis &&
+         (guide.cellsPerDiagonal > 0 || guide.pixelMaps != ODIS_PIXEL_MAPS_NONE);
+}
+
+bool isCaching(const RenderOptions& options) {
+  return options.cached && options.integrator == IntegratorKind::odis &&
+         options.guideOptions.cellsPerDiagonal > 0 &&
+         (options.maxDepth < 0 || options.maxDepth >= kLeastCachedMaxDepth);
+}
+
 RenderResult render(const Scene& scene, const RenderOptions& options, Progress& progress) {
   const ThreadLimit limit(options.threads);
   RenderJob job(scene, options, progress);
@@ -26,7 +38,7 @@ RenderResult render(const Scene& scene, const RenderOptions& options, Progress& 
   RenderStats& stats = result.stats;
   stats.spp = double(stats.samples) / double(std::max<size_t>(job.pixelCount(), 1));
   stats.bytesLights = job.lights().bytes();
-  stats.interrupted = job.stop();
+  stats.interrupted = job.interrupted();
   return result;
 }
 

@@ -19,15 +19,16 @@ struct RenderStats {
   uint64_t cellsBuilt = 0;  // in secondsBuild: those of all guides, of which the last has `cells`
   uint64_t bytesBuild = 0;  // held at most until the guide is built: pilot vertices and what is made of them
   uint64_t bytesMaps = 0, bytesLights = 0;
-  double pilotWeight = 0;  // of the pilot's mean in the image
-  double spp = 0;          // samples per pixel really taken
+  double pilotShare = 0;       // of the pilot in the weights of all samples
+  double spp = 0;              // samples per pixel really taken
+  uint32_t fewestSamples = 0;  // in the mean of any pixel: from 2 on there is a variance everywhere
   // The time of a guided sample in that of a pilot sample, recording included; 0 if there was none of either.
   double guidedCost() const {
     const uint64_t guided = samples - pilotSamples;
     if (pilotSamples == 0 || guided == 0 || !(secondsPilot > 0)) return 0;
     return secondsGuided / double(guided) / (secondsPilot / double(pilotSamples));
   }
-  bool interrupted = false;
+  bool interrupted = false;  // before all samples were taken
 };
 
 struct RenderResult {
@@ -38,6 +39,14 @@ struct RenderResult {
   std::vector<PathVertex> records;
   std::vector<Rgb> pilotEmitted;
 };
+
+// Whether samples after the pilot are guided, and whether paths may end in the cache.
+bool isGuiding(const RenderOptions& options);
+bool isCaching(const RenderOptions& options);
+// Whether any sample was guided.
+inline bool isGuiding(const RenderOptions& options, const RenderStats& stats) {
+  return isGuiding(options) && stats.samples > stats.pilotSamples;
+}
 
 RenderResult render(const Scene& scene, const RenderOptions& options, Progress& progress);
 

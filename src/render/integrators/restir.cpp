@@ -35,7 +35,7 @@ class RestirIntegrator : public Integrator {
     for (const PixelSums& s : m_image) result.stats.samples += s.count;
     fillPixels(result, m_job.options(), [this](uint32_t pixel) {
       const WeightedSums part{&m_image[pixel], 1};
-      return weightedMean({&part, 1});
+      return meanOfParts({&part, 1});
     });
   }
 

@@ -119,18 +119,19 @@ void RivalIntegrator::finish(RenderResult& result) {
       std::array<WeightedSums, kIterationsCombined> parts;
       for (size_t i = 0; i < m_iterations.size(); ++i)
         parts[i] = {&m_iterations[i][pixel], weights[i][pixel]};
-      return weightedMean({parts.data(), m_iterations.size()});
+      return meanOfParts({parts.data(), m_iterations.size()});
     });
     return;
   }
-  // The last iteration that every pixel has a sample of, should the time have been short.
+  if (m_iterations.empty()) beginIteration();
+  // The last iteration that every pixel has a sample of, should the time have been short, else what there is.
   const auto complete = std::find_if(m_iterations.rbegin(), m_iterations.rend(), [](const Image& image) {
     return std::all_of(image.begin(), image.end(), [](const PixelSums& s) { return s.count > 0; });
   });
+  const Image& image = complete == m_iterations.rend() ? m_iterations.front() : *complete;
   fillPixels(result, m_job.options(), [&](uint32_t pixel) {
-    if (complete == m_iterations.rend()) return PixelMean{};
-    const WeightedSums part{&(*complete)[pixel], 1};
-    return weightedMean({&part, 1});
+    const WeightedSums part{&image[pixel], 1};
+    return meanOfParts({&part, 1});
   });
 }
 

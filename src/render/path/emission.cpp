@@ -89,9 +89,6 @@ namespace {
 // Smoother surfaces end no paths: what they scatter depends too much on the direction. The same is true of
 // those that scatter mostly by lobes that may not be guided.
 constexpr float kLeastCachedRoughness = 0.3f, kLeastCachedGuidable = 0.5f;
-// With a smaller max_depth there is little to gain, and how much comes from how many bounces differs too much
-// from place to place.
-constexpr int kLeastCachedMaxDepth = 8;
 
 bool scattersEvenly(const Arrival& arrival) {
   const auto& [at, wo] = *arrival.vertex;

@@ -17,6 +17,8 @@ class Progress {
   // `done` of the stage's samples, or whatever `unit` names, were taken by an earlier run.
   virtual void begin(const std::string& /*stage*/, uint64_t /*total*/, uint64_t /*done*/ = 0,
                      const char* /*unit*/ = "samples") {}
+  // The stage turns out to have another number of samples than it began with.
+  virtual void changeTotal(uint64_t /*total*/) {}
   virtual void advance(uint64_t /*more*/) {}
   virtual void end() {}
   // Something that was asked for can't be done, but the work goes on.
