@@ -98,7 +98,8 @@ void writeLayers(const std::string& path, const RenderedImage& frame, const Film
                  const Layers& layers, const std::map<std::string, std::string>& metadata) {
   Planes planes;
   planes.add("", "RGB", frame.color, false);
-  if (layers.alpha) planes.add("A", frame.alpha, true);
+  // Other programs take A together with R, G and B, and expect one type of all.
+  if (layers.alpha) planes.add("A", frame.alpha, false);
   planes.add("noisy.", "RGB", frame.noisy, false);
   planes.add("variance.", "RGB", frame.variance, false);
   if (layers.albedo) planes.add("albedo.", "RGB", frame.albedo, true);
