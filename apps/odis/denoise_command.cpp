@@ -10,6 +10,8 @@
 #include "denoising.h"
 #include "eval/denoiser_layers.h"
 #include "output.h"
+#include "render/image/copy_exr.h"
+#include "render/integrators/job.h"
 #include "validators.h"
 
 namespace odis::app {
@@ -83,10 +85,13 @@ std::string auxiliariesOf(const DenoiseArguments& a, const LayeredImage& image) 
   return clean && a.albedo.empty() && a.normal.empty() ? "clean" : "prefiltered";
 }
 
+std::string colorLayerOf(const DenoiseArguments& a, const LayeredImage& image) {
+  return a.layer.empty() ? eval::findColorLayer(image).value_or("") : a.layer;
+}
+
 DenoiserImages imagesOf(const DenoiseArguments& a, const LayeredImage& image) {
   DenoiserImages images;
-  const std::string layer = a.layer.empty() ? eval::findColorLayer(image).value_or("") : a.layer;
-  images.color = pixelsOf(a.image, image, layer);
+  images.color = pixelsOf(a.image, image, colorLayerOf(a, image));
   if (a.auxiliaries == "none") return images;
   images.albedo = auxiliary(a.image, image, a.albedo, a.albedoLayer, eval::findAlbedoLayer);
   for (const render::Rgb& n : auxiliary(a.image, image, a.normal, a.normalLayer, eval::findNormalLayer))
@@ -94,18 +99,59 @@ DenoiserImages imagesOf(const DenoiseArguments& a, const LayeredImage& image) {
   return images;
 }
 
-// A layer of one channel becomes one of three.
-void setLayer(LayeredImage& image, const std::string& prefix, const std::vector<render::Rgb>& pixels) {
-  image.channels.erase(prefix + "Y");
+// The channels of a layer, which have the type of those of another.
+void addLayer(const std::string& layer, const std::vector<render::Rgb>& pixels, const std::string& like,
+              render::ExrChanges& changes) {
   for (int c = 0; c < 3; ++c) {
-    std::vector<float>& plane = image.channels[prefix + "RGB"[c]];
-    plane.clear();
-    for (const render::Rgb& pixel : pixels) plane.push_back(pixel[c]);
+    render::NewChannel& channel = changes.channels.emplace_back();
+    channel.name = layer + "RGB"[c];
+    channel.like = like;
+    for (const render::Rgb& pixel : pixels) channel.pixels.push_back(pixel[c]);
   }
 }
 
+// What differs in the denoised file. A layer of one channel becomes one of three.
+render::ExrChanges changesOf(const eval::DenoisedPlace& place, const LayeredImage& image,
+                             const std::vector<render::Rgb>& noisy, const std::vector<render::Rgb>& denoised,
+                             const Denoising& denoising) {
+  render::ExrChanges changes;
+  changes.part = place.part;
+  std::string like;
+  for (const auto& [name, at] : image.places)
+    if (at.part == place.part && (at.name == place.layer + "R" || at.name == place.layer + "Y"))
+      like = at.name;
+  if (!place.kept.empty()) addLayer(place.kept, noisy, like, changes);
+  addLayer(place.layer, denoised, like, changes);
+  if (like == place.layer + "Y") changes.removed.push_back(like);
+  changes.metadata = denoisingMetadata(denoising);
+  return changes;
+}
+
+// Files of formats that hold nothing but colours become EXR files.
+void writeDenoised(const DenoiseArguments& a, LayeredImage& image, const render::ExrChanges& changes) {
+  if (!image.places.empty()) return render::copyExr(a.image, a.output, changes);
+  for (const render::NewChannel& channel : changes.channels) image.channels[channel.name] = channel.pixels;
+  image.metadata = changes.metadata;
+  eval::writeLayered(a.output, image);
+}
+
+// Options that would change nothing.
+void requireEffects(const DenoiseArguments& a) {
+  const std::pair<const char*, bool> ofAuxiliaries[] = {{"--albedo", !a.albedo.empty()},
+                                                        {"--normal", !a.normal.empty()},
+                                                        {"--albedo-layer", !a.albedoLayer.empty()},
+                                                        {"--normal-layer", !a.normalLayer.empty()}};
+  for (const auto& [option, isGiven] : ofAuxiliaries)
+    if (isGiven && a.auxiliaries == "none")
+      throw UsageError(fmt::format("{}: has no effect with --aux none", option));
+  if (a.exposure != 0 && a.png.empty() && !endsWith(a.output, ".png"))
+    throw UsageError("--exposure: is of PNGs, expected --png or an output that ends in .png");
+}
+
 int runDenoise(const DenoiseArguments& a) {
+  const render::Stopwatch watch;
   rejectDisplayed(a.image);
+  requireEffects(a);
   Outputs outputs;
   outputs.add(a.output, {".exr", ".png"});
   if (!a.png.empty()) outputs.add(a.png, {".png"});
@@ -114,7 +160,8 @@ int runDenoise(const DenoiseArguments& a) {
   DenoiserImages images = imagesOf(a, image);
   const render::Denoiser denoiser(a.threads);
   if (images.albedo.empty() && a.auxiliaries != "none" && !a.quiet)
-    sayWarning(fmt::format("{}: found no albedo: denoised by its colours alone", a.image));
+    sayWarning(fmt::format("{}: found no albedo: denoised by its colours alone{}", a.image,
+                           images.normal.empty() ? "" : ", without the normals"));
   if (images.albedo.empty()) images.normal.clear();
 
   static const std::map<std::string, render::Auxiliaries> kAuxiliaries{
@@ -129,15 +176,15 @@ int runDenoise(const DenoiseArguments& a) {
   const auto colors = denoiseColors(denoiser, {width, height, images.color, images.albedo, images.normal},
                                     kAuxiliaries.at(auxiliariesOf(a, image)), progress, denoising);
   if (!colors) return InterruptScope::exitCode();
+  const WrittenFiles files({a.output, a.png});
+  const eval::DenoisedPlace place = eval::findDenoisedPlace(image, colorLayerOf(a, image));
   if (endsWith(a.output, ".png"))
     render::writePng(a.output, width, height, colors->data(), a.exposure);
-  else {
-    setLayer(image, "noisy.", images.color);
-    setLayer(image, "", *colors);
-    for (const auto& [key, text] : denoisingMetadata(denoising)) image.metadata[key] = text;
-    eval::writeLayered(a.output, image);
-  }
+  else
+    writeDenoised(a, image, changesOf(place, image, images.color, *colors, denoising));
   if (!a.png.empty()) render::writePng(a.png, width, height, colors->data(), a.exposure);
+  if (!a.quiet)
+    say(files.text(fmt::format("after {}, {}R, G, B denoised", durationText(watch.seconds()), place.layer)));
   return InterruptScope::exitCode();
 }
 
@@ -147,8 +194,8 @@ Command addDenoiseCommand(CLI::App& parent) {
   CLI::App* app = parent.add_subcommand("denoise", "Denoise a rendered image with Open Image Denoise");
   app->footer(
       "Layers of `odis render --denoise` or `--aov albedo,normal` are found by their names, so are those of\n"
-      "Cycles, Mitsuba and pbrt. OUTPUT has all channels of IMAGE, R, G and B being denoised, and the\n"
-      "colours before that as the layer noisy. More: docs/denoising.md.");
+      "Cycles, Mitsuba and pbrt. OUTPUT has all parts and channels of IMAGE; what viewers show (R, G and B,\n"
+      "ViewLayer.Combined) is denoised, and the layer noisy has it as it was. More: docs/denoising.md.");
   const auto a = std::make_shared<DenoiseArguments>();
   app->add_option("IMAGE", a->image, "EXR or HDR file")->required();
   app->add_option("-o,--output", a->output, "Image to write, .exr or .png")->required();

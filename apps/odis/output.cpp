@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <filesystem>
 #include <list>
 #include <sstream>
 
@@ -66,6 +67,20 @@ void Outputs::rejectInputs(const std::vector<std::string>& inputs) const {
             fmt::format("the output \"{}\" would replace \"{}\", which is read; expected another name",
                         output.name, input));
   }
+}
+
+WrittenFiles::WrittenFiles(const std::vector<std::string>& paths) {
+  std::error_code unknown;
+  for (const std::string& path : paths)
+    if (!path.empty()) m_files.push_back({path, std::filesystem::is_regular_file(path, unknown)});
+}
+
+std::string WrittenFiles::text(const std::string& first) const {
+  std::string text;
+  for (const File& file : m_files)
+    text += fmt::format("{}: {}{}\n", file.path, file.replaces ? "replaced" : "written",
+                        text.empty() ? " " + first : "");
+  return text;
 }
 
 namespace {

@@ -37,6 +37,22 @@ class Outputs {
   std::vector<Output> m_outputs;
 };
 
+// The files that a command writes, and which of them take the place of another.
+class WrittenFiles {
+ public:
+  // To be made before the first is written. Empty names stand for files that nobody asked for.
+  explicit WrittenFiles(const std::vector<std::string>& paths);
+  // A line for each, "image.exr: written " with what there is to say of the first, "look.png: replaced".
+  std::string text(const std::string& first) const;
+
+ private:
+  struct File {
+    std::string path;
+    bool replaces = false;
+  };
+  std::vector<File> m_files;
+};
+
 bool endsWith(const std::string& path, const std::string& ending);
 
 // One EXR: R, G, B; noisy.R G B if those are denoised; variance.R G B if there is a variance; the layers

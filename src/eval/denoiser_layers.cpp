@@ -43,4 +43,35 @@ std::optional<std::string> findNormalLayer(const LayeredImage& image) {
   return findLayer(image, {"denoising normal", "ns", "sh_normal", "nn", "normal", "n"});
 }
 
+// The layer of the file's part that a layer is, as in "ViewLayer.Combined.".
+static DenoisedPlace placeOf(const LayeredImage& image, const std::string& layer) {
+  const std::string prefix = layer.empty() ? "" : layer + ".";
+  for (const auto& [name, place] : image.places)
+    if (name.starts_with(prefix) && name.find('.', prefix.size()) == std::string::npos)
+      return {place.part, place.name.substr(0, place.name.rfind('.') + 1), ""};
+  return {0, prefix, ""};
+}
+
+// "ViewLayer." of "ViewLayer.Combined." and of "ViewLayer.Combined".
+static std::string parentOf(const std::string& layer) {
+  const size_t dot = layer.find_last_of(
+      '.', layer.ends_with('.') && layer.size() > 1 ? layer.size() - 2 : std::string::npos);
+  return dot == std::string::npos ? "" : layer.substr(0, dot + 1);
+}
+
+DenoisedPlace findDenoisedPlace(const LayeredImage& image, const std::string& layer) {
+  const std::string name = plainName(layer), parent = parentOf(layer);
+  if (name != "noisy" && name != "noisy image") {
+    DenoisedPlace place = placeOf(image, layer);
+    place.kept = parentOf(place.layer) + "noisy.";
+    for (const auto& [channel, other] : image.places)
+      if (other.part == place.part && other.name.starts_with(place.kept)) place.kept = "";
+    return place;
+  }
+  for (const std::string& other : layerNames(image))
+    if (parentOf(other) == parent && plainName(other) == "combined") return placeOf(image, other);
+  const std::string above = parent.empty() ? "" : parent.substr(0, parent.size() - 1);
+  return hasColor(image, above) ? placeOf(image, above) : DenoisedPlace();
+}
+
 }  // namespace odis::eval

@@ -19,4 +19,15 @@ std::optional<std::string> findAlbedoLayer(const LayeredImage& image);
 // Denoising Normal (Cycles), Ns (pbrt), sh_normal, nn (Mitsuba's manual), normal (Blender), N (ODIS).
 std::optional<std::string> findNormalLayer(const LayeredImage& image);
 
+// Where the denoised colours of a layer go, in names of the file's part.
+struct DenoisedPlace {
+  size_t part = 0;
+  std::string layer;  // "" or "ViewLayer.Combined.": the one that viewers and compositors show
+  std::string kept;   // "noisy.": the one that takes the colours as they were; empty where they have one
+};
+
+// In place of the layer's own colours; those of a layer that is called noisy go where they are shown, beside
+// it.
+DenoisedPlace findDenoisedPlace(const LayeredImage& image, const std::string& layer);
+
 }  // namespace odis::eval

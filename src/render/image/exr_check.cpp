@@ -163,6 +163,13 @@ class HeaderCheck {
 
 }  // namespace
 
+void requireFullResolution(const std::string& name, int xSampling, int ySampling) {
+  if (xSampling == 1 && ySampling == 1) return;
+  throw std::runtime_error("the channel \"" + name +
+                           "\" has fewer samples than pixels; expected full resolution (convert the file "
+                           "from luminance and chroma to RGB)");
+}
+
 void checkExrHeaders(const std::vector<uint8_t>& file) {
   HeaderCheck(file).run();
 }

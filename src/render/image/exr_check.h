@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <string>
 #include <vector>
 
 namespace odis::render {
@@ -10,5 +11,8 @@ namespace odis::render {
 // Throws std::runtime_error if a header announces attributes, tiles or scan lines that the file is too short
 // for, or an image beyond our limits.
 void checkExrHeaders(const std::vector<uint8_t>& file);
+
+// Throws std::runtime_error for a channel that has fewer samples than pixels.
+void requireFullResolution(const std::string& name, int xSampling, int ySampling);
 
 }  // namespace odis::render

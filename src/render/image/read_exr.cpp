@@ -2,15 +2,18 @@
 #include <ImfChannelList.h>
 #include <ImfFrameBuffer.h>
 #include <ImfHeader.h>
-#include <ImfIO.h>
 #include <ImfInputFile.h>
+#include <ImfInputPart.h>
+#include <ImfMultiPartInputFile.h>
+#include <ImfPartType.h>
 #include <ImfStringAttribute.h>
+#include <ImfVersion.h>
 #include <fmt/format.h>
 
-#include <cstring>
 #include <stdexcept>
 
 #include "render/image/exr_check.h"
+#include "render/image/exr_streams.h"
 #include "render/image/image.h"
 #include "render/image/read_bytes.h"
 #include "render/image/write.h"
@@ -19,25 +22,32 @@ namespace odis::render {
 
 namespace {
 
-// A file in memory, as OpenEXR reads one.
-class ByteStream final : public Imf::IStream {
- public:
-  explicit ByteStream(const std::vector<uint8_t>& bytes) : IStream("image"), m_bytes(bytes) {}
-
-  bool read(char target[], int count) override {
-    if (count < 0 || m_at > m_bytes.size() || size_t(count) > m_bytes.size() - m_at)
-      throw std::runtime_error("the file ends early");
-    std::memcpy(target, m_bytes.data() + m_at, size_t(count));
-    m_at += uint64_t(count);
-    return m_at < m_bytes.size();
+// Reads the named channels of a file or a part as floats, each into its own plane. The planes grow with what
+// has been read, so that a file that ends early costs no more memory than it has pixels.
+template <class File>
+std::vector<std::vector<float>> readPlanes(File& file, const std::vector<std::string>& names) {
+  constexpr int kRows = 256;
+  const Imf::Header& header = file.header();
+  const Imath::Box2i& window = header.dataWindow();
+  const int width = window.max.x - window.min.x + 1, height = window.max.y - window.min.y + 1;
+  std::vector<std::vector<float>> planes(names.size());
+  for (size_t i = 0; i < names.size(); ++i) {
+    const Imf::Channel& channel = header.channels()[names[i].c_str()];
+    requireFullResolution(names[i], channel.xSampling, channel.ySampling);
+    planes[i].reserve(size_t(width) * size_t(height));
   }
-  uint64_t tellg() override { return m_at; }
-  void seekg(uint64_t at) override { m_at = at; }
-
- private:
-  const std::vector<uint8_t>& m_bytes;
-  uint64_t m_at = 0;
-};
+  for (int row = 0; row < height; row += kRows) {
+    const int end = std::min(row + kRows, height);
+    Imf::FrameBuffer frame;
+    for (size_t i = 0; i < names.size(); ++i) {
+      planes[i].resize(size_t(width) * size_t(end));
+      frame.insert(names[i], Imf::Slice::Make(Imf::FLOAT, planes[i].data(), window.min, width, height));
+    }
+    file.setFrameBuffer(frame);
+    file.readPixels(window.min.y + row, window.min.y + end - 1);
+  }
+  return planes;
+}
 
 // An open file whose headers have passed the checks that protect our memory.
 class CheckedExr {
@@ -52,33 +62,10 @@ class CheckedExr {
   const Imf::Header& header() const { return m_file.header(); }
   int width() const { return m_width; }
   int height() const { return m_height; }
+  bool hasFurtherParts() const { return Imf::isMultiPart(m_file.version()); }
 
-  // Reads the named channels as floats, each into its own plane. The planes grow with what has been read, so
-  // that a file that ends early costs no more memory than it has pixels.
   std::vector<std::vector<float>> read(const std::vector<std::string>& names) {
-    constexpr int kRows = 256;
-    std::vector<std::vector<float>> planes(names.size());
-    for (size_t i = 0; i < names.size(); ++i) {
-      const Imf::Channel& channel = header().channels()[names[i].c_str()];
-      if (channel.xSampling != 1 || channel.ySampling != 1)
-        throw std::runtime_error(fmt::format(
-            "the channel \"{}\" has fewer samples than pixels; expected full resolution (convert the file "
-            "from luminance and chroma to RGB)",
-            names[i]));
-      planes[i].reserve(size_t(m_width) * size_t(m_height));
-    }
-    const Imath::V2i origin = header().dataWindow().min;
-    for (int row = 0; row < m_height; row += kRows) {
-      const int end = std::min(row + kRows, m_height);
-      Imf::FrameBuffer frame;
-      for (size_t i = 0; i < names.size(); ++i) {
-        planes[i].resize(size_t(m_width) * size_t(end));
-        frame.insert(names[i], Imf::Slice::Make(Imf::FLOAT, planes[i].data(), origin, m_width, m_height));
-      }
-      m_file.setFrameBuffer(frame);
-      m_file.readPixels(origin.y + row, origin.y + end - 1);
-    }
-    return planes;
+    return readPlanes(m_file, names);
   }
 
  private:
@@ -148,6 +135,32 @@ std::shared_ptr<Image> Image::readExrPixels(const std::vector<uint8_t>& bytes) {
   return image;
 }
 
+static std::vector<std::string> channelNames(const Imf::Header& header) {
+  std::vector<std::string> names;
+  for (auto i = header.channels().begin(); i != header.channels().end(); ++i) names.push_back(i.name());
+  return names;
+}
+
+// Adds the channels of the parts that follow the first, those of another size or with deep pixels left out.
+static void readFurtherParts(const std::vector<uint8_t>& bytes, ExrFile& result) {
+  ByteStream stream(bytes);
+  Imf::MultiPartInputFile file(stream);
+  const Imath::Box2i& window = file.header(0).dataWindow();
+  for (int index = 1; index < file.parts(); ++index) {
+    const Imf::Header& header = file.header(index);
+    if (header.dataWindow() != window || (header.hasType() && Imf::isDeepData(header.type()))) continue;
+    Imf::InputPart part(file, index);
+    const std::vector<std::string> names = channelNames(header);
+    std::vector<std::vector<float>> planes = readPlanes(part, names);
+    const std::string layer = (header.hasName() ? header.name() : std::to_string(index)) + ".";
+    for (size_t i = 0; i < names.size(); ++i) {
+      std::string name = names[i].starts_with(layer) ? names[i] : layer + names[i];
+      if (!result.channels.emplace(name, std::move(planes[i])).second) continue;
+      result.places[name] = {size_t(index), names[i]};
+    }
+  }
+}
+
 ExrFile readExr(const std::string& path) {
   try {
     const std::vector<uint8_t> bytes = readImageBytes(path);
@@ -160,14 +173,16 @@ ExrFile readExr(const std::string& path) {
                      data.min.y - display.min.y,
                      file.width(),
                      file.height()};
-    std::vector<std::string> names;
-    for (auto i = file.header().channels().begin(); i != file.header().channels().end(); ++i)
-      names.push_back(i.name());
+    const std::vector<std::string> names = channelNames(file.header());
     std::vector<std::vector<float>> planes = file.read(names);
-    for (size_t i = 0; i < names.size(); ++i) result.channels[names[i]] = std::move(planes[i]);
+    for (size_t i = 0; i < names.size(); ++i) {
+      result.channels[names[i]] = std::move(planes[i]);
+      result.places[names[i]] = {0, names[i]};
+    }
     for (auto i = file.header().begin(); i != file.header().end(); ++i)
       if (const auto* text = dynamic_cast<const Imf::StringAttribute*>(&i.attribute()))
         result.metadata[i.name()] = text->value();
+    if (file.hasFurtherParts()) readFurtherParts(bytes, result);
     return result;
   } catch (const std::exception& e) {
     throw std::runtime_error(fmt::format("cannot read \"{}\": {}", path, e.what()));

@@ -37,11 +37,20 @@ void writePng(const std::string& path, int width, int height, const Rgb* pixels,
 // A PNG file in memory of 8-bit samples, `channels` (1 to 4) a pixel. Throws std::runtime_error.
 std::string encodePng(int width, int height, int channels, const uint8_t* samples);
 
-// Reads every channel of an EXR's first part as floats; throws std::runtime_error with path and reason.
+// Where a channel is in a file: its part and its name there.
+struct ExrPlace {
+  size_t part = 0;
+  std::string name;
+};
+
+// Every channel of an EXR as floats. Channels of parts that follow the first have the part's name in front,
+// "albedo.R", if they don't have it anyway; parts of another size than the first are left out, and so are
+// those with deep pixels. Throws std::runtime_error with path and reason.
 struct ExrFile {
   ImageWindow window;
   std::map<std::string, std::vector<float>> channels;
-  std::map<std::string, std::string> metadata;  // string attributes
+  std::map<std::string, ExrPlace> places;       // of the channels that come from a file
+  std::map<std::string, std::string> metadata;  // string attributes of the first part
 };
 ExrFile readExr(const std::string& path);
 

@@ -1,25 +1,21 @@
 #include <ImfChannelList.h>
 #include <ImfFrameBuffer.h>
 #include <ImfHeader.h>
-#include <ImfIO.h>
 #include <ImfOutputFile.h>
 #include <ImfStringAttribute.h>
 #include <ImfThreading.h>
 #include <fmt/format.h>
-#include <half.h>
 #include <tbb/global_control.h>
 
 #include <stdexcept>
 
 #include "render/files/replace_file.h"
+#include "render/image/exr_streams.h"
 #include "render/image/limits.h"
 #include "render/image/write.h"
 
 namespace odis::render {
 
-namespace {
-
-// Finite numbers stay finite: what exceeds 16 bits becomes the largest number that they hold.
 std::vector<half> toHalf(const float* data, size_t count) {
   std::vector<half> result(count);
   for (size_t i = 0; i < count; ++i)
@@ -28,27 +24,10 @@ std::vector<half> toHalf(const float* data, size_t count) {
   return result;
 }
 
-// OpenEXR's own output ignores what fails when it is closed: on a full disk a broken file would pass for a
-// good one.
-class ExrStream final : public Imf::OStream {
- public:
-  explicit ExrStream(CheckedStream& stream) : OStream("image"), m_stream(stream) {}
-
-  void write(const char bytes[], int count) override { m_stream.write(bytes, size_t(count)); }
-  uint64_t tellp() override { return m_stream.tell(); }
-  void seekp(uint64_t at) override { m_stream.seek(at); }
-
- private:
-  CheckedStream& m_stream;
-};
-
-// Lets OpenEXR compress with as many threads as TBB may have here.
-void allowThreads() {
+void allowExrThreads() {
   const size_t threads = tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism);
   Imf::setGlobalThreadCount(threads > 1 ? int(threads) : 0);
 }
-
-}  // namespace
 
 void writeExr(const std::string& path, const ImageWindow& window, const std::vector<ImageChannel>& channels,
               const std::map<std::string, std::string>& metadata) {
@@ -82,7 +61,7 @@ void writeExr(const std::string& path, const ImageWindow& window, const std::vec
       frame.insert(channel.name, Imf::Slice::Make(type, data, origin, window.width, window.height));
     }
     ExrStream stream(target);
-    allowThreads();
+    allowExrThreads();
     Imf::OutputFile file(stream, header);
     file.setFrameBuffer(frame);
     file.writePixels(window.height);
