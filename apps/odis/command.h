@@ -21,6 +21,7 @@ enum ExitCode {
   kSceneError = 3,  // a scene or an image that cannot be read
   kWriteError = 4,
   kDenoiserError = 5,  // there is no denoiser, or it failed; what was rendered is written
+  kTimeLimit = 6,      // came before the samples that were asked for; what was rendered is written
   kInterrupted = 130,  // by Ctrl-C; what was there is written
   kTerminated = 143    // the same by SIGTERM
 };
@@ -61,6 +62,8 @@ std::vector<Command> addCommands(CLI::App& parent, const std::string& commandLin
 // Runs the whole command line; errors go to stderr. Returns an ExitCode.
 int runCommandLine(int argc, char** argv);
 
+// The arguments as one line that a shell reads as they are.
+std::string shellLine(const std::vector<std::string>& arguments);
 // "3 min 20 s", "4.2 s", "1.5 GiB".
 std::string durationText(double seconds);
 std::string bytesText(double bytes);

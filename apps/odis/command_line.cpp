@@ -26,8 +26,8 @@ namespace odis::app {
 
 static constexpr const char* kExitCodes =
     "Exit codes: 0 all went well, 1 internal error, 2 wrong usage, 3 an input can't be read,\n"
-    "4 an output can't be written, 5 there is no denoiser or it failed, 130 interrupted by Ctrl-C,\n"
-    "143 by SIGTERM (what was rendered is written).";
+    "4 an output can't be written, 5 there is no denoiser or it failed, 6 a time limit came before the\n"
+    "samples asked for, 130 interrupted by Ctrl-C, 143 by SIGTERM (what was rendered is written).";
 
 static int fail(ExitCode code, const std::string& message) {
   say(fmt::format("error: {}\n", message));
@@ -84,9 +84,7 @@ int runCommandLine(int argc, char** argv) {
   app.footer(kExitCodes);
   app.set_version_flag("--version", std::string("odis ") + ODIS_VERSION_STRING);
   app.require_subcommand(1);
-  std::string commandLine;
-  for (int i = 0; i < argc; ++i) commandLine += (i > 0 ? " " : "") + std::string(argv[i]);
-  const std::vector<Command> commands = addCommands(app, commandLine);
+  const std::vector<Command> commands = addCommands(app, shellLine({argv, argv + argc}));
   try {
     app.parse(argc, argv);
     for (const Command& command : commands)

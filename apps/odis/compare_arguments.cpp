@@ -27,17 +27,20 @@ void CompareArguments::addTo(CLI::App& app) {
   app.add_option("--seeds", settings.seeds, "How often each method renders")
       ->check(within(1, 1 << 24))
       ->capture_default_str();
-  app.add_option("--reference-spp", settings.referenceSpp, "Samples per pixel of references; they are kept")
-      ->check(within(kSamplesPerPixel))
-      ->capture_default_str();
-  app.add_option("--reference", settings.reference, "EXR file to use as the reference");
+  CLI::Option* samples = app.add_option("--reference-spp", settings.referenceSpp,
+                                        "Samples per pixel of references; they are kept")
+                             ->check(within(kSamplesPerPixel))
+                             ->capture_default_str();
+  app.add_option("--reference", settings.reference, "EXR file to use as the reference")->excludes(samples);
   app.add_option("--pixels", pixels, "Render images of about this many pixels")->check(within(kPixelCount));
   app.add_option("--max-depth", settings.maxDepth, "In place of the scenes'")->check(within(kMaxDepth));
   app.add_option("--rr-depth", settings.rrDepth, "In place of the scenes'")->check(within(kRouletteDepth));
   app.add_option("-o,--output", settings.folder, "Folder for report, results, references and images")
       ->required();
-  app.add_flag("--images", images, "Also write PNGs of seed 0, and one of all methods side by side");
+  CLI::Option* pictures =
+      app.add_flag("--images", images, "Also write PNGs of seed 0, and one of all methods side by side");
   app.add_option("--exposure", exposure, "Of the PNGs, in stops")
+      ->needs(pictures)
       ->check(within(kStops))
       ->capture_default_str();
   app.add_flag("--fresh", settings.fresh, "Forget earlier results; references are kept");

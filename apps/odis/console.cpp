@@ -24,6 +24,15 @@ void sayWarning(const std::string& message) {
   say(fmt::format("{}warning: {}\n", onTerminal() ? "\r\033[K" : "", message));
 }
 
+std::string paceText(const Work& work, const std::string& unit, bool isOver) {
+  const double rate = double(work.done - work.before) / std::max(1e-6, work.seconds);
+  const double left = double(work.total - std::min(work.done, work.total));
+  const std::string time = isOver     ? durationText(work.seconds)
+                           : rate > 0 ? durationText(left / rate) + " left"
+                                      : "time left unknown";
+  return fmt::format("{:.2f} M{}/s, {}", rate * 1e-6, unit, time);
+}
+
 bool LinePace::isDue() {
   const auto now = std::chrono::steady_clock::now();
   if (now - m_last < m_interval) return false;
@@ -76,7 +85,7 @@ void ConsoleProgress::begin(const std::string& stage, uint64_t total, uint64_t d
   m_unit = unit;
   m_total = total;
   m_done = m_before = done;
-  m_nextShow = stepOf(m_total);
+  m_nextShow = done + stepOf(m_total);
   m_start = m_lastShow = std::chrono::steady_clock::now();
 }
 
@@ -109,21 +118,17 @@ void ConsoleProgress::show(uint64_t done, bool last) {
   const auto now = steady_clock::now();
   if (m_terminal ? !last && now - m_lastShow < milliseconds(100) : !m_pace.isDue()) return;
   m_lastShow = now;
-  const double seconds = std::max(1e-6, duration<double>(now - m_start).count());
   const double share = std::min(1.0, double(done) / double(m_total));
-  const double rate = double(done - m_before) / seconds;
-  const std::string time =
-      last ? durationText(seconds)
-           : durationText(double(m_total - std::min(done, m_total)) / std::max(rate, 1e-6)) + " left";
-  const std::string rateText = fmt::format("{:.2f} M{}/s, {}", rate * 1e-6, m_unit, time);
+  const std::string pace =
+      paceText({m_total, done, m_before, duration<double>(now - m_start).count()}, m_unit, last);
   if (!m_terminal) {
-    say(fmt::format("{} {:3.0f} %  {}\n", m_stage, 100 * share, rateText));
+    say(fmt::format("{} {:3.0f} %  {}\n", m_stage, 100 * share, pace));
     return;
   }
   constexpr int kWidth = 30;
   const int filled = int(share * kWidth);
   say(fmt::format("\r\033[K{} [{}{}] {:3.0f} %  {}{}", m_stage, std::string(filled, '='),
-                  std::string(kWidth - filled, ' '), 100 * share, rateText, last ? "\n" : ""));
+                  std::string(kWidth - filled, ' '), 100 * share, pace, last ? "\n" : ""));
 }
 
 }  // namespace odis::app

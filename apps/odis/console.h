@@ -22,6 +22,14 @@ void sayWarning(const std::string& message);
 // Whether stderr is a terminal, where progress is one line that changes.
 bool onTerminal();
 
+// How fast work goes: "0.17 Msamples/s, 3.2 s left", or how long it took if it is over. Of all that is done,
+// `before` was done by an earlier run.
+struct Work {
+  uint64_t total = 0, done = 0, before = 0;
+  double seconds = 0;
+};
+std::string paceText(const Work& work, const std::string& unit, bool isOver);
+
 // When the next line of progress may be written where lines stay, as in a log.
 class LinePace {
  public:
@@ -57,6 +65,7 @@ class ConsoleProgress : public render::Progress {
  public:
   explicit ConsoleProgress(bool quiet);
   void begin(const std::string& stage, uint64_t total, uint64_t done, const char* unit) override;
+  void changeTotal(uint64_t total) override { m_total = total; }
   void advance(uint64_t more) override;
   void end() override;
   void warn(const std::string& message) override;

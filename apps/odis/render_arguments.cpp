@@ -4,6 +4,7 @@
 #include <CLI/CLI.hpp>
 
 #include "command.h"
+#include "effects.h"
 #include "render/image/limits.h"
 #include "settings.h"
 #include "suggest.h"
@@ -91,6 +92,14 @@ void MethodArguments::apply(RenderOptions& options) const {
   if (cached && options.integrator != IntegratorKind::odis)
     throw UsageError("--cached: only --integrator odis has a cache");
   applySettings(options, settings);
+  requireEffects(options, settings);
+  if (cached && options.guideOptions.cellsPerDiagonal == 0)
+    throw UsageError("--cached: has no effect without cells, whose radiance it is (--set cells)");
+  const bool usesNetworks =
+      options.guide == GuideKind::network || options.lights == LightChoiceKind::network ||
+      (options.guideOptions.pixelMaps == ODIS_PIXEL_MAPS_NETWORK && options.pixelNetwork.empty());
+  if (!weights.empty() && !(options.integrator == IntegratorKind::odis && usesNetworks))
+    throw UsageError("--weights: this method has no networks");
 }
 
 void SceneArguments::addTo(CLI::App& app) {
@@ -132,7 +141,9 @@ void RenderArguments::addTo(CLI::App& app) {
       ->check(within(kMaxDepth));
   app.add_option("--rr-depth", rrDepth, "Russian roulette starts here; default: scene's")
       ->check(within(kRouletteDepth));
-  app.add_option("--time-limit", timeLimit, "Stop after so many seconds; 0: no limit")
+  app.add_option(
+         "--time-limit", timeLimit,
+         "Stop after so many seconds, with exit code 6 if the samples of --spp take longer; 0: no limit")
       ->check(within(0.0, 1e9))
       ->capture_default_str();
   app.add_option("--save-every", saveMinutes,
@@ -150,8 +161,9 @@ void RenderArguments::addTo(CLI::App& app) {
   app.add_option("--records", recordsFile, "Write the pilot's vertices as a NumPy array, .npy");
   app.add_option("--tev", tev, "Show the image in the viewer tev at host:port, while it is rendered");
   app.add_option("--replay", replay, "x,y,sample: print that one path instead of rendering");
-  app.add_flag("-q,--quiet", quiet, "Print errors and what changes the picture only");
-  app.add_flag("-v,--verbose", verbose, "Say what is done, and what in the scene has no effect");
+  CLI::Option* silent = app.add_flag("-q,--quiet", quiet, "Print errors and what changes the picture only");
+  app.add_flag("-v,--verbose", verbose, "Say what is done, and what in the scene has no effect")
+      ->excludes(silent);
   method.addTo(app);
   part.addTo(app);
 }

@@ -11,11 +11,13 @@
 #include "command.h"
 #include "console.h"
 #include "denoising.h"
+#include "effects.h"
 #include "numbers.h"
 #include "output.h"
 #include "records.h"
 #include "render/integrators/auxiliary_images.h"
 #include "render_arguments.h"
+#include "render_outcome.h"
 #include "saved_rendering.h"
 #include "scene_warnings.h"
 #include "stats.h"
@@ -114,23 +116,11 @@ static std::optional<DenoiserError> denoiseImage(const RenderArguments& a, const
   return {};
 }
 
-// Whether there is an image; says so where not.
-static bool isWorthWriting(const RenderArguments& a, const RenderStats& stats) {
-  if (stats.spp <= 0) {
-    say("interrupted before there was an image; nothing is written\n");
-    return false;
-  }
-  // Some pixels have no sample yet: better an old image than black ones.
-  if (!InterruptScope::interrupted() || stats.spp >= 1 || !std::filesystem::is_regular_file(a.output))
-    return true;
-  say(fmt::format("interrupted at {:.2f} samples per pixel: {} stays as it was, nothing is written\n",
-                  stats.spp, a.output));
-  return false;
-}
-
-static void writeOutputs(const RenderArguments& a, const RenderResult& result, const FilmSettings& film,
-                         const Layers& layers, RunStats& stats) {
+// Writes all that was asked for. Returns which files, the image first.
+static WrittenFiles writeOutputs(const RenderArguments& a, const RenderResult& result,
+                                 const FilmSettings& film, const Layers& layers, RunStats& stats) {
   const auto start = std::chrono::steady_clock::now();
+  const WrittenFiles files({a.output, a.png, a.recordsFile, a.statsFile});
   if (endsWith(a.output, ".png"))
     writePreview(a.output, result.image, a.exposure);
   else
@@ -140,7 +130,33 @@ static void writeOutputs(const RenderArguments& a, const RenderResult& result, c
   stats.secondsWrite = secondsSince(start);
   if (!a.statsFile.empty()) writeText(a.statsFile, statsJson(stats));
   if (a.stats) fmt::print("{}", statsTable(stats));
-  if (a.verbose) say(fmt::format("{}: written\n", a.output));
+  return files;
+}
+
+// Layers of zeros would pass for measurements.
+static void leaveOutUnknown(const RenderArguments& a, const RenderOptions& options, RenderResult& result,
+                            Layers& layers) {
+  if (!result.image.variance.empty() && result.stats.fewestSamples < 2) {
+    if (!a.quiet) sayWarning("--variance: a pixel has fewer than 2 samples: no variance is written");
+    result.image.variance.clear();
+  }
+  if (layers.guide && !isGuiding(options, result.stats)) {
+    if (!a.quiet) sayWarning("--aov guide: nothing was guided: no layer of the guide is written");
+    layers.guide = false;
+  }
+}
+
+static void describeRun(const RenderArguments& a, const Scene& scene, const RenderOptions& options,
+                        const RenderStats& rendered, RunStats& stats) {
+  stats.render = rendered;
+  stats.bytesScene = scene.bytes();
+  stats.bytesPeak = peakMemory();
+  stats.seed = a.seed;
+  stats.cached = isCaching(options) && isGuiding(options, rendered);
+  if (options.integrator == IntegratorKind::odis) stats.costs = options.costs;
+  stats.scene = a.scene;
+  stats.integrator = a.method.integrator;
+  stats.commandLine = a.commandLine;
 }
 
 static int runRender(RenderArguments& a) {
@@ -151,6 +167,7 @@ static int runRender(RenderArguments& a) {
   if (!a.recordsFile.empty() && a.method.integrator != "odis")
     throw UsageError("--records: only --integrator odis has a pilot to record");
   checkSaving(a);
+  if (a.replay.empty()) requireEffects(a, layers);
   const Outputs outputs = a.replay.empty() ? outputsOf(a) : Outputs();
   std::optional<Denoiser> denoiser;
   if (a.denoise && a.replay.empty()) denoiser.emplace(a.threads);
@@ -165,6 +182,7 @@ static int runRender(RenderArguments& a) {
   tellWarnings(a.scene, warnings, {a.quiet, a.verbose, a.part.strict});
   const RenderOptions options = renderOptions(a, *scene, layers);
   if (!a.replay.empty()) return printReplay(a, *scene, options);
+  tellWithoutEffect(a, options);
   if (a.verbose)
     say(fmt::format("{}: {} shapes, {} lights, {}; loaded in {}\n", a.scene, scene->shapes().size(),
                     scene->emitters().size(), bytesText(double(scene->bytes())),
@@ -176,26 +194,22 @@ static int runRender(RenderArguments& a) {
   if (!a.tev.empty()) progress.setViewer(viewer.emplace(TevAddress(a.tev), a.output));
   RenderResult result = render::render(*scene, options, progress);
   if (result.stats.interrupted) tellOfSaved(a);
-  if (!isWorthWriting(a, result.stats)) return InterruptScope::exitCode();
+  if (!isWorthWriting(a, result.stats)) return renderExitCode(a, result.stats);
   std::optional<DenoiserError> failure;
   if (denoiser) failure = denoiseImage(a, *scene, *denoiser, result.image, progress, stats.denoising);
+  leaveOutUnknown(a, options, result, layers);
   if (stats.denoising.secondsAuxiliaries > 0)
     layers.albedo = layers.normal = true;  // as the denoiser had them
 
-  stats.render = result.stats;
-  stats.bytesScene = scene->bytes();
-  stats.bytesPeak = peakMemory();
-  stats.seed = a.seed;
-  stats.cached = a.method.cached;
-  if (options.integrator == IntegratorKind::odis) stats.costs = options.costs;
-  stats.scene = a.scene;
-  stats.integrator = a.method.integrator;
-  stats.commandLine = a.commandLine;
-  writeOutputs(a, result, scene->film(), layers, stats);
+  describeRun(a, *scene, options, result.stats, stats);
+  const WrittenFiles files = writeOutputs(a, result, scene->film(), layers, stats);
+  if (!a.quiet)
+    say(files.text(fmt::format("after {}, {}", durationText(secondsSince(start)),
+                               samplesText(result.stats, options.spp))));
   if (viewer) viewer->show(result.image.width, result.image.height, std::move(result.image.color));
   if (!result.stats.interrupted) removeSaved(a);
   if (failure) throw *failure;
-  return InterruptScope::exitCode();
+  return renderExitCode(a, result.stats);
 }
 
 Command addRenderCommand(CLI::App& parent, const std::string& commandLine) {

@@ -1,0 +1,138 @@
+#include "effects.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+
+#include "command.h"
+#include "console.h"
+
+namespace odis::app {
+
+using namespace render;
+
+namespace {
+
+using Holds = bool (*)(const RenderOptions&);
+
+// A condition that some keys need, in words that follow "has no effect".
+struct Need {
+  std::vector<std::string> keys;
+  Holds holds;
+  const char* otherwise;
+};
+
+bool hasOracle(const RenderOptions& o) {
+  return o.guide == GuideKind::oracle || o.guideOptions.pixelMaps == ODIS_PIXEL_MAPS_ORACLE;
+}
+bool hasPixelMaps(const RenderOptions& o) {
+  return o.guideOptions.pixelMaps != ODIS_PIXEL_MAPS_NONE;
+}
+bool hasCells(const RenderOptions& o) {
+  return o.guideOptions.cellsPerDiagonal > 0;
+}
+bool refines(const RenderOptions& o) {
+  return o.refineSpp > 0 && o.costs.guidedRay > 0 && o.guideOptions.fixedBsdfFraction == 0 && !hasOracle(o);
+}
+
+const std::vector<Need>& needs() {
+  static const std::vector<Need> all = {
+      {{"oracle-spp"}, hasOracle, "without guide=oracle or pixel-maps=oracle"},
+      {{"refine"}, [](const RenderOptions& o) { return !hasOracle(o); }, "with an oracle"},
+      {{"built-cell-cost", "recorded-ray-cost"},
+       refines,
+       "with refine=0, guided-cost=0, a bsdf-fraction or an oracle"},
+      {{"ended-paths"},
+       [](const RenderOptions& o) { return o.roulette == RouletteKind::formula; },
+       "without roulette=formula"},
+      {{"cached-error"}, [](const RenderOptions& o) { return o.cached; }, "without --cached"},
+      {{"prior-samples"},
+       [](const RenderOptions& o) { return o.guide != GuideKind::network; },
+       "without guide=histogram or guide=oracle"},
+      {{"guide", "prior-samples", "pixel-share"}, hasCells, "without cells"},
+      {{"guide-bounces", "roulette", "ended-paths", "shadow-rays", "refine", "guided-cost", "bsdf-fraction",
+        "map-floor", "map-cosine", "lights"},
+       isGuiding,
+       "with cells=0 and without maps at pixels: nothing is guided"},
+      {{"pixel-tile", "pixel-share"}, hasPixelMaps, "without maps at pixels (pixel-maps)"},
+      {{"pixel-network"},
+       [](const RenderOptions& o) { return o.guideOptions.pixelMaps == ODIS_PIXEL_MAPS_NETWORK; },
+       "without pixel-maps=network"},
+      {{"pixel-light"},
+       [](const RenderOptions& o) {
+         return o.guideOptions.pixelMaps == ODIS_PIXEL_MAPS_HISTOGRAM ||
+                o.guideOptions.pixelMaps == ODIS_PIXEL_MAPS_ORACLE;
+       },
+       "without pixel-maps=histogram or pixel-maps=oracle"}};
+  return all;
+}
+
+// Which integrators have a key, in words, and whether this is one of them.
+std::string integratorsOf(const std::string& key, IntegratorKind integrator, bool& isOne) {
+  using Kind = IntegratorKind;
+  std::vector<Kind> kinds{Kind::odis};
+  const char* words = "odis has";
+  if (key.starts_with("ppg")) kinds = {Kind::ppg}, words = "ppg has";
+  if (key.starts_with("restir")) kinds = {Kind::restir}, words = "restir has";
+  if (key == "samples") kinds = {Kind::odis, Kind::path}, words = "odis and path have";
+  if (key == "guide-bounces")
+    kinds = {Kind::odis, Kind::ppg, Kind::openpgl}, words = "odis, ppg and openpgl have";
+  isOne = std::find(kinds.begin(), kinds.end(), integrator) != kinds.end();
+  return words;
+}
+
+// The least number of samples per pixel that can be spread over the pixels unevenly.
+int leastToSpread(const RenderOptions& o) {
+  const double pilot = o.integrator == IntegratorKind::odis ? o.pilotSpp : 0;
+  return std::max(4, int(std::floor(pilot)) + 3);
+}
+
+}  // namespace
+
+void requireEffects(const RenderOptions& options, const std::vector<std::string>& settings) {
+  for (const std::string& setting : settings) {
+    const std::string key = setting.substr(0, setting.find('='));
+    bool isOne = false;
+    const std::string integrators = integratorsOf(key, options.integrator, isOne);
+    if (!isOne)
+      throw UsageError(fmt::format("--set {}: only --integrator {} this setting", key, integrators));
+    if (options.integrator != IntegratorKind::odis) continue;
+    for (const Need& need : needs())
+      if (std::find(need.keys.begin(), need.keys.end(), key) != need.keys.end() && !need.holds(options))
+        throw UsageError(fmt::format("--set {}: has no effect {}", key, need.otherwise));
+  }
+}
+
+void requireEffects(const RenderArguments& a, Layers& layers) {
+  if (layers.guide && a.method.integrator != "odis") {
+    if (("," + a.aov + ",").find(",guide,") != std::string::npos)
+      throw UsageError("--aov guide: only --integrator odis has a guide, found " + a.method.integrator);
+    layers.guide = false;
+  }
+  if (endsWith(a.output, ".png"))
+    for (const auto& [option, isGiven] : {std::pair("--aov", layers.any()), {"--variance", a.variance}})
+      if (isGiven)
+        throw UsageError(
+            fmt::format("{}: {} has no layers, expected an output that ends in .exr", option, a.output));
+  if (a.exposure != 0 && a.png.empty() && !endsWith(a.output, ".png"))
+    throw UsageError("--exposure: is of PNGs, expected --png or an output that ends in .png");
+}
+
+void tellWithoutEffect(const RenderArguments& a, const RenderOptions& options) {
+  if (options.variance && options.spp < 2)
+    throw UsageError("--variance: one sample per pixel has none, expected --spp 2 or more");
+  std::string notes;
+  if (options.cached && !isCaching(options))
+    notes += fmt::format("note: --cached: has no effect with a max_depth below {}, found {}: not biased\n",
+                         kLeastCachedMaxDepth, options.maxDepth);
+  if (options.samples == SampleSpread::adaptive && options.spp < leastToSpread(options))
+    notes += fmt::format("note: --set samples=adaptive: needs {} samples per pixel, found {}\n",
+                         leastToSpread(options), options.spp);
+  if (options.integrator == IntegratorKind::odis && !isGuiding(options))
+    notes += "note: --set cells=0: nothing is guided without cells and maps at pixels\n";
+  if (!a.quiet) say(notes);
+}
+
+}  // namespace odis::app
