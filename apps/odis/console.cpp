@@ -110,7 +110,7 @@ void ConsoleProgress::end() {
 void ConsoleProgress::warn(const std::string& message) {
   if (m_quiet) return;
   const std::lock_guard lock(m_mutex);
-  sayWarning(message);
+  if (m_warnings.insert(message).second) sayWarning(message);
 }
 
 void ConsoleProgress::show(uint64_t done, bool last) {

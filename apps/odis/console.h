@@ -7,6 +7,7 @@
 #include <atomic>
 #include <chrono>
 #include <mutex>
+#include <set>
 #include <string>
 
 #include "render/integrators/render.h"
@@ -89,6 +90,7 @@ class ConsoleProgress : public render::Progress {
   std::atomic<uint64_t> m_done{0}, m_nextShow{0};
   std::chrono::steady_clock::time_point m_start, m_lastShow;
   LinePace m_pace;  // of all stages
+  std::set<std::string> m_warnings;  // said once each, however often something is rendered
   std::mutex m_mutex;
 };
 

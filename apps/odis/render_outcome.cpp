@@ -22,7 +22,8 @@ bool isWorthWriting(const RenderArguments& a, const RenderStats& stats) {
   }
   // Some pixels have no sample yet: better an old image than black ones.
   if (stats.fewestSamples > 0 || !std::filesystem::is_regular_file(a.output)) return true;
-  say(fmt::format("{} at {:.2f} samples per pixel, some pixels have none: {} stays as it was, nothing is "
+  say(
+      fmt::format("{} at {:.2f} samples per pixel, some pixels have none: {} stays as it was, nothing is "
                   "written\n",
                   stopReason(), stats.spp, a.output));
   return false;

@@ -12,7 +12,7 @@ if(TARGET odis_app)
   else()
     set(readers $ENV{HOME}/.local/share/odis/readers)
   endif()
-  find_program(ODIS_READERS_PYTHON python3 HINTS ${readers}/bin)
+  find_program(ODIS_READERS_PYTHON python3 HINTS ${readers}/bin NO_CACHE)
   if(ODIS_READERS_PYTHON)
     foreach(reader OpenEXR oiiotool exrheader)
       add_test(NAME OtherReaders.${reader} COMMAND ${ODIS_READERS_PYTHON}

@@ -25,8 +25,8 @@ class ShellLines : public test::Odis {};
 
 TEST_F(ShellLines, CanBePastedIntoAShell) {
   EXPECT_EQ(shellLine({"odis", "render", "a/b.xml", "--spp=4"}), "odis render a/b.xml --spp=4");
-  const std::vector<std::string> arguments{"",    "a b", "it's", "$HOME", "a\"b", "`id`", "*", "~", "x;y",
-                                           "a\\", "ü",   "a\nb", "#",     "a=b",  "!1"};
+  const std::vector<std::string> arguments{"",    "a b", "it's", "$HOME", "a\"b", "`id`", "*", "~",
+                                           "x;y", "a\\", "ü",    "a\nb",  "#",    "a=b",  "!1"};
   std::string expected;
   for (const std::string& argument : arguments) expected += "<" + argument + ">";
   EXPECT_EQ(runShell("printf '<%s>' " + shellLine(arguments)).text, expected);

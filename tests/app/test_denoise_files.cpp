@@ -61,8 +61,7 @@ class DenoisedFiles : public odis::test::Odis {
         const void* data = parts[p].type == Imf::UINT   ? static_cast<void*>(planes[c].data())
                            : parts[p].type == Imf::HALF ? static_cast<void*>(halves[c].data())
                                                         : static_cast<void*>(floats[c].data());
-        frame.insert(parts[p].channels[c],
-                     Imf::Slice::Make(parts[p].type, data, headers[p].dataWindow()));
+        frame.insert(parts[p].channels[c], Imf::Slice::Make(parts[p].type, data, headers[p].dataWindow()));
       }
       Imf::OutputPart part(file, int(p));
       part.setFrameBuffer(frame);

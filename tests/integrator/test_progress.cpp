@@ -74,8 +74,7 @@ class CancelAt : public Progress {
 // Whoever stops a rendering after its last sample has all of it.
 TEST(Interrupted, IsWhatLacksSamples) {
   const auto scene = unevenRoom();
-  for (const IntegratorKind integrator :
-       {IntegratorKind::path, IntegratorKind::odis, IntegratorKind::ppg}) {
+  for (const IntegratorKind integrator : {IntegratorKind::path, IntegratorKind::odis, IntegratorKind::ppg}) {
     RenderOptions options;
     options.integrator = integrator;
     options.samples = SampleSpread::even;
