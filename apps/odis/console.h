@@ -89,7 +89,7 @@ class ConsoleProgress : public render::Progress {
   uint64_t m_total = 0, m_before = 0;  // of the stage, and what of it an earlier run did
   std::atomic<uint64_t> m_done{0}, m_nextShow{0};
   std::chrono::steady_clock::time_point m_start, m_lastShow;
-  LinePace m_pace;  // of all stages
+  LinePace m_pace;                   // of all stages
   std::set<std::string> m_warnings;  // said once each, however often something is rendered
   std::mutex m_mutex;
 };
