@@ -45,8 +45,8 @@ def channels_by_openexr(path):
 
 
 def channels_by_oiiotool(path):
-    output("oiiotool", "--stats", path)
-    line = next(line for line in output("oiiotool", "--info", "-v", path).splitlines() if "channel list:" in line)
+    lines = output("oiiotool", "--info", "-v", "--stats", path).splitlines()
+    line = next(line for line in lines if "channel list:" in line)
     return {word.split(" ")[0] for word in line.split(": ")[1].split(", ")}, None
 
 
