@@ -185,8 +185,9 @@ TEST_F(Cluster, SaysWhatIsWrong) {
   EXPECT_EQ(make("slurm").code, 1);
   const Outcome absent = runShell("bash=$(command -v bash); PATH=/; \"$bash\" '" ODIS_SOURCE
                                   "/scripts/dataset' parallel ./odis -- --seeds 1-2 -o out");
-  EXPECT_EQ(absent.code, 2);
-  EXPECT_NE(absent.text.find("parallel is missing"), std::string::npos) << absent.text;
+  EXPECT_EQ(absent.code, 5);
+  EXPECT_NE(absent.text.find("parallel is missing: `apt-get install parallel`"), std::string::npos)
+      << absent.text;
 }
 
 }  // namespace
