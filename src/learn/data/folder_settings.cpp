@@ -74,7 +74,7 @@ nlohmann::ordered_json shardSettings(const DataSettings& settings, const Assets&
 
 void checkFolder(const std::string& folder, const nlohmann::ordered_json& settings,
                  const std::vector<std::string>& names) {
-  if (!fs::exists(folder)) return;
+  if (!fs::is_directory(folder)) return;
   if (fs::exists(fs::path(folder) / "checkpoint"))
     throw GenerateError(
         fmt::format("{}: holds a training (`odis train`), expected a folder for shards", folder));
