@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <atomic>
 #include <condition_variable>
+#include <system_error>
 #include <thread>
 #include <vector>
 
@@ -16,7 +17,12 @@ namespace {
 class ThreadTasks : public Tasks {
  public:
   explicit ThreadTasks(uint32_t threads) {
-    for (uint32_t i = 1; i < threads; ++i) m_threads.emplace_back([this] { serve(); });
+    m_threads.reserve(threads);
+    try {
+      for (uint32_t i = 1; i < threads; ++i) m_threads.emplace_back([this] { serve(); });
+    } catch (const std::system_error&) {
+      // There are no more threads to be had: those that there are do the work.
+    }
   }
   ~ThreadTasks() override {
     {
