@@ -65,6 +65,21 @@ TEST(CachedRadiance, IsShrunkTowardsTheParentAndTrustsTheLargestSpread) {
   EXPECT_FLOAT_EQ(cached[2].error, std::sqrt(4.0f / 4));  // its own vertices know of no spread
 }
 
+TEST(CachedRadiance, IsNotTrustedAsIfNoLightWereThereWhereNoneWasFound) {
+  // A light that one in 10,000 vertices finds, and a cell whose vertices have all missed it.
+  std::vector<CellStatistics> cells(2);
+  for (CellStatistics& cell : cells) cell.level = kCellLevels - 1;
+  for (int i = 0; i < 20000; ++i) addVertex(cells[0], uint32_t(i % 2), i < 2 ? 10000 : 0);
+  for (int i = 0; i < 1200; ++i) addVertex(cells[1], uint32_t(i % 2), 0);
+  const std::vector<CachedRadiance> cached = cacheRadiance(*libraryTasks(), cells);
+  // All vertices have a variance of 100 squared. By the rule of three the other half's 600 may have missed a
+  // share of 3 / 600 of it, and a mean is made of as many.
+  for (size_t half = 0; half < 2; ++half) {
+    EXPECT_EQ(cached[2 + half].radiance.x, 0);
+    EXPECT_NEAR(cached[2 + half].error, 100 * std::sqrt(3.0 / 600 / 600), 0.02);
+  }
+}
+
 TEST(CachedRadiance, OfCellsWithoutVerticesIsNotTrusted) {
   std::vector<CellStatistics> cells(2);
   cells[0].level = kCellLevels - 1;

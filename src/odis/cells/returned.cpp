@@ -11,6 +11,9 @@ namespace {
 constexpr double kMostErrors = 4;
 // So many vertices of a cell of the coarsest level are needed to know of its spread.
 constexpr double kLeastForSpread = 64;
+// The rule of three: if none of n vertices found a light, it is found with a probability of up to 3 / n
+// (95 % confidence; Hanley and Lippman-Hand 1983).
+constexpr double kMissed = 3;
 
 }  // namespace
 
@@ -63,8 +66,8 @@ double largestVariance(const Spread& cell, double ofParent) {
 }
 
 double largestVarianceOfCoarsest(const Spread& cell, const Spread& all) {
-  const double own = cell.variance();
-  return cell.count >= kLeastForSpread ? own : std::max(own, all.variance());
+  const double share = cell.count >= kLeastForSpread ? kMissed / cell.count : 1;
+  return std::max(cell.variance(), share * all.variance());
 }
 
 double returnedLimit(double count, double variance) {
