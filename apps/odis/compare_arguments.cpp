@@ -45,6 +45,7 @@ void CompareArguments::addTo(CLI::App& app) {
       ->capture_default_str();
   app.add_flag("--fresh", settings.fresh, "Forget earlier results; references are kept");
   app.add_option("--threads", threads, "0: one a core")->check(within(kThreadCount))->capture_default_str();
+  app.add_flag("--wide", wide, "Print all columns; without it what fits in 100 letters");
   app.add_flag("-q,--quiet", quiet, "Print the tables, and what changes a scene's picture, only");
   part.addTo(app);
 }

@@ -16,6 +16,7 @@ struct CompareArguments {
   SceneArguments part;
   int pixels = 0, threads = 0;
   bool images = false;  // PNGs too
+  bool wide = false;    // all columns
   bool denoise = false;
   float exposure = 0;  // of these, in stops
   bool quiet = false;

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>
 
+#include <algorithm>
 #include <climits>
 #include <filesystem>
 #include <memory>
@@ -31,6 +32,13 @@ class ConsoleObserver : public eval::CompareObserver {
   ConsoleObserver(bool quiet, bool strict)
       : m_quiet(quiet), m_strict(strict), m_terminal(onTerminal()), m_progress(quiet || !m_terminal) {}
 
+  void begin(const eval::Outlook& outlook) override {
+    if (m_quiet || outlook.secondsLeft < 1) return;
+    say(fmt::format(
+        "{} renderings, about {} by a sample per pixel of the first scene; less where results are "
+        "there already\n",
+        outlook.total, durationText(outlook.secondsLeft)));
+  }
   void start(const std::string& what, const eval::Outlook& outlook) override {
     std::string title = fmt::format("[{}/{}", outlook.done + 1, outlook.total);
     if (outlook.secondsLeft > 0) title += ", " + durationText(outlook.secondsLeft) + " left";
@@ -78,6 +86,22 @@ static void prepareFolder(const eval::CompareSettings& settings) {
   outputs.rejectInputs({settings.reference});
 }
 
+// Where a method has no row at equal time: not one sample fits in that of the first method.
+static void tellWhatDoesNotFit(const eval::CompareSettings& settings,
+                               const std::vector<eval::ComparisonRow>& rows) {
+  for (const eval::ComparisonRow& row : rows) {
+    if (row.equalTime || row.denoised || row.isMean() || row.method == settings.methods.front().name)
+      continue;
+    const bool fits = std::any_of(rows.begin(), rows.end(), [&](const eval::ComparisonRow& other) {
+      return other.equalTime && other.scene == row.scene && other.method == row.method &&
+             other.spp == row.spp;
+    });
+    if (!fits)
+      say(fmt::format("{}: no sample of {} fits in the time of {} of {}\n", row.scene, row.method, row.spp,
+                      settings.methods.front().name));
+  }
+}
+
 static int runCompare(CompareArguments& a) {
   a.apply();
   const eval::CompareSettings& settings = a.settings;
@@ -105,16 +129,19 @@ static int runCompare(CompareArguments& a) {
   if (!rows.empty())
     writeText(settings.folder + "/report.html", eval::reportPage(comparison, rows, json, settings.folder));
   if (a.images) eval::writePictures(comparison, rows, settings.folder, a.exposure);
-  fmt::print("{}", tables);
-  if (!rows.empty() && !a.quiet) say(fmt::format("report: {}/report.html\n", settings.folder));
+  fmt::print("{}", a.wide ? tables : eval::narrowTables(rows, comparison.scenes));
+  if (settings.equalTime && !a.quiet) tellWhatDoesNotFit(settings, rows);
+  if (!rows.empty() && !a.quiet)
+    say(fmt::format("report: {0}/report.html; all columns (--wide): {0}/comparison.md\n", settings.folder));
   return InterruptScope::exitCode();
 }
 
 Command addCompareCommand(CLI::App& parent, const std::string& commandLine) {
   CLI::App* app = parent.add_subcommand("compare", "Compare ways to render scenes by error, rays and time");
   app->footer(
-      "Prints medians over seeds, ratios to the first method with 95 % intervals, and how many samples the\n"
-      "first method needs for the same error. Error: the relMSE without the worst 0.1 % of the pixels.\n"
+      "Prints medians over seeds and ratios to the first method with 95 % intervals; --wide also how many\n"
+      "samples the first method needs for the same error. Error: the relMSE without the worst 0.1 % of the\n"
+      "pixels. Time is that of the processor: seconds of all its cores together.\n"
       "DIR/report.html shows everything with the pictures. Results are kept in DIR/results.jsonl: an\n"
       "interrupted comparison goes on where it stopped.");
   const auto a = std::make_shared<CompareArguments>();

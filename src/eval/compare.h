@@ -64,6 +64,8 @@ struct Outlook {
 class CompareObserver {
  public:
   virtual ~CompareObserver() = default;
+  // Before the first reference: how long all of it may take, by one sample per pixel of the first scene.
+  virtual void begin(const Outlook& /*outlook*/) {}
   virtual void start(const std::string& what, const Outlook& outlook) = 0;
   virtual void warnings(const std::string& scene, const render::Warnings& warnings) = 0;
   virtual render::Progress& progress() = 0;

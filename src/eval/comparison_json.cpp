@@ -45,7 +45,7 @@ static Json toJson(const ComparisonRow& row) {
                {"untrimmedRatio", toJson(row.untrimmedRatio)},
                {"errorTimeRatio", toJson(row.errorTimeRatio)},
                {"errorRaysRatio", toJson(row.errorRaysRatio)},
-               {"secondsRatio", row.secondsRatio},
+               {"cpuSecondsRatio", row.cpuSecondsRatio},
                {"raysRatio", row.raysRatio},
                {"needed", toJson(row.needed)}};
   if (row.isMean()) return json;

@@ -20,7 +20,7 @@ int samplesInTime(const std::vector<TimePoint>& measured, double seconds) {
     samples = measured.back().samples * seconds / measured.back().seconds;
   }
   // A hair of tolerance, so that equal times give equal samples.
-  return int(render::limited(std::floor(samples + 1e-9), 1.0, kMost));
+  return int(render::limited(std::floor(samples + 1e-9), 0.0, kMost));
 }
 
 }  // namespace odis::eval

@@ -29,20 +29,35 @@ SceneRun::SceneRun(const CompareSettings& settings, const std::string& path, Res
   m_record.height = m_scene->film().crop.height;
   m_record.maxDepth = settings.maxDepth.value_or(m_scene->integrator().maxDepth);
   m_record.rrDepth = settings.rrDepth.value_or(m_scene->integrator().rrDepth);
+}
 
-  observer.start(m_record.name + ": reference", schedule.outlook());
-  if (settings.reference.empty()) {
-    RenderOptions options;
-    options.maxDepth = m_record.maxDepth;
-    options.rrDepth = m_record.rrDepth;
-    options.threads = settings.methods.front().options.threads;
-    options.spp = settings.referenceSpp;
-    m_reference = cachedReference(*m_scene, m_record.name, m_record.hash, options,
-                                  settings.folder + "/references", observer.progress());
-  } else {
+RenderOptions SceneRun::plainOptions(int spp) const {
+  RenderOptions options;
+  options.maxDepth = m_record.maxDepth;
+  options.rrDepth = m_record.rrDepth;
+  options.threads = m_settings.methods.front().options.threads;
+  options.spp = spp;
+  return options;
+}
+
+void SceneRun::timeASample() {
+  if (!m_schedule.isPending(m_record.name)) return;
+  RenderOptions options = plainOptions(1);
+  options.integrator = IntegratorKind::path;
+  const Stopwatch watch;
+  render::render(*m_scene, options, m_observer.progress());
+  m_schedule.learn(m_record.name, watch.seconds());
+}
+
+void SceneRun::takeReference() {
+  const CompareSettings& settings = m_settings;
+  m_observer.start(m_record.name + ": reference", m_schedule.outlook());
+  if (settings.reference.empty())
+    m_reference = cachedReference(*m_scene, m_record.name, m_record.hash, plainOptions(settings.referenceSpp),
+                                  settings.folder + "/references", m_observer.progress());
+  else
     m_reference = readReference(settings.reference);
-  }
-  schedule.finish(m_record.name, "reference", settings.referenceSpp, m_reference.secondsRendered);
+  m_schedule.finish(m_record.name, "reference", settings.referenceSpp, m_reference.secondsRendered);
   const ColorImage& image = m_reference.image;
   if (image.pixels.empty()) return;  // cancelled
   if (image.width != m_record.width || image.height != m_record.height)
@@ -118,6 +133,10 @@ Measurement SceneRun::measureImage(const Measurement& what, const Method& method
   if (m.seed == 0) m.image = writeImage(m, method, image);
   m_log.add(m);
   return m;
+}
+
+void SceneRun::skip(const Budget& budget) {
+  m_schedule.finish(m_record.name, m_settings.methods.front().name, budget.spp, 0);
 }
 
 std::vector<Measurement> SceneRun::measure(const Method& method, const Budget& budget, uint64_t seed) {

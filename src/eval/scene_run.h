@@ -23,15 +23,24 @@ struct Budget {
 
 class SceneRun {
  public:
-  // Loads the scene; renders its reference if it is not there yet. All arguments must outlive the run.
+  // Loads the scene. All arguments must outlive the run.
   SceneRun(const CompareSettings& settings, const std::string& path, ResultsLog& log, Schedule& schedule,
            CompareObserver& observer);
+  // Tells the schedule what a sample takes, if there is something to be rendered.
+  void timeASample();
+  // Renders the reference if it is not there yet. To be called before measure().
+  void takeReference();
   const SceneRecord& record() const { return m_record; }
   // Looks the result up or renders: the image, and the same denoised if that is asked for. Worth nothing if
   // progress is cancelled.
   std::vector<Measurement> measure(const Method& method, const Budget& budget, uint64_t seed);
 
+  // What was planned for the budget needs no rendering.
+  void skip(const Budget& budget);
+
  private:
+  // Of plain path tracing in the way of the comparison.
+  render::RenderOptions plainOptions(int spp) const;
   // What earlier runs left, if all of it is there.
   std::optional<std::vector<Measurement>> known(const Method& method, const std::string& key,
                                                 uint64_t seed) const;

@@ -22,6 +22,20 @@ void Schedule::finish(const std::string& scene, const std::string& method, doubl
   }
 }
 
+void Schedule::learn(const std::string& scene, double seconds) {
+  for (const std::string& known : {scene, std::string()}) {
+    Work& work = m_measured[{known, ""}];
+    work.samples += 1;
+    work.seconds += seconds;
+  }
+}
+
+bool Schedule::isPending(const std::string& scene) const {
+  for (const auto& [job, samples] : m_pending)
+    if (job.first == scene && samples > 0) return true;
+  return false;
+}
+
 Outlook Schedule::outlook() const {
   Outlook outlook{m_done, m_total, 0};
   for (const auto& [job, samples] : m_pending) {

@@ -14,6 +14,9 @@ class Schedule {
   void plan(const std::string& scene, const std::string& method, double samples);
   // It is done, in so many seconds; 0: found, nothing to learn from.
   void finish(const std::string& scene, const std::string& method, double samples, double seconds);
+  // A sample per pixel of the scene took so many seconds, by whatever method.
+  void learn(const std::string& scene, double seconds);
+  bool isPending(const std::string& scene) const;
   Outlook outlook() const;
 
  private:

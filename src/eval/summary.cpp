@@ -1,5 +1,7 @@
 #include "eval/summary.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <functional>
@@ -20,7 +22,7 @@ double untrimmedOf(const Measurement& m) {
   return m.error.relMse;
 }
 double errorTimeOf(const Measurement& m) {
-  return errorOf(m) * m.seconds;
+  return errorOf(m) * m.cpuSeconds;
 }
 double errorRaysOf(const Measurement& m) {
   return errorOf(m) * double(m.rays);
@@ -86,8 +88,14 @@ void fillRatios(Entry& entry, const Entry& base) {
   row.untrimmedRatio = ratioOf(entry.runs, base.runs, untrimmedOf, mean, entry.untrimmed);
   row.errorTimeRatio = ratioOf(entry.runs, base.runs, errorTimeOf, median, entry.errorTime);
   row.errorRaysRatio = ratioOf(entry.runs, base.runs, errorRaysOf, median, entry.errorRays);
-  row.secondsRatio = row.seconds / base.row.seconds;
+  row.cpuSecondsRatio = row.cpuSeconds / base.row.cpuSeconds;
   row.raysRatio = row.rays / base.row.rays;
+}
+
+// Whether two rows of a method are of the same images.
+bool sameImages(const ComparisonRow& a, const ComparisonRow& b) {
+  return a.scene == b.scene && a.method == b.method && a.denoised == b.denoised && !a.image.empty() &&
+         a.image == b.image;
 }
 
 bool sameKind(const ComparisonRow& a, const ComparisonRow& b) {
@@ -139,14 +147,14 @@ ComparisonRow meanOf(const std::vector<const Entry*>& entries) {
   double seconds = 0, rays = 0, samples = 0, needed = 0;
   bool allWithin = true;
   for (const Entry* entry : entries) {
-    seconds += std::log(entry->row.secondsRatio);
+    seconds += std::log(entry->row.cpuSecondsRatio);
     rays += std::log(entry->row.raysRatio);
     samples += std::log(entry->row.samples);
     needed += std::log(entry->row.needed.samples);
     allWithin = allWithin && entry->row.needed.where == SamplesNeeded::within;
   }
   const auto count = double(entries.size());
-  row.secondsRatio = std::exp(seconds / count);
+  row.cpuSecondsRatio = std::exp(seconds / count);
   row.raysRatio = std::exp(rays / count);
   row.samples = std::exp(samples / count);
   if (allWithin) row.needed = {SamplesNeeded::within, std::exp(needed / count)};
@@ -176,7 +184,14 @@ std::vector<ComparisonRow> summarize(const std::vector<Measurement>& measurement
   }
 
   std::vector<ComparisonRow> rows;
-  for (const Entry& entry : entries) rows.push_back(entry.row);
+  for (const Entry& entry : entries) {
+    rows.push_back(entry.row);
+    if (!entry.row.equalTime) continue;
+    const auto same = std::find_if(rows.begin(), rows.end() - 1,
+                                   [&](const ComparisonRow& row) { return sameImages(row, entry.row); });
+    if (same != rows.end() - 1)
+      rows.back().sameAs = fmt::format(fmt::runtime(same->equalTime ? "time of {}" : "{} spp"), same->spp);
+  }
   if (rows.empty() || rows.front().scene == rows.back().scene) return rows;
   // A mean over some scenes only, because the comparison was interrupted, would mean nothing next to others.
   size_t scenes = 0;

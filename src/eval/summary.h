@@ -11,7 +11,8 @@
 namespace odis::eval {
 
 // A method on a scene with a number of samples: medians over its seeds. Ratios are to the first method with
-// the same `spp` on the same scene, denoised or not likewise; "error" there is the 0.1 %-trimmed relMSE.
+// the same `spp` on the same scene, denoised or not likewise; "error" there is the 0.1 %-trimmed relMSE,
+// "time" that of the process on all cores.
 struct ComparisonRow {
   std::string scene, method;
   int spp = 0;
@@ -25,9 +26,11 @@ struct ComparisonRow {
   // `untrimmedRatio` is of relMSE of all pixels, mean over seeds: it shows fireflies, which the others leave
   // out.
   Interval errorRatio, untrimmedRatio, errorTimeRatio, errorRaysRatio;
-  double secondsRatio = 1, raysRatio = 1;
+  double cpuSecondsRatio = 1, raysRatio = 1;
   SamplesNeeded needed;  // by the first method for the same error
   std::string image;     // of seed 0
+  // At equal time: which row has the same images, as "4 spp" or "time of 4"; "" if none has.
+  std::string sameAs;
 
   bool isMean() const { return scene == kAllScenes; }
   static constexpr const char* kAllScenes = "geometric mean";

@@ -28,6 +28,20 @@ TEST(Schedule, KnowsTheTimeLeftFromWhatWasDone) {
   EXPECT_EQ(schedule.outlook().done, 3);
 }
 
+// By one sample, before anything of it is done.
+TEST(Schedule, LearnsFromASample) {
+  Schedule schedule;
+  schedule.plan("a", "reference", 64);
+  schedule.plan("b", "path", 4);
+  EXPECT_TRUE(schedule.isPending("a"));
+  EXPECT_FALSE(schedule.isPending("c"));
+  schedule.learn("a", 0.5);
+  EXPECT_NEAR(schedule.outlook().secondsLeft, 68 * 0.5, 1e-12);
+  EXPECT_EQ(schedule.outlook().done, 0);
+  schedule.finish("a", "reference", 64, 64);
+  EXPECT_FALSE(schedule.isPending("a"));
+}
+
 TEST(EqualTime, FollowsTheLinesBetweenWhatWasMeasured) {
   // 1 s to begin with and 0.5 s a sample.
   const std::vector<TimePoint> guided{{4, 3}, {8, 5}, {16, 9}};
@@ -37,13 +51,13 @@ TEST(EqualTime, FollowsTheLinesBetweenWhatWasMeasured) {
   EXPECT_EQ(samplesInTime(guided, 9), 16);
   EXPECT_EQ(samplesInTime(guided, 17), 32);
   EXPECT_EQ(samplesInTime(guided, 2), 2);
-  EXPECT_EQ(samplesInTime(guided, 0.5), 1);  // at least one
+  EXPECT_EQ(samplesInTime(guided, 0.5), 0);  // not one fits
 }
 
 TEST(EqualTime, IsProportionalWhereThereIsNoLine) {
   EXPECT_EQ(samplesInTime({{4, 2}}, 5), 10);
   EXPECT_EQ(samplesInTime({{4, 2}, {8, 1}}, 2), 16);  // noise
-  EXPECT_EQ(samplesInTime({{4, 0}}, 2), 1);
+  EXPECT_EQ(samplesInTime({{4, 0}}, 2), 0);
 }
 
 }  // namespace

@@ -94,7 +94,7 @@ async function refreshPicture() {
 function caption(name) {
   const row = rowsOf(state.scene).find(r => r.method === name && pictures().some(p => p.method === name && p.spp === r.spp && p.equalTime === r.equalTime));
   if (!row) return 'reference';
-  return `${name}, ${samplesText(row)} spp · error ${number(row.trimmedRelMse)} · FLIP ${number(row.flip)} · ${number(row.seconds)} s`;
+  return `${name}, ${samplesText(row)} spp · error ${number(row.trimmedRelMse)} · FLIP ${number(row.flip)} · ${number(row.cpuSeconds)} CPU s`;
 }
 
 function legend() {
@@ -194,13 +194,13 @@ function refreshCharts() {
     points: rows.filter(r => r.method === method.name).map(r => {
       const errors = data.runs.filter(run => run.scene === r.scene && run.method === r.method && run.spp === r.spp && run.equalTime === r.equalTime && run.denoised === r.denoised).map(run => run[metric]);
       return {x: x(r), y: r[metric], low: Math.min(...errors), high: Math.max(...errors), hollow: r.equalTime,
-        title: `${r.method}, ${samplesText(r)} spp: ${label} ${number(r[metric])} (${number(Math.min(...errors))} to ${number(Math.max(...errors))} over ${r.seeds} seeds), ${number(r.seconds)} s`};
+        title: `${r.method}, ${samplesText(r)} spp: ${label} ${number(r[metric])} (${number(Math.min(...errors))} to ${number(Math.max(...errors))} over ${r.seeds} seeds), ${number(r.cpuSeconds)} CPU s`};
     })}));
   const ticks = [...new Set(rows.map(r => r.spp))];
   const own = state.scene.referenceError && state.scene.referenceError[metric];
   const levels = own ? [{y: own, label: 'reference'}] : [];
   drawCurves(byId('samples-chart'), seriesBy(r => r.samples), 'samples per pixel', label, levels, ticks);
-  drawCurves(byId('time-chart'), seriesBy(r => r.seconds), 'seconds', label, levels);
+  drawCurves(byId('time-chart'), seriesBy(r => r.cpuSeconds), 'seconds of the processor', label, levels);
   byId('reference-note').textContent = 'Whiskers: the least and the most of all seeds; hollow: at equal time. ' + (own
     ? `Dashed: the reference's own error, ${number(own)}, is part of all.`
     : /relMse/i.test(metric) ? 'The own error of this reference is not known.' : 'What of it is the reference\'s is told for relMSE only.');
