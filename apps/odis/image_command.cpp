@@ -64,7 +64,7 @@ void checkBeside(const ImageArguments& a, const std::vector<std::string>& inputs
 
 int convert(const ImageArguments& a) {
   checkBeside(a, a.images, {".png", ".exr"});
-  const eval::ColorImage image = eval::layerColor(eval::readChannels(a.images.front()), a.layer);
+  const eval::ColorImage image = eval::readColor(a.images.front(), a.layer);
   writeColorAs(a.output, image, a.exposure,
                a.toneMap == "clamp" ? render::ToneMap::clamp : render::ToneMap::filmic);
   return kOk;
@@ -77,17 +77,22 @@ int diff(const ImageArguments& a) {
       {"absolute", eval::DifferenceKind::absolute},
       {"relative", eval::DifferenceKind::relative},
       {"flip", eval::DifferenceKind::flip}};
-  const eval::ColorImage first = eval::layerColor(eval::readChannels(a.images[0]), a.layer),
-                         second = eval::layerColor(eval::readChannels(a.images[1]), a.layer);
+  const eval::ColorImage first = eval::readColor(a.images[0], a.layer),
+                         second = eval::readColor(a.images[1], a.layer);
   eval::ColorImage difference;
   try {
     difference = eval::difference(first, second, kKinds.at(a.kind));
   } catch (const std::invalid_argument& error) {
     throw eval::ImageError(fmt::format("{}, {}: {}", a.images[0], a.images[1], error.what()));
   }
+  const size_t differing = eval::differingPixels(first, second);
+  if (differing == 0)
+    fmt::print("the images are equal\n");
+  else
+    fmt::print("{} of {} pixels differ\n", differing, first.pixels.size());
   if (endsWith(a.output, ".png")) {
     const double full = a.full > 0 ? a.full : a.kind == "flip" ? 1 : eval::heatMapEnd(difference);
-    fmt::print("the colours end at {:.4g}\n", full);
+    if (differing > 0) fmt::print("the colours end at {:.4g}\n", full);
     difference = eval::heatMap(difference, a.kind == "signed", full);
   }
   writeColorAs(a.output, difference, 0, render::ToneMap::clamp);
@@ -133,14 +138,15 @@ Command addImageCommand(CLI::App& parent) {
   add("info", "Size, channels with their ranges, metadata", "EXR, PNG, JPEG, TGA, BMP or HDR files", 0,
       false);
   CLI::App* sub = add("convert", "Write one layer as PNG or EXR", "The image", 1, true);
-  sub->add_option("--layer", a->layer, "Which layer, as in albedo.R; default: the one without a name");
+  sub->add_option("--layer", a->layer,
+                  "Which layer, as in albedo of albedo.R; default: as for `odis metrics`");
   sub->add_option("--exposure", a->exposure, "In stops")->check(within(kStops))->capture_default_str();
   sub->add_option("--tone-map", a->toneMap, "Of PNGs: highlights rolled off or clamped")
       ->check(CLI::IsMember({"filmic", "clamp"}))
       ->capture_default_str();
   sub = add("diff", "Where two images differ: numbers as EXR, false colours as PNG", "Image and reference", 2,
             true);
-  sub->add_option("--layer", a->layer, "Which layer; default: the one without a name");
+  sub->add_option("--layer", a->layer, "Which layer; default: as for `odis metrics`");
   sub->add_option("--kind", a->kind, "signed: I - R; relative: as relMSE sums it; flip: as FLIP averages it")
       ->check(CLI::IsMember({"signed", "absolute", "relative", "flip"}))
       ->capture_default_str();

@@ -14,15 +14,15 @@ namespace odis::app {
 namespace {
 
 struct MetricsArguments {
-  std::string image, reference;
+  std::string image, reference, layer, referenceLayer;
   bool json = false;
 };
 
 }  // namespace
 
 static int runMetrics(const MetricsArguments& arguments) {
-  const eval::ColorImage image = eval::readColor(arguments.image),
-                         reference = eval::readColor(arguments.reference);
+  const eval::ColorImage image = eval::readColor(arguments.image, arguments.layer),
+                         reference = eval::readColor(arguments.reference, arguments.referenceLayer);
   if (image.width != reference.width || image.height != reference.height)
     throw eval::ImageError(fmt::format("{} is {} x {}, {} is {} x {}: they must be of one size",
                                        arguments.image, image.width, image.height, arguments.reference,
@@ -64,6 +64,12 @@ Command addMetricsCommand(CLI::App& parent) {
   const auto arguments = std::make_shared<MetricsArguments>();
   app->add_option("IMAGE", arguments->image, "EXR, PNG, JPEG, TGA, BMP or HDR file")->required();
   app->add_option("REFERENCE", arguments->reference, "The same")->required();
+  app->add_option(
+      "--layer", arguments->layer,
+      "Which layer of IMAGE; default: the one without a name, Blender's Combined, or the only one "
+      "with R, G and B");
+  app->add_option("--reference-layer", arguments->referenceLayer,
+                  "Which layer of REFERENCE; default: likewise");
   app->add_flag("--json", arguments->json, "Print JSON");
   return {app, [arguments] { return runMetrics(*arguments); }};
 }

@@ -31,6 +31,17 @@ static std::optional<std::string> findLayer(const LayeredImage& image,
   return {};
 }
 
+std::optional<std::string> findImageLayer(const LayeredImage& image) {
+  if (const auto named = findLayer(image, {"", "combined"})) return named;
+  std::optional<std::string> only;
+  for (const std::string& layer : layerNames(image)) {
+    if (!image.channels.contains(layer + ".R") || !hasColor(image, layer)) continue;
+    if (only) return {};
+    only = layer;
+  }
+  return only;
+}
+
 std::optional<std::string> findColorLayer(const LayeredImage& image) {
   return findLayer(image, {"noisy", "noisy image", "", "combined"});
 }

@@ -1,5 +1,5 @@
-// Which layers of an image file are the colours, albedo and normals that a denoiser takes: renderers name
-// them differently.
+// Which layers of an image file are its colours, and which the albedo and normals that a denoiser takes:
+// renderers name them differently.
 #pragma once
 
 #include <optional>
@@ -12,7 +12,10 @@ namespace odis::eval {
 // Found by their names, whatever their case and whatever view layer stands before them. The first of a list
 // that is there is taken; nothing if none is.
 
-// noisy (ODIS), Noisy Image (Cycles), the one without a name, Combined (Blender).
+// The image as it is to be seen: the layer without a name, Combined (Blender), or the only one with R, G and
+// B.
+std::optional<std::string> findImageLayer(const LayeredImage& image);
+// What a denoiser takes: noisy (ODIS), Noisy Image (Cycles), the one without a name, Combined (Blender).
 std::optional<std::string> findColorLayer(const LayeredImage& image);
 // Denoising Albedo (Cycles), albedo (ODIS, Mitsuba's `aov`, pbrt).
 std::optional<std::string> findAlbedoLayer(const LayeredImage& image);

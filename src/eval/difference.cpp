@@ -33,6 +33,19 @@ static double meanOf(const Rgb& c) {
   return (double(c.x) + c.y + c.z) / 3;
 }
 
+size_t differingPixels(const ColorImage& a, const ColorImage& b) {
+  size_t count = 0;
+  for (size_t i = 0; i < a.pixels.size(); ++i) {
+    bool same = true;
+    // Where both are no numbers they are the same.
+    for (int c = 0; c < 3; ++c)
+      same = same &&
+             (a.pixels[i][c] == b.pixels[i][c] || (std::isnan(a.pixels[i][c]) && std::isnan(b.pixels[i][c])));
+    count += !same;
+  }
+  return count;
+}
+
 double heatMapEnd(const ColorImage& difference) {
   std::vector<double> sizes;
   for (const Rgb& pixel : difference.pixels)

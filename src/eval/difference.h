@@ -19,6 +19,9 @@ enum class DifferenceKind {
 // the sizes differ.
 ColorImage difference(const ColorImage& a, const ColorImage& b, DifferenceKind kind);
 
+// How many pixels of two images of one size have other values.
+size_t differingPixels(const ColorImage& a, const ColorImage& b);
+
 // The mean of the channels in false colours, linear, to be written without a tone curve: signed ones red
 // above zero and blue below, others from black over violet and orange to pale yellow (magma). `full` is
 // where the colours end.

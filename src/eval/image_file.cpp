@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <new>
 
+#include "eval/denoiser_layers.h"
 #include "render/image/image.h"
 
 namespace odis::eval {
@@ -42,25 +43,16 @@ render::ExrFile readChannels(const std::string& path) {
   }
 }
 
-ColorImage colorOf(const render::ExrFile& file, const std::string& path) {
-  std::array<const std::vector<float>*, 3> channels{};
-  const std::array<std::string, 3> names{"R", "G", "B"};
-  for (size_t i = 0; i < names.size(); ++i) {
-    auto found = file.channels.find(names[i]);
-    if (found == file.channels.end()) found = file.channels.find("Y");
-    if (found == file.channels.end())
-      throw ImageError(path + ": no colour; expected channels R, G and B, or Y");
-    channels[i] = &found->second;
+ColorImage colorOf(const render::ExrFile& file, const std::string& path, const std::string& layer) {
+  try {
+    return layerColor(file, layer.empty() ? findImageLayer(file).value_or("") : layer);
+  } catch (const ImageError& error) {
+    throw ImageError(path + ": " + error.what());
   }
-  ColorImage image{file.window.width, file.window.height, {}};
-  image.pixels.resize(channels[0]->size());
-  for (size_t i = 0; i < image.pixels.size(); ++i)
-    image.pixels[i] = {(*channels[0])[i], (*channels[1])[i], (*channels[2])[i]};
-  return image;
 }
 
-ColorImage readColor(const std::string& path) {
-  return colorOf(readChannels(path), path);
+ColorImage readColor(const std::string& path, const std::string& layer) {
+  return colorOf(readChannels(path), path, layer);
 }
 
 void writeColor(const std::string& path, const render::RenderedImage& frame, int fullWidth, int fullHeight,

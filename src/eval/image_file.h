@@ -25,9 +25,10 @@ struct ColorImage {
 // All channels of an EXR, or of a PNG, JPEG, TGA, BMP or HDR file (by its name) as linear R, G and B. Throws
 // ImageError.
 render::ExrFile readChannels(const std::string& path);
-// Channels R, G and B of the layer without a name, else Y. `path` is for the message. Throws ImageError.
-ColorImage colorOf(const render::ExrFile& file, const std::string& path);
-ColorImage readColor(const std::string& path);
+// The colours of a layer; without a name those of findImageLayer (denoiser_layers.h). `path` is for the
+// message. Throws ImageError.
+ColorImage colorOf(const render::ExrFile& file, const std::string& path, const std::string& layer = "");
+ColorImage readColor(const std::string& path, const std::string& layer = "");
 // Writes the colour, and variance.R, G, B if the frame has a variance. Throws std::runtime_error with path
 // and reason.
 void writeColor(const std::string& path, const render::RenderedImage& frame, int fullWidth, int fullHeight,
