@@ -82,11 +82,12 @@ static int runBench(BenchArguments& a) {
   ConsoleProgress progress(a.quiet);
   nlohmann::ordered_json all = nlohmann::ordered_json::array();
   std::vector<render::OperationCosts> costs;
-  if (!a.json)
+  const auto printHead = [&] {
     fmt::print(
         "| scene | load, s | path, M samples/s | M rays/s | guided sample | guiding of a frame | frame | "
         "B a vertex | maps | guided ray | built cell | recorded ray |\n"
         "|---|---|---|---|---|---|---|---|---|---|---|---|\n");
+  };
   for (const std::string& path : a.scenes) {
     Row row{eval::sceneName(path), 0, {}};
     progress.setTitle(row.scene);
@@ -99,6 +100,7 @@ static int runBench(BenchArguments& a) {
     row.secondsLoad = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     row.result = eval::benchmark(*scene, a.settings, progress);
     if (InterruptScope::interrupted()) return InterruptScope::exitCode();
+    if (!a.json && costs.empty()) printHead();
     costs.push_back(row.result.costs);
     if (a.json)
       all.push_back(toJson(row));

@@ -18,7 +18,7 @@
 #include "learn/scenes/generate.h"
 #include "learn/train/learner.h"
 #include "odis_version.h"
-#include "render/denoise/oidn_library.h"
+#include "render/files/library_error.h"
 #include "render/xml/error.h"
 #include "suggest.h"
 
@@ -26,12 +26,24 @@ namespace odis::app {
 
 static constexpr const char* kExitCodes =
     "Exit codes: 0 all went well, 1 internal error, 2 wrong usage, 3 an input can't be read,\n"
-    "4 an output can't be written, 5 there is no denoiser or it failed, 6 a time limit came before the\n"
-    "samples asked for, 130 interrupted by Ctrl-C, 143 by SIGTERM (what was rendered is written).";
+    "4 an output can't be written, 5 a library is missing or the denoiser failed, 6 a time limit came before\n"
+    "the samples asked for, 130 interrupted by Ctrl-C, 143 by SIGTERM (what was rendered is written).";
 
 static int fail(ExitCode code, const std::string& message) {
   say(fmt::format("error: {}\n", message));
   return code;
+}
+
+// The library has no code of its own for a network at pixels that can't be computed: any such network fails
+// for the same reason then.
+static ExitCode codeOf(const Error& error) {
+  if (error.code() != ODIS_ERROR_FILE) return kInternalError;
+  try {
+    Model().withPixelNetwork("fast");
+  } catch (const Error& again) {
+    if (std::string(error.what()) == again.what()) return kLibraryError;
+  }
+  return kSceneError;
 }
 
 // The innermost sub-command that was named.
@@ -42,7 +54,8 @@ static const CLI::App& deepest(const CLI::App& app) {
 
 static int reportUsage(const CLI::App& app, const CLI::ParseError& error) {
   const CLI::App& command = deepest(app);
-  std::string message = error.what();
+  std::string message = commandMissing(app, command);
+  if (message.empty()) message = error.what();
   if (const std::string hint = suggestFor(app, command); !hint.empty()) message += "\n" + hint;
   std::string name = command.get_name();
   for (const CLI::App* parent = command.get_parent(); parent; parent = parent->get_parent())
@@ -116,11 +129,11 @@ int runCommandLine(int argc, char** argv) {
   } catch (const learn::ShardError& error) {
     return fail(kSceneError, error.what());
   } catch (const Error& error) {
-    return fail(error.code() == ODIS_ERROR_FILE ? kSceneError : kInternalError, error.what());
+    return fail(codeOf(error), error.what());
   } catch (const eval::ImageError& error) {
     return fail(kSceneError, error.what());
-  } catch (const render::DenoiserError& error) {
-    return fail(kDenoiserError, error.what());
+  } catch (const render::LibraryError& error) {
+    return fail(kLibraryError, error.what());
   } catch (const WriteError& error) {
     return fail(kWriteError, error.what());
   } catch (const std::system_error& error) {  // of files and folders, and of printing

@@ -31,7 +31,6 @@ void MethodArguments::addTo(CLI::App& app) {
       ->capture_default_str()
       ->group(group);
   app.add_option("--weights", weights, "File of weights for the networks, in place of those built in")
-      ->check(CLI::ExistingFile)
       ->group(group);
   app.add_flag(
          "--cached", cached,

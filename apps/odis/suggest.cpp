@@ -1,5 +1,6 @@
 #include "suggest.h"
 
+#include <fmt/format.h>
 #include <CLI/CLI.hpp>
 #include <algorithm>
 
@@ -21,6 +22,24 @@ std::string nearest(const std::string& word, const std::vector<std::string>& can
   return best;
 }
 
+static std::vector<std::string> commandsOf(const CLI::App& command) {
+  std::vector<std::string> names;
+  for (const CLI::App* sub : command.get_subcommands([](const CLI::App*) { return true; }))
+    names.push_back(sub->get_name());
+  return names;
+}
+
+std::string commandMissing(const CLI::App& app, const CLI::App& command) {
+  const std::vector<std::string> commands = commandsOf(command);
+  if (commands.empty()) return "";
+  const std::vector<std::string> unknown = app.remaining(true);
+  if (!unknown.empty() && unknown.front().starts_with("-"))
+    return fmt::format("there is no option \"{}\"", unknown.front());
+  const std::string list = fmt::format("{}", fmt::join(commands, ", "));
+  if (unknown.empty()) return fmt::format("expected a command: one of {}", list);
+  return fmt::format("there is no command \"{}\", expected one of {}", unknown.front(), list);
+}
+
 std::string suggestFor(const CLI::App& app, const CLI::App& command) {
   for (const std::string& argument : app.remaining(true)) {
     const std::string word = argument.substr(0, argument.find('='));
@@ -31,8 +50,7 @@ std::string suggestFor(const CLI::App& app, const CLI::App& command) {
       if (command.get_option_no_throw("--set"))
         for (const Setting& setting : allSettings()) candidates.push_back("--" + setting.key);
     } else {
-      for (const CLI::App* sub : command.get_subcommands([](const CLI::App*) { return true; }))
-        candidates.push_back(sub->get_name());
+      candidates = commandsOf(command);
     }
     const std::string match = nearest(word, candidates);
     if (match.empty()) continue;

@@ -8,6 +8,7 @@
 #include "command.h"
 #include "console.h"
 #include "learn/train/train.h"
+#include "render/files/input_file.h"
 
 namespace odis::app {
 
@@ -76,6 +77,12 @@ class TrainConsole : public learn::TrainObserver {
 };
 
 int runTrain(const TrainArguments& a) {
+  try {
+    render::InputFile(a.config);
+  } catch (const render::ReadError& error) {
+    say(fmt::format("error: {}: cannot be read: {}\n", a.config, error.what()));
+    return kSceneError;
+  }
   const learn::TrainConfig config = learn::readConfig(a.config);
   const learn::Processes processes = learn::processesOfEnvironment();
   InterruptScope interrupt;
@@ -90,7 +97,7 @@ int runTrain(const TrainArguments& a) {
 Command addTrainCommand(CLI::App& parent) {
   CLI::App* app = parent.add_subcommand("train", "Train the networks on a data set: docs/network.md");
   const auto a = std::make_shared<TrainArguments>();
-  app->add_option("CONFIG", a->config, "What to do: a JSON file")->required()->check(CLI::ExistingFile);
+  app->add_option("CONFIG", a->config, "What to do: a JSON file")->required();
   app->add_option(
          "-o,--output", a->output,
          "Folder for weights, curves and checkpoints; where it has a checkpoint, training goes on from there")

@@ -14,8 +14,12 @@ import struct
 import sys
 import zlib
 
-import numpy as np
-import zstandard
+try:
+    import numpy as np
+    import zstandard
+except ModuleNotFoundError as missing:
+    raise ModuleNotFoundError(f'{missing.name} is missing, which odis.dataset needs: `pip install numpy zstandard` '
+                              "installs it", name=missing.name) from None
 
 
 class Shard:
@@ -113,5 +117,7 @@ if __name__ == "__main__":
         sys.exit("usage: python3 -m odis.dataset FILE.shard")
     try:
         main(sys.argv[1])
+    except FileNotFoundError as error:
+        sys.exit(f"error: {error.filename}: there is no such file")
     except (ValueError, OSError) as error:
         sys.exit(f"error: {error}")

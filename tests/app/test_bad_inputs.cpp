@@ -116,7 +116,7 @@ std::string failureOf(const json& given) {
     const Limits limits{kSanitized ? 0 : kMostAddresses, std::chrono::seconds(kSanitized ? 120 : 20)};
     const ProcessEnd end = runWithLimits(folder.path(""), command, limits);
     if (given.value("needs", std::string()) == "libtorch" &&
-        end.text.find("training needs libtorch") != std::string::npos)
+        end.text.find("libtorch is missing") != std::string::npos)
       return "";
     const std::string complaints =
         complaintsOf(given, end) +

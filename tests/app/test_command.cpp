@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <chrono>
 #include <nlohmann/json.hpp>
+#include <set>
+#include <sstream>
 
 #include "render/image/write.h"
 
@@ -24,8 +26,11 @@ TEST_F(Odis, HelpAndVersion) {
 }
 
 TEST_F(Odis, WrongUsageIsTwo) {
-  expectFailure("", 2, "subcommand");
+  expectFailure("", 2, "expected a command: one of");
   expectFailure("rendr room.xml", 2, "Did you mean render?");
+  expectFailure("rendr room.xml", 2, "there is no command \"rendr\", expected one of render, compare");
+  expectFailure("image inof", 2, "there is no command \"inof\", expected one of info, convert");
+  expectFailure("--foo", 2, "there is no option \"--foo\"");
   expectFailure("render", 2, "SCENE");
   expectFailure("render room.xml --ssp 4", 2, "Did you mean --spp?");
   expectFailure("render room.xml --spp 0", 2, "--spp");
@@ -45,7 +50,7 @@ TEST_F(Odis, WrongUsageIsTwo) {
     expectFailure(std::string("render room.xml ") + option + " nan", 2, option);
   for (const char* key : {"bsdf-fraction", "map-floor", "pilot-weight"})
     expectFailure(std::string("render room.xml --set ") + key + "=nan", 2, std::string("--set ") + key);
-  expectFailure("scene", 2, "subcommand");
+  expectFailure("scene", 2, "expected a command: one of");
   expectFailure("compare room.xml -o out --methods path", 2, "expected name=options");
   expectFailure("compare room.xml -o out --methods 'a=--guide-bounce 1'", 2,
                 "Did you mean --set guide-bounces=...?");
@@ -183,6 +188,22 @@ TEST_F(Odis, MetricsAndMontage) {
   expectFailure("compare room.xml -o out --reference room.xml", 3, "room.xml");
   expectFailure("compare room.xml -o out --reference b.exr -q", 3, "is 6 x 4");
   EXPECT_EQ(run("montage a.exr b.exr -o both.png").code, 0);
+  // The layers of other programs: Blender's, one of any name, two of which one has to be named.
+  ASSERT_EQ(run("image merge ViewLayer.Combined=a.exr -o blender.exr").code, 0);
+  ASSERT_EQ(run("image merge beauty=a.exr -o beauty.exr").code, 0);
+  ASSERT_EQ(run("image merge one=a.exr two=b2.exr -o two.exr").code, 3);
+  ASSERT_EQ(run("render room.xml --integrator path --seed 1 -o c.exr -q").code, 0);
+  ASSERT_EQ(run("image merge one=a.exr two=c.exr -o two.exr").code, 0);
+  for (const char* images : {"blender.exr a.exr", "a.exr blender.exr", "beauty.exr blender.exr",
+                             "two.exr a.exr --layer one", "a.exr two.exr --reference-layer one"}) {
+    const Outcome outcome = run(std::string("metrics --json ") + images);
+    EXPECT_EQ(outcome.code, 0) << images << outcome.text;
+    EXPECT_EQ(nlohmann::json::parse(outcome.text).at("relMse"), 0.0) << images;
+  }
+  expectFailure("metrics two.exr a.exr", 3, "two.exr: no layer \"\" with R, G and B");
+  EXPECT_EQ(run("montage blender.exr beauty.exr -o both.png").code, 0);
+  EXPECT_EQ(run("image convert blender.exr -o blender.png").code, 0);
+  EXPECT_EQ(run("compare room.xml -o out --seeds 1 --reference blender.exr -q").code, 0);
   EXPECT_TRUE(exists("both.png"));
 }
 
@@ -234,6 +255,10 @@ TEST_F(Odis, ImageTools) {
   EXPECT_EQ(run("image diff a.exr b.exr -o d.exr --kind signed").code, 0);
   for (const char* kind : {"signed", "absolute", "relative", "flip"})
     EXPECT_EQ(run(std::string("image diff a.exr b.exr -o d.png --kind ") + kind).code, 0) << kind;
+  EXPECT_NE(run("image diff a.exr b.exr -o e.exr").text.find(" of 96 pixels differ\n"), std::string::npos);
+  for (const char* output : {"e.exr", "e.png"})
+    EXPECT_EQ(run(std::string("image diff a.exr a.exr -o ") + output).text, "the images are equal\n")
+        << output;
   EXPECT_EQ(run("image average a.exr b.exr -o mean.exr").code, 0);
   EXPECT_EQ(run("image merge a.exr other=b.exr mean=mean.exr -o all.exr").code, 0);
   const odis::render::ExrFile all = odis::render::readExr(file("all.exr").string());
@@ -243,7 +268,7 @@ TEST_F(Odis, ImageTools) {
     EXPECT_FLOAT_EQ(all.channels.at("mean.R")[i], (a + b) / 2);
     EXPECT_FLOAT_EQ(difference.channels.at("R")[i], a - b);
   }
-  expectFailure("image", 2, "subcommand");
+  expectFailure("image", 2, "expected a command: one of");
   expectFailure("image info", 2, "IMAGES");
   expectFailure("image info nowhere.exr", 3, "nowhere.exr");
   expectFailure("image convert a.exr -o a.jpg", 2, "expected a name that ends in .png or .exr");
@@ -271,8 +296,19 @@ TEST_F(Odis, ComparesAndResumes) {
 
   std::ifstream stream(file("out/comparison.json"));
   const nlohmann::json json = nlohmann::json::parse(stream);
-  EXPECT_EQ(json.at("runs").size(), 2u * 2 * (2 + 1));  // seeds, samples; odis also at equal time
-  EXPECT_EQ(json.at("rows").size(), 2u * (2 + 1));
+  // Seeds, samples; odis also at equal time, where a sample fits.
+  const size_t rows = json.at("rows").size();
+  EXPECT_EQ(json.at("runs").size(), 2 * rows);
+  EXPECT_GE(rows, 2u * 2);
+  EXPECT_LE(rows, 2u * (2 + 1));
+  // Where as many samples fit, nothing is rendered again.
+  std::set<std::string> images;
+  for (const auto& run : json.at("runs"))
+    if (run.at("seed") == 0) images.insert(run.at("method").get<std::string>() + run.at("samples").dump());
+  size_t rendered = 0;
+  for (const auto& entry : std::filesystem::directory_iterator(file("out/images")))
+    rendered += entry.path().extension() == ".exr";
+  EXPECT_EQ(rendered, images.size());
   EXPECT_NE(json.at("command").get<std::string>().find("--spp 2,4"), std::string::npos);
   const auto& scene = json.at("scenes").at(0);
   EXPECT_TRUE(exists(scene.at("reference")));
@@ -283,6 +319,27 @@ TEST_F(Odis, ComparesAndResumes) {
     EXPECT_EQ(run.at("method") == "odis" || !run.at("equalTime"), true);
     if (run.at("seed") == 0) EXPECT_TRUE(exists("out/" + run.at("image").get<std::string>()));
   }
+}
+
+TEST_F(Odis, ComparesWithinOneHundredColumns) {
+  const std::string arguments = "compare room.xml -o out --seeds 3 --reference-spp 16 -q --equal-time";
+  const auto widest = [](const std::string& text) {
+    std::istringstream lines(text);
+    size_t most = 0;
+    for (std::string line; std::getline(lines, line);) most = std::max(most, line.size());
+    return most;
+  };
+  const Outcome narrow = run(arguments), wide = run(arguments + " --wide");
+  EXPECT_EQ(narrow.code, 0) << narrow.text;
+  EXPECT_LE(widest(narrow.text), 100u) << narrow.text;
+  EXPECT_GT(widest(wide.text), 100u) << wide.text;
+  EXPECT_EQ(runShell("cat out/comparison.md").text, wide.text);
+  // The time that it may take comes before the first picture.
+  const Outcome told =
+      runShell("'" ODIS_COMMAND
+               "' compare room.xml -o long --reference-spp 16777216 2> told & "
+               "while ! grep -q about told && kill -0 $!; do sleep .1; done; kill -TERM $!; wait; cat told");
+  EXPECT_NE(told.text.find("renderings, about "), std::string::npos) << told.text;
 }
 
 TEST_F(Odis, AnalyzesVariance) {

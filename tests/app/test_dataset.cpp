@@ -231,7 +231,7 @@ TEST_F(Dataset, MergeRefusesWhatDoesNotBelongTogether) {
 }
 
 TEST_F(Dataset, SaysWhatIsWrong) {
-  expectFailure("dataset", 2, "subcommand");
+  expectFailure("dataset", 2, "expected a command: one of generate, merge");
   expectFailure("dataset generate", 2, "--output");
   expectFailure("dataset generate -o out", 2, "expected --seeds or --scenes");
   expectFailure("dataset generate -o out --seeds 1 --scenes x", 2, "--seeds excludes --scenes");
@@ -250,7 +250,7 @@ TEST_F(Dataset, SaysWhatIsWrong) {
   expectFailure("dataset preview empty -o out.png", 2, "holds no shards");
   expectFailure("dataset preview room.xml -o out.png", 3, "room.xml: is no shard of a data set");
   expectFailure("dataset preview empty -o out.jpg", 2, ".png");
-  expectFailure("dataset check nowhere", 3, "there is no manifest");
+  expectFailure("dataset check nowhere", 3, "nowhere: there is no such folder");
   expectFailure("dataset merge nowhere", 3, "nowhere");
 }
 

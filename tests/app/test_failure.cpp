@@ -134,4 +134,31 @@ TEST_F(Failures, InterruptedComparisonKeepsWhatItHas) {
   EXPECT_EQ(resumed.text.find("path, 2 spp, seed 0"), std::string::npos) << resumed.text;  // not once more
 }
 
+// Each library that the program can do without: one exit code, and a sentence with the command that installs it.
+TEST_F(Failures, NameTheLibraryThatIsMissing) {
+  write("c.json", "{\"data\": \"data\"}");
+  std::filesystem::create_directory(file("lib"));
+  // Files of these names that are no libraries.
+  write("lib/libodis_pixels.so", "");
+  write("lib/libodis_learner.so", "");
+  const std::string odis =
+      "unset ODIS_OIDN VIRTUAL_ENV; export XDG_DATA_HOME=\"$PWD/none\"; "
+      "LD_LIBRARY_PATH=\"$PWD/lib\" '" ODIS_COMMAND "' ";
+  const std::pair<const char*, const char*> cases[] = {
+      {"render room.xml -q --preset paper", "oneDNN is missing, which"},
+      {"train c.json -o run",
+       "libtorch is missing, which `odis train` needs: `scripts/setup --train` installs it"},
+      {"render room.xml -q --integrator openpgl",
+       "Open PGL is missing, which `--integrator openpgl` needs: docs/"},
+      {"render room.xml -q --denoise",
+       "Open Image Denoise 1.4 or later is missing, which denoising needs: `scripts/"}};
+  for (const auto& [arguments, message] : cases) {
+    const Outcome outcome = runShell(odis + arguments);
+    // Built with it, or installed in the system.
+    if (outcome.code == 0) continue;
+    EXPECT_EQ(outcome.code, 5) << arguments << "\n" << outcome.text;
+    EXPECT_NE(outcome.text.find(message), std::string::npos) << arguments << "\n" << outcome.text;
+  }
+}
+
 }  // namespace

@@ -22,7 +22,7 @@ TEST_F(Odis, GeneratesScenesAndGoesOn) {
 }
 
 TEST_F(Odis, ScenesSayWhatIsWrong) {
-  expectFailure("scenes", 2, "subcommand");
+  expectFailure("scenes", 2, "expected a command: one of generate, sheet");
   expectFailure("scenes generate", 2, "--output");
   expectFailure("scenes generate --kind corridors -o out", 2, "Did you mean corridor?");
   expectFailure("scenes generate --kind x -o out", 2, "room, window, doors");

@@ -17,6 +17,7 @@
 #include "odis/models/direction_formula.h"
 #include "odis/models/direction_network.h"
 #include "odis/models/light_network.h"
+#include "render/files/library_error.h"
 
 namespace odis::learn {
 namespace {
@@ -73,7 +74,7 @@ class Training : public ::testing::Test {
     try {
       makeLearner(config(), {});
       return true;
-    } catch (const TrainError& error) {
+    } catch (const render::LibraryError&) {
       return false;
     }
   }

@@ -12,6 +12,7 @@
 #include "learn/data/dataset.h"
 #include "learn/train/train.h"
 #include "odis/pixels/pixel_network.h"
+#include "render/files/library_error.h"
 
 namespace odis::learn {
 namespace {
@@ -68,7 +69,7 @@ class PixelTraining : public ::testing::Test {
     try {
       makePixelLearner(config(), {});
       return true;
-    } catch (const TrainError&) {
+    } catch (const render::LibraryError&) {
       return false;
     }
   }

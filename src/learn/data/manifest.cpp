@@ -56,8 +56,12 @@ Json describe(const ShardReader& shard, const std::string& bytes) {
           {"bytes", bytes.size()},       {"crc32", crcText(bytes)}};
 }
 
+ShardError noFolder(const std::string& folder) {
+  return ShardError(fmt::format("{}: there is no such folder", folder));
+}
+
 fs::directory_iterator entriesOf(const std::string& folder) {
-  if (!fs::is_directory(folder)) throw ShardError(fmt::format("{}: there is no such folder", folder));
+  if (!fs::is_directory(folder)) throw noFolder(folder);
   return fs::directory_iterator(folder);
 }
 
@@ -202,6 +206,7 @@ FolderReport checkShards(const std::string& folder, const CountProgress& progres
 
 nlohmann::ordered_json readManifest(const std::string& folder) {
   const std::string path = (fs::path(folder) / kManifestName).string();
+  if (!fs::exists(folder)) throw noFolder(folder);
   if (!fs::exists(path))
     throw ShardError(
         fmt::format("{}: there is no manifest; \"odis dataset merge {}\" makes it", path, folder));

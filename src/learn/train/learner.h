@@ -13,7 +13,7 @@
 
 namespace odis::learn {
 
-// A training that cannot go on: no libtorch, no such device, processes that don't find each other.
+// A training that cannot go on: no such device, processes that don't find each other.
 class TrainError : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
@@ -76,7 +76,7 @@ class PixelLearner : public LearnerState {
   virtual std::vector<float> predict(const PixelBatch& batch) = 0;
 };
 
-// Throws TrainError.
+// Throw LibraryError where there is no libtorch, TrainError.
 std::unique_ptr<Learner> makeLearner(const TrainConfig& config, const Processes& processes);
 std::unique_ptr<PixelLearner> makePixelLearner(const TrainConfig& config, const Processes& processes);
 

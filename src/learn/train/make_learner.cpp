@@ -3,6 +3,7 @@
 #include <cstdlib>
 
 #include "learn/train/learner.h"
+#include "render/files/library_error.h"
 
 namespace odis::learn {
 
@@ -23,8 +24,9 @@ template <class Made>
 std::unique_ptr<Made> make(const char* function, const TrainConfig& config, const Processes& processes) {
   void* library = dlopen("libodis_learner.so", RTLD_NOW | RTLD_LOCAL);
   if (!library)
-    throw TrainError(
-        std::string("training needs libtorch: install libtorch-dev and libgloo-dev, and build again (") +
+    throw render::LibraryError(
+        render::missingText("libtorch", "`odis train`",
+                            "`scripts/setup --train` installs it, then build ODIS again (") +
         dlerror() + ")");
   using Make = Made* (*)(const TrainConfig&, const Processes&);
   const auto maker = reinterpret_cast<Make>(dlsym(library, function));

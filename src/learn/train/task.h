@@ -35,7 +35,7 @@ class Task {
 };
 
 // Of the networks of cells, with a folder for what is made of shards; of the network at pixels. They keep the
-// configuration as a reference. Throw TrainError.
+// configuration as a reference. Throw LibraryError (no libtorch), TrainError.
 std::unique_ptr<Task> makeCellTask(const TrainConfig& config, const Processes& processes,
                                    const std::string& examples);
 std::unique_ptr<Task> makePixelTask(const TrainConfig& config, const Processes& processes);

@@ -4,6 +4,7 @@
 #include <fstream>
 
 #include "odis/files/crc32.h"
+#include "odis/files/regular_file.h"
 
 namespace odis::core {
 
@@ -133,9 +134,8 @@ Archive Archive::parse(const std::string& path, std::string bytes) {
 }
 
 Archive Archive::load(const std::string& path) {
-  // What is no regular file may have no end.
+  if (const std::string why = whyUnreadable(path); !why.empty()) throw FileError(path + why);
   std::error_code error;
-  if (!fs::is_regular_file(path, error)) throw FileError(path + ": cannot be read, expected a regular file");
   std::ifstream stream(path, std::ios::binary);
   std::string bytes(stream ? size_t(fs::file_size(path, error)) : 0, '\0');
   if (!stream.read(bytes.data(), std::streamsize(bytes.size()))) throw FileError(path + ": cannot be read");

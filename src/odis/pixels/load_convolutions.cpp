@@ -8,12 +8,11 @@ namespace odis::core {
 
 namespace {
 
-constexpr const char* kInstall =
-    "expected the component of ODIS that computes it by oneDNN: install oneDNN (libdnnl-dev of Debian and "
-    "Ubuntu) and build ODIS again";
-
 [[noreturn]] void fail(const std::string& why) {
-  throw WeightsError("maps at pixels by a network: " + std::string(kInstall) + " (" + why + ")");
+  throw WeightsError(
+      "oneDNN is missing, which networks at pixels (`--preset paper`) need: `scripts/setup --paper` installs "
+      "it (libdnnl-dev of Debian and Ubuntu), then build ODIS again (" +
+      why + ")");
 }
 
 // A function of the component, which stays loaded.
@@ -21,11 +20,15 @@ void* findFunction(const char* name) {
 #ifdef _WIN32
   fail("not available on Windows");
 #else
-  static void* const library = dlopen("libodis_pixels.so", RTLD_NOW | RTLD_LOCAL);
-  if (!library) {
-    const char* why = dlerror();
-    fail(why ? why : "libodis_pixels.so: cannot be loaded");
-  }
+  // Why it can't be loaded is told once by the system, and whenever it is asked for by us.
+  static std::string why;
+  static void* const library = [] {
+    void* const loaded = dlopen("libodis_pixels.so", RTLD_NOW | RTLD_LOCAL);
+    const char* const reason = loaded ? nullptr : dlerror();
+    why = reason ? reason : "libodis_pixels.so: cannot be loaded";
+    return loaded;
+  }();
+  if (!library) fail(why);
   void* const function = dlsym(library, name);
   if (!function) fail(std::string("libodis_pixels.so is of another version: it lacks ") + name);
   return function;

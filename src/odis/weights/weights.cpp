@@ -5,6 +5,7 @@
 #include <fstream>
 
 #include "odis/files/crc32.h"
+#include "odis/files/regular_file.h"
 
 namespace odis::core {
 
@@ -100,10 +101,8 @@ Weights Weights::parse(const std::string& path, std::string_view bytes) {
 }
 
 Weights Weights::load(const std::string& path) {
-  // What is no regular file may have no end.
+  if (const std::string why = whyUnreadable(path); !why.empty()) throw WeightsError(path + why);
   std::error_code error;
-  if (!std::filesystem::is_regular_file(path, error))
-    throw WeightsError(path + ": cannot be read, expected a regular file");
   std::ifstream stream(path, std::ios::binary);
   const uintmax_t size = stream ? std::filesystem::file_size(path, error) : 0;
   if (size > kMostBytes)

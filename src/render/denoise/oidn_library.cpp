@@ -66,12 +66,12 @@ bool findAll(void* library, OidnLibrary& oidn) {
 
 // Where it was looked for, and what was wrong with what was there.
 std::string searchText(const std::vector<std::string>& reasons) {
-  std::string text = fmt::format(
-      "Open Image Denoise 1.4 or later was not found: `scripts/setup --denoise` installs it, or set "
-      "ODIS_OIDN "
-      "to the path of libOpenImageDenoise.so. Looked for: ODIS_OIDN (not set); the system's "
-      "libOpenImageDenoise.so.2, .so.1 and .so; the Python packages pyoidn and oidn in VIRTUAL_ENV ({}) and "
-      "in {}",
+  std::string text = missingText("Open Image Denoise 1.4 or later", "denoising",
+                                 "`scripts/setup --denoise` installs it, or set ODIS_OIDN to the path of "
+                                 "libOpenImageDenoise.so. Looked for: ");
+  text += fmt::format(
+      "ODIS_OIDN (not set); the system's libOpenImageDenoise.so.2, .so.1 and .so; the Python packages pyoidn "
+      "and oidn in VIRTUAL_ENV ({}) and in {}",
       environment("VIRTUAL_ENV").empty() ? "not set" : environment("VIRTUAL_ENV"), oidnSetupFolder());
   for (const std::string& reason : reasons) text += "\n  " + reason;
   return text;

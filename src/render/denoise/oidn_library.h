@@ -4,16 +4,17 @@
 #pragma once
 
 #include <cstddef>
-#include <stdexcept>
 #include <string>
 #include <vector>
+
+#include "render/files/library_error.h"
 
 namespace odis::render {
 
 // There is no denoiser, or it failed.
-class DenoiserError : public std::runtime_error {
+class DenoiserError : public LibraryError {
  public:
-  using std::runtime_error::runtime_error;
+  using LibraryError::LibraryError;
 };
 
 struct OidnDevice;

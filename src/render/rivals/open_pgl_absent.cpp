@@ -1,6 +1,6 @@
 // Stands for open_pgl.cpp where CMake finds no Open PGL.
+#include "render/files/library_error.h"
 #include "render/rivals/open_pgl.h"
-#include "render/xml/error.h"
 
 namespace odis::render {
 
@@ -9,8 +9,8 @@ bool hasOpenPgl() {
 }
 
 std::unique_ptr<Rival> makeOpenPgl() {
-  throw OptionError(
-      "--integrator openpgl: this build has no Open PGL; docs/rivals.md says how to build with it");
+  throw LibraryError(missingText("Open PGL", "`--integrator openpgl`",
+                                 "docs/rivals.md has the commands that install it, then build ODIS again"));
 }
 
 }  // namespace odis::render
