@@ -338,7 +338,7 @@ TEST_F(Odis, ComparesWithinOneHundredColumns) {
   const Outcome told =
       runShell("'" ODIS_COMMAND
                "' compare room.xml -o long --reference-spp 16777216 2> told & "
-               "while ! grep -q about told && kill -0 $!; do sleep .1; done; kill -TERM $!; wait; cat told");
+               "while ! grep -q about told && kill -0 $!; do sleep .1; done; kill -KILL $!; wait; cat told");
   EXPECT_NE(told.text.find("renderings, about "), std::string::npos) << told.text;
 }
 
