@@ -151,7 +151,7 @@ TEST_F(Failures, NameTheLibraryThatIsMissing) {
       {"render room.xml -q --integrator openpgl",
        "Open PGL is missing, which `--integrator openpgl` needs: docs/"},
       {"render room.xml -q --denoise",
-       "Open Image Denoise 1.4 or later is missing, which denoising needs: `scripts/"}};
+       "Open Image Denoise 1.4 or later is missing, which denoising needs: `"}};
   for (const auto& [arguments, message] : cases) {
     const Outcome outcome = runShell(odis + arguments);
     // Built with it, or installed in the system.
