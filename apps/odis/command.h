@@ -20,7 +20,7 @@ enum ExitCode {
   kUsageError = 2,
   kSceneError = 3,  // a scene or an image that cannot be read
   kWriteError = 4,
-  kLibraryError = 5,  // a library is missing, or the denoiser failed; what was rendered is written
+  kLibraryError = 5,   // a library is missing, or the denoiser failed; what was rendered is written
   kTimeLimit = 6,      // came before the samples that were asked for; what was rendered is written
   kInterrupted = 130,  // by Ctrl-C; what was there is written
   kTerminated = 143    // the same by SIGTERM

@@ -26,7 +26,8 @@ namespace odis::app {
 
 static constexpr const char* kExitCodes =
     "Exit codes: 0 all went well, 1 internal error, 2 wrong usage, 3 an input can't be read,\n"
-    "4 an output can't be written, 5 a library is missing or the denoiser failed, 6 a time limit came before\n"
+    "4 an output can't be written, 5 a library is missing or the denoiser failed, 6 a time limit came "
+    "before\n"
     "the samples asked for, 130 interrupted by Ctrl-C, 143 by SIGTERM (what was rendered is written).";
 
 static int fail(ExitCode code, const std::string& message) {

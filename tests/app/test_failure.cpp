@@ -134,7 +134,7 @@ TEST_F(Failures, InterruptedComparisonKeepsWhatItHas) {
   EXPECT_EQ(resumed.text.find("path, 2 spp, seed 0"), std::string::npos) << resumed.text;  // not once more
 }
 
-// Each library that the program can do without: one exit code, and a sentence with the command that installs it.
+// Each library that the program can do without: one exit code, and the command that installs it.
 TEST_F(Failures, NameTheLibraryThatIsMissing) {
   write("c.json", "{\"data\": \"data\"}");
   std::filesystem::create_directory(file("lib"));
