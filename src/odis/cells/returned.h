@@ -39,8 +39,8 @@ Spread spreadOf(const ReturnedSums& sums);
 void addTo(Spread& sum, const Spread& more);
 
 // The largest variance of a cell's and its ancestors' vertices, given that of the parent: a few vertices that
-// missed the light know of no spread. In a cell of the coarsest level all vertices may have missed what others
-// of all cells have found, so that its variance is at least a share of that of all cells.
+// missed the light know of no spread. In a cell of the coarsest level all vertices may have missed what those
+// of other cells have found, so that its variance is at least a share of that of all cells.
 double largestVariance(const Spread& cell, double ofParent);
 double largestVarianceOfCoarsest(const Spread& cell, const Spread& all);
 
