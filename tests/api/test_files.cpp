@@ -163,7 +163,7 @@ TEST(ApiFiles, OtherFilesAreRefused) {
     EXPECT_NE(message.find(path), std::string::npos) << message;
     EXPECT_NE(message.find(part), std::string::npos) << message;
   };
-  expectRefused(folder.path("absent"), "regular file");
+  expectRefused(folder.path("absent"), "there is no such file");
   expectRefused(folder.path(""), "regular file");
   expectRefused(frame, "found a saved \"frame\", expected a \"guide\"");
   writeAll(broken, "no archive at all");

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <chrono>
 #include <nlohmann/json.hpp>
+#include <regex>
 #include <set>
 #include <sstream>
 
@@ -428,10 +429,13 @@ TEST_F(Odis, BenchWritesReportAndTables) {
     EXPECT_EQ(page.find("old"), std::string::npos) << page;
     const size_t row = page.find("| hall ");
     EXPECT_NE(row, std::string::npos) << page;
-    EXPECT_EQ(page.find("|   4 |"), std::string::npos) << page;  // the fewest samples only
+    const std::regex moreSamples(R"(\| hall +\| \w+ +\| +4 \|)");
+    EXPECT_FALSE(std::regex_search(page, moreSamples)) << page;  // the fewest samples only
     size_t rows = 0;
     for (size_t at = row; at != std::string::npos; at = page.find("| hall ", at + 1)) ++rows;
-    EXPECT_EQ(rows, 10u) << page;  // of five methods; four of them at equal time; the reference
+    // Of five methods, of as many of the other four as have time for a sample, and of the reference.
+    EXPECT_GE(rows, 6u) << page;
+    EXPECT_LE(rows, 10u) << page;
   }
   EXPECT_TRUE(exists("out/report.html"));
   EXPECT_TRUE(exists("out/results.md"));
