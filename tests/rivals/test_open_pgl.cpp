@@ -3,8 +3,8 @@
 
 #include <random>
 
+#include "render/files/library_error.h"
 #include "render/path/path.h"
-#include "render/xml/error.h"
 #include "rivals/rival_test.h"
 #include "support/chi2.h"
 
@@ -89,7 +89,7 @@ TEST_F(OpenPglTest, SamplesFollowTheirDensity) {
 
 TEST(OpenPglAbsent, SaysSo) {
   if (hasOpenPgl()) GTEST_SKIP() << "this build has Open PGL";
-  EXPECT_THROW(makeOpenPgl(), OptionError);
+  EXPECT_THROW(makeOpenPgl(), LibraryError);
 }
 
 }  // namespace
