@@ -8,6 +8,7 @@
 #include "command.h"
 #include "console.h"
 #include "denoising.h"
+#include "effects.h"
 #include "eval/denoiser_layers.h"
 #include "output.h"
 #include "render/image/copy_exr.h"
@@ -144,8 +145,7 @@ void requireEffects(const DenoiseArguments& a) {
   for (const auto& [option, isGiven] : ofAuxiliaries)
     if (isGiven && a.auxiliaries == "none")
       throw UsageError(fmt::format("{}: has no effect with --aux none", option));
-  if (a.exposure != 0 && a.png.empty() && !endsWith(a.output, ".png"))
-    throw UsageError("--exposure: is of PNGs, expected --png or an output that ends in .png");
+  requirePngToExpose(a.exposure, a.png, a.output);
 }
 
 int runDenoise(const DenoiseArguments& a) {

@@ -69,18 +69,22 @@ const std::vector<Need>& needs() {
   return all;
 }
 
-// Which integrators have a key, in words, and whether this is one of them.
-std::string integratorsOf(const std::string& key, IntegratorKind integrator, bool& isOne) {
+// The integrators that have a setting, also as the beginning of a sentence.
+struct SettingOwners {
+  std::vector<IntegratorKind> integrators;
+  const char* text;
+};
+SettingOwners ownersOf(const std::string& key) {
   using Kind = IntegratorKind;
-  std::vector<Kind> kinds{Kind::odis};
-  const char* words = "odis has";
-  if (key.starts_with("ppg")) kinds = {Kind::ppg}, words = "ppg has";
-  if (key.starts_with("restir")) kinds = {Kind::restir}, words = "restir has";
-  if (key == "samples") kinds = {Kind::odis, Kind::path}, words = "odis and path have";
-  if (key == "guide-bounces")
-    kinds = {Kind::odis, Kind::ppg, Kind::openpgl}, words = "odis, ppg and openpgl have";
-  isOne = std::find(kinds.begin(), kinds.end(), integrator) != kinds.end();
-  return words;
+  if (key.starts_with("ppg")) return {{Kind::ppg}, "ppg has"};
+  if (key.starts_with("restir")) return {{Kind::restir}, "restir has"};
+  if (key == "samples") return {{Kind::odis, Kind::path}, "odis and path have"};
+  if (key == "guide-bounces") return {{Kind::odis, Kind::ppg, Kind::openpgl}, "odis, ppg and openpgl have"};
+  return {{Kind::odis}, "odis has"};
+}
+
+bool contains(const auto& values, const auto& value) {
+  return std::find(values.begin(), values.end(), value) != values.end();
 }
 
 // The least number of samples per pixel that can be spread over the pixels unevenly.
@@ -94,13 +98,12 @@ int leastToSpread(const RenderOptions& o) {
 void requireEffects(const RenderOptions& options, const std::vector<std::string>& settings) {
   for (const std::string& setting : settings) {
     const std::string key = setting.substr(0, setting.find('='));
-    bool isOne = false;
-    const std::string integrators = integratorsOf(key, options.integrator, isOne);
-    if (!isOne)
-      throw UsageError(fmt::format("--set {}: only --integrator {} this setting", key, integrators));
+    const SettingOwners owners = ownersOf(key);
+    if (!contains(owners.integrators, options.integrator))
+      throw UsageError(fmt::format("--set {}: only --integrator {} this setting", key, owners.text));
     if (options.integrator != IntegratorKind::odis) continue;
     for (const Need& need : needs())
-      if (std::find(need.keys.begin(), need.keys.end(), key) != need.keys.end() && !need.holds(options))
+      if (contains(need.keys, key) && !need.holds(options))
         throw UsageError(fmt::format("--set {}: has no effect {}", key, need.otherwise));
   }
 }
@@ -116,7 +119,11 @@ void requireEffects(const RenderArguments& a, Layers& layers) {
       if (isGiven)
         throw UsageError(
             fmt::format("{}: {} has no layers, expected an output that ends in .exr", option, a.output));
-  if (a.exposure != 0 && a.png.empty() && !endsWith(a.output, ".png"))
+  requirePngToExpose(a.exposure, a.png, a.output);
+}
+
+void requirePngToExpose(float exposure, const std::string& png, const std::string& output) {
+  if (exposure != 0 && png.empty() && !endsWith(output, ".png"))
     throw UsageError("--exposure: is of PNGs, expected --png or an output that ends in .png");
 }
 

@@ -15,6 +15,8 @@ void requireEffects(const render::RenderOptions& options, const std::vector<std:
 // The same of the other options of `odis render`. Takes layers that the integrator lacks from those of
 // --aov all.
 void requireEffects(const RenderArguments& a, Layers& layers);
+// Throws UsageError if --exposure is given and no PNG is written.
+void requirePngToExpose(float exposure, const std::string& png, const std::string& output);
 // Throws UsageError, or tells, if options have no effect on a scene; `options` hold what it asks for.
 void tellWithoutEffect(const RenderArguments& a, const render::RenderOptions& options);
 

@@ -140,9 +140,8 @@ void RenderArguments::addTo(CLI::App& app) {
       ->check(within(kMaxDepth));
   app.add_option("--rr-depth", rrDepth, "Russian roulette starts here; default: scene's")
       ->check(within(kRouletteDepth));
-  app.add_option(
-         "--time-limit", timeLimit,
-         "Stop after so many seconds, with exit code 6 if the samples of --spp take longer; 0: no limit")
+  app.add_option("--time-limit", timeLimit,
+                 "Stop after this many seconds; the exit code is 6 if --spp was not reached; 0: no limit")
       ->check(within(0.0, 1e9))
       ->capture_default_str();
   app.add_option("--save-every", saveMinutes,

@@ -10,7 +10,8 @@ import odis
 class PixelNetworks(unittest.TestCase):
     def test_names(self):
         # Where the library was built without oneDNN it says that first.
-        with self.assertRaisesRegex(odis.Error, "maps at pixels by a network: |oneDNN is missing, which networks at pixels"):
+        message = "maps at pixels by a network: |oneDNN is missing, which networks at pixels"
+        with self.assertRaisesRegex(odis.Error, message):
             odis.Model().with_pixel_network("papre")
 
     def test_options(self):

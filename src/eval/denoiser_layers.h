@@ -1,4 +1,4 @@
-// Which layers of an image file are its colours, and which the albedo and normals that a denoiser takes:
+// Finds the layers of an image file that hold its colours, and the albedo and normals that a denoiser takes:
 // renderers name them differently.
 #pragma once
 

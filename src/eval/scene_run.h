@@ -39,7 +39,7 @@ class SceneRun {
   void skip(const Budget& budget);
 
  private:
-  // Of plain path tracing in the way of the comparison.
+  // Returns the options of a path-traced image with the comparison's depths and threads.
   render::RenderOptions plainOptions(int spp) const;
   // What earlier runs left, if all of it is there.
   std::optional<std::vector<Measurement>> known(const Method& method, const std::string& key,

@@ -15,7 +15,8 @@ try:
 except ModuleNotFoundError as missing:
     if missing.name != "mitsuba":
         raise
-    raise ModuleNotFoundError('Mitsuba is missing, which odis.mitsuba needs: `pip install "mitsuba>=3.9"` installs it', name="mitsuba") from None
+    raise ModuleNotFoundError('Mitsuba is missing, which odis.mitsuba needs: `pip install "mitsuba>=3.9"` installs it',
+                              name="mitsuba") from None
 
 from .from_scene import guide
 from .progress import ProgressLine

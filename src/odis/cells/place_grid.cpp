@@ -253,13 +253,8 @@ CellGrid gridAround(const Float3& low, const Float3& extent, int cellsPerDiagona
 CellGrid gridFor(std::vector<Float3> positions, int cellsPerDiagonal) {
   if (positions.empty()) return gridAround({}, {}, cellsPerDiagonal);
   leaveOutAbsurdlyFar(positions);
-  // Some thousands of them tell as much as all.
-  constexpr size_t kSeen = 16384;
-  const size_t step = std::max<size_t>(1, positions.size() / kSeen);
-  std::vector<Float3> seen;
-  for (size_t i = 0; i < positions.size(); i += step) seen.push_back(positions[i]);
-  const Float3 centre = medianOf(seen);
-  const FarOut far = findFarOut(seen, centre);
+  const Float3 centre = medianOf(positions);
+  const FarOut far = findFarOut(positions, centre);
   const auto isNear = [&](const Float3& p) { return squaredDistance(p, centre) <= far.squared; };
   const auto nearCount =
       size_t(std::partition(positions.begin(), positions.end(), isNear) - positions.begin());

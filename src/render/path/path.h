@@ -15,11 +15,11 @@
 
 namespace odis::render {
 
-// What every path of a pass shares.
 // Nothing is cached with a smaller max_depth: there is little to gain, and how much comes from how many
 // bounces differs too much from place to place.
 inline constexpr int kLeastCachedMaxDepth = 8;
 
+// What every path of a pass shares.
 struct PathSettings {
   const Scene* scene = nullptr;
   const LightSampler* lights = nullptr;
