@@ -179,9 +179,10 @@ ODIS_API bool odisStartEndPass(OdisFrame frame, bool interrupted);
 ODIS_API bool odisWaitForPass(OdisFrame frame);
 // Whether all further samples will be guided by the guide of today.
 ODIS_API bool odisGuideIsFinal(OdisFrame frame);
-// Weight of a sample in the mean of its pixel's samples, in units of a guided sample's. To be asked for after
-// the last pass. 1 for the pilot's, too, in a pixel that has no others. Here and below, a pixel outside of
-// the frame is an error.
+// Weight of a sample in the image: those of a pixel add up to OdisFrameOptions.samplesPerPixel, however many
+// it has, so that a film that splats may add all samples of all pixels by their weights (docs/own-film.md).
+// Known in the pass already (OdisSampleRange.weight), but for passes with weightsLater. Here and below, a
+// pixel outside of the frame is an error.
 ODIS_API float odisGetSampleWeight(OdisFrame frame, uint32_t pixel, uint32_t sample);
 // The weighted mean of the samples that a pixel has by now, and that mean's variance.
 ODIS_API bool odisGetPixelMean(OdisFrame frame, uint32_t pixel, OdisPixelMean* mean);

@@ -180,6 +180,9 @@ typedef struct OdisFrameOptions {
   // samples per pixel.
   bool adaptive ODIS_DEFAULT(true);
   bool keepPilotVertices ODIS_DEFAULT(false);  // whether the pilot's vertices stay after the guide is built
+  // Tiles of 16 x 16 pixels begin this many pixels before the image's first column and row, 0 to 15: 5 and 0
+  // for a crop that begins at column 37 and row 16, so that its tiles are those of the whole image.
+  uint32_t tileOffsetX ODIS_DEFAULT(0), tileOffsetY ODIS_DEFAULT(0);
   // >= 0. Time of a ray of a guided path, relative to one of an unguided path. Where the first guided samples
   // show that guiding does not pay, the others are not guided: their passes have a guide without cells. 0:
   // costs are not weighed, what follows is guided and the guide refined in any case.
@@ -204,6 +207,9 @@ typedef enum OdisPassKind {
 // The samples [first, first + count) of a pixel.
 typedef struct OdisSampleRange {
   uint32_t first ODIS_DEFAULT(0), count ODIS_DEFAULT(0);
+  // Of each of them in the image (odisGetSampleWeight); 0 where it is not known yet
+  // (OdisFramePass.weightsLater) and in passes that are no part of the image.
+  float weight ODIS_DEFAULT(1);
 } OdisSampleRange;
 
 // What a path brought to its pixel. Pixels are counted row by row.

@@ -127,6 +127,9 @@ typedef struct OdisFramePass {
   OdisPassKind kind ODIS_DEFAULT(ODIS_PASS_GUIDED);
   bool wantsVertices ODIS_DEFAULT(false);
   bool partOfImage ODIS_DEFAULT(true);
+  // Whether the weights of the pass's samples are known only when it has ended, since they depend on how many
+  // samples each pixel will have: a host with a film of its own keeps them until then.
+  bool weightsLater ODIS_DEFAULT(false);
   // The seed of the random numbers. Passes that are no part of the image have another one, and in frames of
   // fewer than 16384 pixels, and with maps at pixels, each guide has one of its own
   // (docs/unbiasedness.md#sobol-points).

@@ -78,6 +78,8 @@ const FrameOptions& checkedOptions(const FrameOptions& o) {
   requireOption(uint64_t(o.width) * o.height < (uint64_t(1) << 31),
                 "width, height: expected less than 2^31 pixels");
   requireOption(o.samplesPerPixel > 0, "samplesPerPixel: expected at least 1");
+  requireOption(o.tileOffsetX < kTileSize && o.tileOffsetY < kTileSize,
+                "tileOffsetX, tileOffsetY: expected 0 to 15");
   requireFromZero(o.pilotSamplesPerPixel, "pilotSamplesPerPixel");
   requireFromZero(o.pilotWeight, "pilotWeight");
   requireFromZero(o.guidedCost, "guidedCost");
@@ -100,19 +102,21 @@ Frame::Data::Data(const FrameOptions& o, std::shared_ptr<const Tasks> shared,
       schedule(o),
       pilot(size_t(o.width) * o.height),
       later(pilot.size()),
-      tiles(o.width, o.height, std::move(shared)),
+      tiles(o, std::move(shared)),
       next(o.guided ? ODIS_PASS_PILOT : ODIS_PASS_GUIDED) {}
 
 SampleRange Frame::Data::samples(uint32_t pixel) const {
   switch (next) {
     case ODIS_PASS_PILOT:
-      return {0, schedule.pilotCount(pixel)};
+      return {0, schedule.pilotCount(pixel), schedule.sampleWeight(pixel, true, options.pilotWeight)};
     case ODIS_PASS_ORACLE:
-      return {oraclePasses, 1};
+      return {oraclePasses, 1, 0};
     case ODIS_PASS_GUIDED:
       break;
   }
-  return schedule.remaining(pixel, done, end);
+  SampleRange range = schedule.remaining(pixel, done, end);
+  range.weight = pass.weightsLater ? 0 : schedule.sampleWeight(pixel, false, options.pilotWeight);
+  return range;
 }
 
 void Frame::Data::refusePixel(uint32_t pixel, const char* function) const {
@@ -139,6 +143,7 @@ void Frame::Data::describePass() {
     end = schedule.passEnd(done);
     pass.stageSamples = schedule.remainingSamples();
     pass.wantsVertices = learns();
+    pass.weightsLater = done < schedule.spreadAfter();
     if (pixels < kFewPixels) pass.seed ^= guidesBuilt * kGuideSeed;
     if (learns()) passSamples.resize(tiles.tileCount());
     pixelsPerLearned = pixelsPerLearnedIn(pixels * (end - done), kMostGuidedSamples);

@@ -75,9 +75,10 @@ class Frame {
   // Whether all further samples will be guided by the guide of today.
   bool guideIsFinal() const;
 
-  // Weight of a sample in the mean of its pixel's samples, in units of a guided sample's. To be asked for
-  // after the last pass. 1 for the pilot's, too, in a pixel that has no others. Here and below
-  // std::out_of_range is thrown for a pixel outside of the frame, here for a sample that it never has, too.
+  // Weight of a sample in the image: those of a pixel add up to samplesPerPixel, however many it has
+  // (docs/unbiasedness.md#films-that-splat). As it will be once the number of samples is settled, so after
+  // passes with weightsLater. Here and below std::out_of_range is thrown for a pixel outside of the frame,
+  // here for a sample that it never has, too.
   float sampleWeight(uint32_t pixel, uint32_t sample) const;
   // The weighted mean of the samples that a pixel has by now, and that mean's variance.
   PixelMean mean(uint32_t pixel) const;

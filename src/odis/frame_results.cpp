@@ -18,7 +18,7 @@ float Frame::sampleWeight(uint32_t pixel, uint32_t sample) const {
   if (sample >= d.schedule.sampleCount(pixel))
     throw std::out_of_range("odisGetSampleWeight: expected a sample of the pixel, found " +
                             std::to_string(sample) + " of " + std::to_string(d.schedule.sampleCount(pixel)));
-  return sample >= d.schedule.pilotCount(pixel) ? 1 : d.pilotWeightOf(pixel);
+  return d.schedule.sampleWeight(pixel, sample < d.schedule.pilotCount(pixel), d.options.pilotWeight);
 }
 
 PixelMean Frame::mean(uint32_t pixel) const {

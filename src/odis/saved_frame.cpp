@@ -286,7 +286,7 @@ void SavedFrame::readPosition(const Archive& file) {
 
 // What the pass under way has already.
 void SavedFrame::readPass(const Archive& file) {
-  const size_t tiles = TileCollector(options.frame.width, options.frame.height).tileCount();
+  const size_t tiles = TileCollector(options.frame).tileCount();
   pass = std::make_unique<ResumedPass>();
   pass->tilesDone = file.get<uint8_t>("pass.tilesDone", tiles);
   pass->vertices = loadTiles(file, "pass.vertices", pilot.size());

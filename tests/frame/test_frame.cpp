@@ -129,10 +129,58 @@ TEST(Frame, ThePilotHasTheSameShareInEveryPixel) {
   Frame frame(options);
   runFrame(frame, options, {});
   for (uint32_t pixel = 0; pixel < 40 * 40; ++pixel) {
-    const float weight = frame.sampleWeight(pixel, 0);
-    EXPECT_NEAR(weight / (weight + float(frame.sampleCount(pixel) - 1)), 0.6 / (0.6 + 7), 1e-5);
-    EXPECT_EQ(frame.sampleWeight(pixel, 1), 1);
+    EXPECT_NEAR(frame.sampleWeight(pixel, 0), 8 * 0.6 / (0.6 + 7), 1e-5);
+    EXPECT_NEAR(frame.sampleWeight(pixel, 1) * float(frame.sampleCount(pixel) - 1), 8 * 7 / (0.6 + 7), 1e-5);
   }
+}
+
+// A film that splats would otherwise take more from the pixels that have more samples. Every pass says what
+// its samples weigh, but for the one after which it is settled how many there are.
+TEST(Frame, WeightsOfAPixelAddUpToTheSamplesAskedFor) {
+  for (const double pilot : {0.25, 1.0, 2.0})
+    for (const bool guided : {true, false}) {
+      FrameOptions options = toyOptions(40, 40, 8);
+      options.pilotSamplesPerPixel = pilot;
+      options.guided = guided;
+      Frame frame(options);
+      const ToyHost host({}, 40, 40);
+      std::vector<double> weights(40 * 40, 0.0);
+      uint32_t passesWithWeightsLater = 0;
+      while (const FramePass* pass = frame.beginPass()) {
+        std::vector<SampleRange> ranges;
+        for (uint32_t pixel = 0; pixel < 40 * 40; ++pixel) ranges.push_back(frame.samples(pixel));
+        runPass(frame, *pass, host, 40 * 40);
+        passesWithWeightsLater += pass->weightsLater;
+        const bool later = pass->weightsLater;
+        frame.endPass();
+        for (uint32_t pixel = 0; pixel < 40 * 40; ++pixel)
+          for (uint32_t i = 0; i < ranges[pixel].count; ++i) {
+            const float weight = frame.sampleWeight(pixel, ranges[pixel].first + i);
+            EXPECT_EQ(ranges[pixel].weight, later ? 0 : weight);
+            weights[pixel] += weight;
+          }
+      }
+      EXPECT_EQ(passesWithWeightsLater, 1u);
+      for (const double sum : weights) EXPECT_NEAR(sum, 8, 1e-4);
+    }
+}
+
+// Hosts deliver the tiles of a crop as those of the whole image.
+TEST(Frame, TilesBeginBeforeTheImage) {
+  FrameOptions options = toyOptions(40, 20, 4);
+  options.tileOffsetX = 5;
+  options.tileOffsetY = 15;
+  Frame frame(options);
+  const FramePass* pass = frame.beginPass();
+  const ToyHost host({}, 40, 20);
+  const TracedPass traced = tracePass(frame, *pass, host, 40 * 20);
+  std::vector<FrameSample> firstTile;
+  for (const FrameSample& s : traced.samples)
+    if (s.pixel < 11) firstTile.push_back(s);
+  frame.add(firstTile);
+  for (uint32_t pixel = 0; pixel < 40 * 20; ++pixel) EXPECT_EQ(frame.samples(pixel).count == 0, pixel < 11);
+  options.tileOffsetX = 16;
+  EXPECT_THROW(Frame{options}, std::exception);
 }
 
 TEST(Frame, PilotSamplesCountWhereThereAreNoOthers) {

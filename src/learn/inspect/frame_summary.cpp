@@ -36,6 +36,8 @@ std::vector<ChosenOption> chosenOptions(const core::SavedOptions& saved) {
   ofFrame("builtCellCost", &core::FrameOptions::builtCellCost);
   ofFrame("recordedRayCost", &core::FrameOptions::recordedRayCost);
   ofFrame("keepPilotVertices", &core::FrameOptions::keepPilotVertices);
+  ofFrame("tileOffsetX", &core::FrameOptions::tileOffsetX);
+  ofFrame("tileOffsetY", &core::FrameOptions::tileOffsetY);
   ofGuide("cellsPerDiagonal", &core::GuideOptions::cellsPerDiagonal);
   for (size_t level = 0; level < kCellLevels; ++level)
     noteOption(chosen, fmt::format("priorSamples[{}]", level), saved.guide.priorSamples[level],

@@ -127,4 +127,11 @@ float Schedule::remainingRatio(uint32_t pixel) const {
   return float(sampleCount(pixel) - pilot) / float(m_spp - pilot);
 }
 
+float Schedule::sampleWeight(uint32_t pixel, bool ofPilot, double pilotWeight) const {
+  const uint32_t pilot = pilotCount(pixel), others = m_spp - pilot;
+  if (others == 0) return 1;
+  const double all = pilotWeight * pilot + others;
+  return float(m_spp / all * (ofPilot ? pilotWeight : double(others) / (sampleCount(pixel) - pilot)));
+}
+
 }  // namespace odis::core

@@ -22,29 +22,34 @@ constexpr size_t kTilesForThreads = 5, kWorkForThreads = 16384;
 
 }  // namespace
 
-TileCollector::TileCollector(uint32_t width, uint32_t height, std::shared_ptr<const Tasks> tasks)
-    : m_width(width),
-      m_height(height),
-      m_columns((width + kTileSize - 1) / kTileSize),
-      m_rows((height + kTileSize - 1) / kTileSize),
+TileCollector::TileCollector(const OdisFrameOptions& image, std::shared_ptr<const Tasks> tasks)
+    : m_width(image.width),
+      m_height(image.height),
+      m_offsetX(image.tileOffsetX),
+      m_offsetY(image.tileOffsetY),
+      m_columns((m_offsetX + m_width + kTileSize - 1) / kTileSize),
+      m_rows((m_offsetY + m_height + kTileSize - 1) / kTileSize),
       m_tiles(std::make_unique<Tile[]>(tileCount())),
       m_tasks(std::move(tasks)) {}
 
 uint32_t TileCollector::tileOf(uint32_t pixel) const {
-  return pixel / m_width / kTileSize * m_columns + pixel % m_width / kTileSize;
+  return (pixel / m_width + m_offsetY) / kTileSize * m_columns + (pixel % m_width + m_offsetX) / kTileSize;
 }
 
 uint32_t TileCollector::placeInTile(uint32_t pixel) const {
-  const uint32_t x = pixel % m_width % kTileSize, y = pixel / m_width % kTileSize;
+  const uint32_t x = (pixel % m_width + m_offsetX) % kTileSize, y = (pixel / m_width + m_offsetY) % kTileSize;
   return ((y / 4) * 4 + x / 4) * 16 + (y % 4) * 4 + x % 4;
 }
 
 SamplesDue TileCollector::samplesDue(uint32_t tile) const {
+  // In pixels from the corner of the first tile.
   const uint32_t x0 = tile % m_columns * kTileSize, y0 = tile / m_columns * kTileSize;
+  const uint32_t x1 = std::min(x0 + kTileSize, m_offsetX + m_width);
+  const uint32_t y1 = std::min(y0 + kTileSize, m_offsetY + m_height);
   SamplesDue due;
-  for (uint32_t y = y0; y < std::min(y0 + kTileSize, m_height); ++y)
-    for (uint32_t x = x0; x < std::min(x0 + kTileSize, m_width); ++x) {
-      const uint64_t ofPixel = m_due(y * m_width + x).count;
+  for (uint32_t y = std::max(y0, m_offsetY); y < y1; ++y)
+    for (uint32_t x = std::max(x0, m_offsetX); x < x1; ++x) {
+      const uint64_t ofPixel = m_due((y - m_offsetY) * m_width + x - m_offsetX).count;
       due.all += ofPixel;
       due.most = std::max(due.most, ofPixel);
     }

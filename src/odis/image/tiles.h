@@ -18,8 +18,7 @@ namespace odis::core {
 using SampleRange = OdisSampleRange;
 using FrameSample = OdisFrameSample;
 
-// Collects the samples of a pass. Tiles are squares of 16 x 16 pixels, cut off at the right and at the
-// bottom; within a tile pixels are ordered by blocks of 4 x 4, so that neighbours in the order are
+// Collects the samples of a pass. Tiles are squares of 16 x 16 pixels, cut off at the image's borders; within a tile pixels are ordered by blocks of 4 x 4, so that neighbours in the order are
 // neighbours in the image.
 class TileCollector {
  public:
@@ -29,8 +28,9 @@ class TileCollector {
   // The samples of a pixel that are due in the pass.
   using Due = std::function<SampleRange(uint32_t pixel)>;
 
-  // The tiles of a large call are shared out as `tasks`; null: they are taken one after another.
-  TileCollector(uint32_t width, uint32_t height, std::shared_ptr<const Tasks> tasks = nullptr);
+  // Of an image of this size and with these tiles. The tiles of a large call are shared out as `tasks`; null:
+  // they are taken one after another.
+  explicit TileCollector(const OdisFrameOptions& image, std::shared_ptr<const Tasks> tasks = nullptr);
   uint32_t tileCount() const { return m_columns * m_rows; }
 
   void beginPass(Due due, Sink sink);
@@ -93,7 +93,9 @@ class TileCollector {
   void handOnWaiting(uint32_t tile);
   void handOn(uint32_t tile, ArrayView<const FrameSample> samples, TileVertices& vertices);
 
-  uint32_t m_width, m_height, m_columns, m_rows;
+  uint32_t m_width, m_height;
+  uint32_t m_offsetX, m_offsetY;  // how far before the image the first tile begins
+  uint32_t m_columns, m_rows;
   Due m_due;
   Sink m_sink;
   std::unique_ptr<Tile[]> m_tiles;
