@@ -226,10 +226,10 @@ void render(const Scene& scene, const Settings& settings, Image& image) {
   const auto renderTile = [&](const std::vector<uint32_t>& pixels) {
     std::vector<odis::FrameSample> samples;
     for (const uint32_t pixel : pixels) {
-      for (auto [sample, left] = frame.samples(pixel); left > 0; ++sample, --left) {
-        const Sample of{pixel, sample, pass->seed, *pass->guide, frame.pixelValues().data()};
+      for (odis::SampleRange left = frame.samples(pixel); left.count > 0; ++left.first, --left.count) {
+        const Sample of{pixel, left.first, pass->seed, *pass->guide, frame.pixelValues().data()};
         const Traced traced = trace(scene, settings, of);
-        samples.push_back({pixel, sample, traced.radiance, traced.rays});
+        samples.push_back({pixel, left.first, traced.radiance, traced.rays});
         image.rays += traced.rays;
       }
     }
