@@ -65,6 +65,14 @@ struct ToyBsdf {
   }
 };
 
+// What a sample has beside its value, for a film with AOVs and groups of lights.
+struct ToySight {
+  float x = 0, y = 0;                    // its place in the image, in pixels
+  float distance = 0;                    // to the first surface
+  Float3 normal;                         // there
+  float byLamp[2] = {}, otherLight = 0;  // parts of the value
+};
+
 class ToyHost {
  public:
   static constexpr int kMaxDepth = 5;
@@ -72,18 +80,20 @@ class ToyHost {
   ToyHost(const ToyRoom& room, uint32_t width, uint32_t height)
       : m_room(room), m_width(width), m_height(height) {}
 
-  // Traces one sample of the pass and records its vertices.
+  // Traces one sample of the pass and records its vertices; `sight`, if it is given, receives the rest.
   FrameSample trace(const FramePass& pass, ArrayView<const float> pixelValues, uint32_t pixel,
-                    uint32_t sample, PathRecorder& recorder) const {
+                    uint32_t sample, PathRecorder& recorder, ToySight* sight = nullptr) const {
     State s{pass,  recorder, ToyNumbers(pass.seed, pixel, sample), recorder.begin({pixel, sample}),
             pixel, sample};
     s.pixelValue = pixelValues.empty() ? 1 : pixelValues[pixel];
-    const float x = (float(pixel % m_width) + s.numbers.next()) / float(m_width) - 0.5f,
-                y = 0.5f - (float(pixel / m_width) + s.numbers.next()) / float(m_height);
+    s.sight.x = float(pixel % m_width) + s.numbers.next();
+    s.sight.y = float(pixel / m_width) + s.numbers.next();
+    const float x = s.sight.x / float(m_width) - 0.5f, y = 0.5f - s.sight.y / float(m_height);
     s.origin = {0.5f, 0.01f, 0.5f};
     s.direction = Float3{x, 0.6f, y} / lengthOf({x, 0.6f, y});
     for (s.depth = 1; s.depth <= kMaxDepth && extend(s); ++s.depth) {
     }
+    if (sight) *sight = s.sight;
     return {pixel, sample, gray(s.radiance), s.rays};
   }
 
@@ -99,7 +109,13 @@ class ToyHost {
     Float3 origin, direction;
     int depth = 1;
     uint32_t rays = 0;
+    ToySight sight;
   };
+  // Adds to a sample's value what a lamp brings, or anything else (-1).
+  static void bring(State& s, float radiance, int lamp = -1) {
+    s.radiance += radiance;
+    (lamp < 0 ? s.sight.otherLight : s.sight.byLamp[lamp]) += radiance;
+  }
   // The probability of a lamp, learned or not.
   static float lampProbability(const LearnedLights& lights, int lamp) {
     const float learned = lights.fraction > 0 ? lights.cdf[lamp + 1] - lights.cdf[lamp] : 0;
@@ -114,13 +130,14 @@ class ToyHost {
   bool extend(State& s) const {
     const ToyRoom::Hit hit = m_room.intersect(s.origin, s.direction);
     ++s.rays;
+    if (s.depth == 1) s.sight.distance = hit.distance, s.sight.normal = hit.normal;
     s.recorder.surface(s.path, surfaceEvent(hit.position, hit.normal, s.direction * -1.0f, hit.distance));
     if (hit.emission.x > 0) {
       const float lightPdf = s.depth > 1 && hit.lamp >= 0
                                  ? lampPdf(hit.position - s.origin) * lampProbability(s.lights, hit.lamp)
                                  : 0;
       const float weight = s.depth > 1 ? powerHeuristic(s.pdf, lightPdf) : 1;
-      s.radiance += s.throughput * hit.emission.x * weight;
+      bring(s, s.throughput * hit.emission.x * weight, hit.lamp);
       s.recorder.emission(s.path, emissionEvent(hit.emission, weight, lightPdf));
     }
     if (s.depth == kMaxDepth) return false;
@@ -157,10 +174,10 @@ class ToyHost {
                                                s.throughput / s.pixelValue, uint32_t(s.depth));
     const float standIn = s.throughput * cell.outgoingRadiance.x;
     if (s.numbers.next() >= survival) {
-      s.radiance += standIn;
+      bring(s, standIn);
       return false;
     }
-    s.radiance += standIn * (1 - 1 / survival);
+    bring(s, standIn * (1 - 1 / survival));
     s.throughput /= survival;
     s.recorder.survived(s.path, survival);
     return true;
@@ -190,7 +207,7 @@ class ToyHost {
     if (m_room.isHidden(hit.position, point))
       s.recorder.lightHidden(s.path);
     else
-      s.radiance += s.throughput * weighted / traced;
+      bring(s, s.throughput * weighted / traced, lamp);
   }
 
   ToyRoom m_room;

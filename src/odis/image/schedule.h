@@ -57,8 +57,8 @@ class Schedule {
   // How many samples remain after the pilot in a pixel, as a ratio to how many would if all pixels had as
   // many.
   float remainingRatio(uint32_t pixel) const;
-  // What each of a pixel's samples weighs, one of the pilot's `pilotWeight` times as much as another one would
-  // if all pixels had as many: all of them together weigh as much as there are samples per pixel.
+  // What each of a pixel's samples weighs, one of the pilot's `pilotWeight` times as much as another one
+  // would if all pixels had as many: all of them together weigh as much as there are samples per pixel.
   float sampleWeight(uint32_t pixel, bool ofPilot, double pilotWeight) const;
 
  private:
