@@ -11,7 +11,7 @@
 //   while (odisBeginPass(frame, &pass)) {
 //     for each pixel, in any order, on any number of threads:
 //       for each sample that odisGetSamples names:
-//         trace a path, guided by pass.guide; record its vertices if pass.wantsVertices
+//         trace a path, guided by pass.guide; record its vertices if odisWantsVertices
 //     odisAddSamples(frame, ...);   // of one path, of a tile, of everything
 //     odisEndPass(frame, false);
 //   }
@@ -159,6 +159,10 @@ ODIS_API bool odisBeginPass(OdisFrame frame, OdisFramePass* pass);
 // The samples of a pixel in the pass under way, none where all of its tile of 16 x 16 pixels are in. They do
 // not depend on what samples of that pixel brought. Thread-safe.
 ODIS_API bool odisGetSamples(OdisFrame frame, uint32_t pixel, OdisSampleRange* range);
+// Whether the pass under way wants vertices of a pixel's samples. Where OdisFramePass.wantsVertices is true,
+// large images learn from some of their pixels only: vertices of others are left out, and need not be
+// recorded. The same for all of a pass. Thread-safe.
+ODIS_API bool odisWantsVertices(OdisFrame frame, uint32_t pixel);
 // An estimate of each pixel's luminance, from the pilot; NULL before the pilot has ended. Valid as long as
 // the frame.
 ODIS_API const float* odisGetPixelValues(OdisFrame frame);

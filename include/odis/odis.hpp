@@ -9,7 +9,7 @@
 //     for each pixel, in any order, on any number of threads:
 //       for each sample of frame.samples(pixel):
 //         trace a path, guided by *pass->guide (odis/guide_view.h, odis/mixture.h);
-//         record its vertices with a PathRecorder if pass->wantsVertices
+//         record its vertices with a PathRecorder if frame.wantsVertices(pixel)
 //       frame.add(samples, vertices);  // of one path, of a tile, of everything
 //     frame.endPass();
 //   }
@@ -309,6 +309,9 @@ class Frame : public Handle<OdisFrame, odisRetainFrame, odisReleaseFrame> {
     SampleRange range;
     orThrow([&] { return odisGetSamples(get(), pixel, &range); });
     return range;
+  }
+  bool wantsVertices(uint32_t pixel) const {
+    return checked(false, [&] { return odisWantsVertices(get(), pixel); });
   }
   ArrayView<const float> pixelValues() const {
     const auto* values = made([&] { return odisGetPixelValues(get()); });

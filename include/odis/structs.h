@@ -30,6 +30,9 @@ typedef struct OdisFloat3 {
 #define ODIS_NO_CELL 0xffffffffu
 // None of the groups of lights.
 #define ODIS_NO_LIGHT_GROUP 0xffffffffu
+// Side of the squares of pixels that frames take fastest; odis/tiles.h has their places and the order of the
+// pixels in one.
+#define ODIS_TILE_SIZE 16
 // The most groups of lights that a host may tell apart for next-event estimation.
 #define ODIS_MAX_LIGHT_GROUPS 32
 // Nested cells have the edges e, 2e, 4e, 8e.

@@ -125,7 +125,7 @@ typedef struct OdisGuideView {
 typedef struct OdisFramePass {
   size_t size ODIS_DEFAULT(sizeof(OdisFramePass));
   OdisPassKind kind ODIS_DEFAULT(ODIS_PASS_GUIDED);
-  bool wantsVertices ODIS_DEFAULT(false);
+  bool wantsVertices ODIS_DEFAULT(false);  // of some pixels at least: odisWantsVertices tells of each
   bool partOfImage ODIS_DEFAULT(true);
   // Whether the weights of the pass's samples are known only when it has ended, since they depend on how many
   // samples each pixel will have: a host with a film of its own keeps them until then.

@@ -184,10 +184,7 @@ void Frame::Data::take(uint32_t tile, ArrayView<const FrameSample> samples, Tile
   passSamplesCame += samples.size();
   passRaysCame += rays;
   passVerticesCame += vertices.size();
-  if (pixelsPerLearned > 1)
-    vertices.filter([this](const PathVertex& v) {
-      return (v.pixel % options.width + 2 * (v.pixel / options.width)) % pixelsPerLearned == 0;
-    });
+  if (pixelsPerLearned > 1) vertices.filter([this](const PathVertex& v) { return wantsVertices(v.pixel); });
   const uint64_t seen = passVertexCount += vertices.size();
   if (!passSamples.empty()) {
     passSamples[tile] = next == ODIS_PASS_GUIDED ? builder->take(vertices.view())
@@ -343,6 +340,12 @@ SampleRange Frame::samples(uint32_t pixel) const {
   requireOrder(m_data->inPass, "odisGetSamples: expected a pass under way");
   m_data->requirePixel(pixel, "odisGetSamples");
   return m_data->tiles.isDone(pixel) ? SampleRange() : m_data->samples(pixel);
+}
+
+bool Frame::wantsVertices(uint32_t pixel) const {
+  requireOrder(m_data->inPass, "odisWantsVertices: expected a pass under way");
+  m_data->requirePixel(pixel, "odisWantsVertices");
+  return m_data->wantsVertices(pixel);
 }
 
 ArrayView<const float> Frame::pixelValues() const {

@@ -7,7 +7,7 @@
 //     for each pixel, in any order, on any number of threads:
 //       for each sample of frame.samples(pixel):
 //         trace a path, guided by pass->guide (odis/guide_view.h);
-//         record its vertices if pass->wantsVertices (odis/record/recorder.h)
+//         record its vertices if frame.wantsVertices(pixel) (odis/record/recorder.h)
 //       frame.add(samples, vertices);  // of one path, of a tile, of everything
 //     frame.endPass();
 //   }
@@ -57,6 +57,9 @@ class Frame {
   const FramePass* beginPass();
   // The samples of a pixel in the pass under way. They do not depend on what samples of that pixel brought.
   SampleRange samples(uint32_t pixel) const;
+  // Whether vertices of a pixel's samples in the pass under way are learned from or kept; those of other
+  // pixels need not be recorded.
+  bool wantsVertices(uint32_t pixel) const;
   // An estimate of each pixel's luminance, from the pilot; empty before the pilot has ended.
   ArrayView<const float> pixelValues() const;
   // Hands over samples of the pass, each with its vertices if the pass wants them. Thread-safe, in any

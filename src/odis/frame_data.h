@@ -69,6 +69,12 @@ struct Frame::Data {
   }
   [[noreturn]] void refusePixel(uint32_t pixel, const char* function) const;
   bool lacksVertices() const;
+  // Whether the guide learns from the pass's samples of a pixel, or keeps their vertices.
+  bool wantsVertices(uint32_t pixel) const {
+    if (pixelsPerLearned == 1) return pass.wantsVertices;
+    return pass.wantsVertices &&
+           (pixel % options.width + 2 * (pixel / options.width)) % pixelsPerLearned == 0;
+  }
   float pilotWeightOf(uint32_t pixel) const { return pilotWeight(options, schedule, pixel, later[pixel]); }
 
   // Goes on with the pass that was under way when the frame was saved.

@@ -304,8 +304,12 @@ TEST(ApiMistakes, APixelOutsideOfTheFrameIsAnError) {
     EXPECT_EQ(takeError(), ODIS_ERROR_INVALID_ARGUMENT);
   }
   expectRefused(ODIS_ERROR_INVALID_ARGUMENT, [&] { frame.sampleWeight(0, 3); });
-  EXPECT_EQ(frame.sampleWeight(0, 2), 1);
+  EXPECT_FLOAT_EQ(frame.sampleWeight(0, 2), 3 / 2.6f);
   EXPECT_EQ(frame.sampleCount(kPixels - 1), 0u);
+  expectRefused(ODIS_ERROR_INVALID_OPERATION, [&] { frame.wantsVertices(0); });
+  frame.beginPass();
+  EXPECT_TRUE(frame.wantsVertices(kPixels - 1));
+  expectRefused(ODIS_ERROR_INVALID_ARGUMENT, [&] { frame.wantsVertices(kPixels); });
 }
 
 // What a function in C left that nobody asked about is not the error of a later one.

@@ -51,6 +51,7 @@ TEST(ApiMisuse, NullIsAnError) {
   REFUSED(odisNewFrame(nullptr, nullptr));
   REFUSED(odisBeginPass(nullptr, &pass));
   REFUSED(odisGetSamples(nullptr, 0, nullptr));
+  REFUSED(odisWantsVertices(nullptr, 0));
   REFUSED(odisGetPixelValues(nullptr));
   REFUSED(odisAddSamples(nullptr, nullptr, 0, &vertices));
   REFUSED(odisEndPass(nullptr, false));

@@ -133,6 +133,11 @@ bool odisGetSamples(OdisFrame frame, uint32_t pixel, OdisSampleRange* range) {
                                    [&](const Frame& f) { *range = f.samples(pixel); });
 }
 
+bool odisWantsVertices(OdisFrame frame, uint32_t pixel) {
+  return guardedForFrame(frame, "odisWantsVertices", false,
+                         [&](const Frame& f) { return f.wantsVertices(pixel); });
+}
+
 const float* odisGetPixelValues(OdisFrame frame) {
   return guardedForFrame(
       frame, "odisGetPixelValues", static_cast<const float*>(nullptr),

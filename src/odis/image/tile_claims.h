@@ -5,9 +5,9 @@
 #include <cstdint>
 #include <vector>
 
-namespace odis::core {
+#include "odis/tiles.h"
 
-inline constexpr uint32_t kTileSize = 16;  // in pixels, across and down
+namespace odis::core {
 
 // The place of a sample's pixel in its tile, and the sample's number in the pixel.
 struct SampleSlot {

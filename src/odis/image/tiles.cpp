@@ -23,36 +23,15 @@ constexpr size_t kTilesForThreads = 5, kWorkForThreads = 16384;
 }  // namespace
 
 TileCollector::TileCollector(const OdisFrameOptions& image, std::shared_ptr<const Tasks> tasks)
-    : m_width(image.width),
-      m_height(image.height),
-      m_offsetX(image.tileOffsetX),
-      m_offsetY(image.tileOffsetY),
-      m_columns((m_offsetX + m_width + kTileSize - 1) / kTileSize),
-      m_rows((m_offsetY + m_height + kTileSize - 1) / kTileSize),
-      m_tiles(std::make_unique<Tile[]>(tileCount())),
-      m_tasks(std::move(tasks)) {}
-
-uint32_t TileCollector::tileOf(uint32_t pixel) const {
-  return (pixel / m_width + m_offsetY) / kTileSize * m_columns + (pixel % m_width + m_offsetX) / kTileSize;
-}
-
-uint32_t TileCollector::placeInTile(uint32_t pixel) const {
-  const uint32_t x = (pixel % m_width + m_offsetX) % kTileSize, y = (pixel / m_width + m_offsetY) % kTileSize;
-  return ((y / 4) * 4 + x / 4) * 16 + (y % 4) * 4 + x % 4;
-}
+    : m_grid(image), m_tiles(std::make_unique<Tile[]>(tileCount())), m_tasks(std::move(tasks)) {}
 
 SamplesDue TileCollector::samplesDue(uint32_t tile) const {
-  // In pixels from the corner of the first tile.
-  const uint32_t x0 = tile % m_columns * kTileSize, y0 = tile / m_columns * kTileSize;
-  const uint32_t x1 = std::min(x0 + kTileSize, m_offsetX + m_width);
-  const uint32_t y1 = std::min(y0 + kTileSize, m_offsetY + m_height);
   SamplesDue due;
-  for (uint32_t y = std::max(y0, m_offsetY); y < y1; ++y)
-    for (uint32_t x = std::max(x0, m_offsetX); x < x1; ++x) {
-      const uint64_t ofPixel = m_due((y - m_offsetY) * m_width + x - m_offsetX).count;
-      due.all += ofPixel;
-      due.most = std::max(due.most, ofPixel);
-    }
+  m_grid.forEachPixel(tile, [&](uint32_t pixel) {
+    const uint64_t ofPixel = m_due(pixel).count;
+    due.all += ofPixel;
+    due.most = std::max(due.most, ofPixel);
+  });
   return due;
 }
 
@@ -83,7 +62,7 @@ bool TileCollector::allIn(uint32_t tile, ArrayView<const FrameSample> samples,
     for (const auto& each : all) {
       if (each.pixel != pixel) {
         pixel = each.pixel;
-        if (pixel >= m_width * m_height || tileOf(pixel) != tile) return false;
+        if (pixel >= m_grid.pixelCount() || m_grid.tileOf(pixel) != tile) return false;
         due = m_due(pixel);
       }
       if (each.sample < due.first || each.sample - due.first >= due.count) return false;
@@ -96,7 +75,7 @@ bool TileCollector::allIn(uint32_t tile, ArrayView<const FrameSample> samples,
 void TileCollector::add(ArrayView<const FrameSample> samples, const VertexSource& vertices) {
   // Whatever is of one tile and lies in an array needs no sorting by tile.
   if (!samples.empty() && vertices.array().size() == vertices.size())
-    if (const uint32_t tile = tileOf(samples[0].pixel); allIn(tile, samples, vertices.array())) {
+    if (const uint32_t tile = m_grid.tileOf(samples[0].pixel); allIn(tile, samples, vertices.array())) {
       requireOpen(tile);
       const size_t claimed =
           claim(tile, samples.size(), [&](size_t i) -> const FrameSample& { return samples[i]; });
@@ -126,9 +105,9 @@ std::vector<uint32_t> TileCollector::tilesOf(bool byThreads, size_t count,
       const auto identity = identityAt(i);
       if (identity.pixel != pixel) {
         pixel = identity.pixel;
-        const bool inImage = pixel < m_width * m_height;
+        const bool inImage = pixel < m_grid.pixelCount();
         due = inImage ? m_due(pixel) : SampleRange();
-        tile = inImage ? tileOf(pixel) : TileOrder::kNone;
+        tile = inImage ? m_grid.tileOf(pixel) : TileOrder::kNone;
       }
       tiles[i] = identity.sample - due.first < due.count ? tile : TileOrder::kNone;
     }
@@ -143,7 +122,7 @@ struct TileCollector::SlotsOf {
     const FrameSample& s = sampleAt(i);
     if (s.pixel != pixel) {
       pixel = s.pixel;
-      place = collector.placeInTile(pixel);
+      place = collector.m_grid.placeInTile(pixel);
     }
     return {place, s.sample};
   }
@@ -235,7 +214,7 @@ TileCollector::Order TileCollector::orderOf(const VertexSource& vertices, size_t
   for (size_t k = 0; k < count; ++k) {
     const size_t i = indexAt(k);
     const VertexIdentity v = vertices.identity(i);
-    if (v.pixel != pixel) place = placeInTile(pixel = v.pixel);
+    if (v.pixel != pixel) place = m_grid.placeInTile(pixel = v.pixel);
     order.emplace_back(uint64_t(place) << 48 | uint64_t(v.sample) << 16 | v.depth, i);
   }
   return order;
@@ -327,7 +306,7 @@ void TileCollector::handOn(uint32_t tile, ArrayView<const FrameSample> samples, 
     uint32_t pixel = ~0u, place = 0;
     inOrder = true;
     for (const FrameSample& s : samples) {
-      if (s.pixel != pixel) place = placeInTile(pixel = s.pixel);
+      if (s.pixel != pixel) place = m_grid.placeInTile(pixel = s.pixel);
       inOrder = inOrder && s.sample >= next[place];
       next[place] = s.sample + 1;
     }

@@ -11,6 +11,7 @@
 #include "odis/image/tile_order.h"
 #include "odis/image/tile_vertices.h"
 #include "odis/record/vertex_source.h"
+#include "odis/tiles.h"
 #include "odis/work/tasks.h"
 
 namespace odis::core {
@@ -18,8 +19,7 @@ namespace odis::core {
 using SampleRange = OdisSampleRange;
 using FrameSample = OdisFrameSample;
 
-// Collects the samples of a pass. Tiles are squares of 16 x 16 pixels, cut off at the image's borders; within a tile pixels are ordered by blocks of 4 x 4, so that neighbours in the order are
-// neighbours in the image.
+// Collects the samples of a pass.
 class TileCollector {
  public:
   // Called once for each tile that has samples, by any thread: a pixel's samples in the order of their
@@ -31,7 +31,7 @@ class TileCollector {
   // Of an image of this size and with these tiles. The tiles of a large call are shared out as `tasks`; null:
   // they are taken one after another.
   explicit TileCollector(const OdisFrameOptions& image, std::shared_ptr<const Tasks> tasks = nullptr);
-  uint32_t tileCount() const { return m_columns * m_rows; }
+  uint32_t tileCount() const { return m_grid.tileCount(); }
 
   void beginPass(Due due, Sink sink);
   // Thread-safe. Throws std::out_of_range for samples that are not due, std::logic_error for samples that
@@ -47,7 +47,7 @@ class TileCollector {
   LeftOut endPass();
 
   // Whether all samples of a pixel's tile are in.
-  bool isDone(uint32_t pixel) const { return m_tiles[tileOf(pixel)].done; }
+  bool isDone(uint32_t pixel) const { return m_tiles[m_grid.tileOf(pixel)].done; }
   // Takes tiles as done whose samples are in already.
   void skip(const std::vector<uint8_t>& done);
   // [tile] which are.
@@ -68,8 +68,6 @@ class TileCollector {
   // What vertices are sorted by: first a number made of pixel, sample and depth, then the index at which they
   // came.
   using Order = std::vector<std::pair<uint64_t, size_t>>;
-  uint32_t tileOf(uint32_t pixel) const;
-  uint32_t placeInTile(uint32_t pixel) const;
   SamplesDue samplesDue(uint32_t tile) const;
   bool allIn(uint32_t tile, ArrayView<const FrameSample> samples, ArrayView<const PathVertex> vertices) const;
   template <class Body>
@@ -93,9 +91,7 @@ class TileCollector {
   void handOnWaiting(uint32_t tile);
   void handOn(uint32_t tile, ArrayView<const FrameSample> samples, TileVertices& vertices);
 
-  uint32_t m_width, m_height;
-  uint32_t m_offsetX, m_offsetY;  // how far before the image the first tile begins
-  uint32_t m_columns, m_rows;
+  TileGrid m_grid;
   Due m_due;
   Sink m_sink;
   std::unique_ptr<Tile[]> m_tiles;
