@@ -127,7 +127,7 @@ void requirePngToExpose(float exposure, const std::string& png, const std::strin
     throw UsageError("--exposure: is of PNGs, expected --png or an output that ends in .png");
 }
 
-void tellWithoutEffect(const RenderArguments& a, const RenderOptions& options) {
+void tellWithoutEffect(const RenderArguments& a, const RenderOptions& options, const FilmSettings& film) {
   if (options.variance && options.spp < 2)
     throw UsageError("--variance: one sample per pixel has none, expected --spp 2 or more");
   std::string notes;
@@ -139,7 +139,15 @@ void tellWithoutEffect(const RenderArguments& a, const RenderOptions& options) {
                          leastToSpread(options), options.spp);
   if (options.integrator == IntegratorKind::odis && !isGuiding(options))
     notes += "note: --set cells=0: nothing is guided without cells and maps at pixels\n";
+  if (options.film == FilmKind::splat && film.filter->reach() > kMostSplatReach)
+    notes +=
+        fmt::format("note: --film splat: the filter reaches over {} pixels, more than {}: --film pixels\n",
+                    film.filter->reach(), kMostSplatReach);
   if (!a.quiet) say(notes);
+  if (a.denoise && filmKindFor(*film.filter, options.film) == FilmKind::splat && !a.quiet)
+    sayWarning(
+        "--film splat: neighbouring pixels share their noise, which the denoiser takes for detail; "
+        "--film pixels denoises better");
 }
 
 }  // namespace odis::app

@@ -18,6 +18,7 @@ void requireEffects(const RenderArguments& a, Layers& layers);
 // Throws UsageError if --exposure is given and no PNG is written.
 void requirePngToExpose(float exposure, const std::string& png, const std::string& output);
 // Throws UsageError, or tells, if options have no effect on a scene; `options` hold what it asks for.
-void tellWithoutEffect(const RenderArguments& a, const render::RenderOptions& options);
+void tellWithoutEffect(const RenderArguments& a, const render::RenderOptions& options,
+                       const render::FilmSettings& film);
 
 }  // namespace odis::app

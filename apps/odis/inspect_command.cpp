@@ -85,6 +85,7 @@ int runInspectSaved(const CLI::App& app, InspectArguments& a) {
 int runInspect(InspectArguments& a) {
   readPlace(a);
   RenderOptions options;
+  if (!a.method.film.empty()) throw UsageError("--film: has no effect, no image is made of samples");
   a.method.apply(options);
   if (options.integrator != IntegratorKind::odis || options.guide == GuideKind::oracle)
     throw UsageError("odis inspect: looks into --integrator odis with the pilot's guide, expected no other");

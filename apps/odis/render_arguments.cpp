@@ -25,6 +25,11 @@ void MethodArguments::addTo(CLI::App& app) {
       ->check(CLI::IsMember({"sobol", "independent"}))
       ->capture_default_str()
       ->group(group);
+  app.add_option("--film", film,
+                 "splat: a sample counts in all pixels that its filter reaches; pixels: in one, as denoisers "
+                 "want it; default: splat without --denoise, else pixels")
+      ->check(CLI::IsMember({"splat", "pixels"}))
+      ->group(group);
   app.add_option("--preset", preset,
                  "Settings to start from; paper, paper-fast: the method of Bako et al. 2019, docs/paper.md")
       ->check(CLI::IsMember({"default", "paper", "paper-fast"}))
@@ -82,6 +87,7 @@ void MethodArguments::apply(RenderOptions& options) const {
                        : integrator == "restir"  ? IntegratorKind::restir
                                                  : IntegratorKind::odis;
   options.sampler = sampler == "sobol" ? SamplerKind::sobol : SamplerKind::independent;
+  if (!film.empty()) options.film = film == "splat" ? FilmKind::splat : FilmKind::pixels;
   if (preset != "default") applyPaperPreset(options, preset == "paper-fast");
   if (!weights.empty()) {
     options.model = Model::load(weights);

@@ -16,6 +16,7 @@ namespace odis::app {
 // How a method differs from another: everything but the scene, the number of samples and the outputs.
 struct MethodArguments {
   std::string integrator = "odis", sampler = "sobol", preset = "default", weights;
+  std::string film;  // splat, pixels; empty: what the command takes by default
   bool cached = false;
   std::vector<std::string> settings;  // "key=value" each
 

@@ -30,6 +30,7 @@ using namespace render;
 static RenderOptions renderOptions(const RenderArguments& a, const Scene& scene, const Layers& layers) {
   const IntegratorSettings& settings = scene.integrator();
   RenderOptions options;
+  options.film = a.denoise ? FilmKind::pixels : FilmKind::splat;
   a.method.apply(options);
   options.spp = a.spp.value_or(settings.samplesPerPixel > 0 ? settings.samplesPerPixel : options.spp);
   options.maxDepth = a.maxDepth.value_or(settings.maxDepth);
@@ -156,6 +157,7 @@ static void describeRun(const RenderArguments& a, const Scene& scene, const Rend
   if (options.integrator == IntegratorKind::odis) stats.costs = options.costs;
   stats.scene = a.scene;
   stats.integrator = a.method.integrator;
+  stats.film = filmKindFor(*scene.film().filter, options.film) == FilmKind::splat ? "splat" : "pixels";
   stats.commandLine = a.commandLine;
 }
 
@@ -182,7 +184,7 @@ static int runRender(RenderArguments& a) {
   tellWarnings(a.scene, warnings, {a.quiet, a.verbose, a.part.strict});
   const RenderOptions options = renderOptions(a, *scene, layers);
   if (!a.replay.empty()) return printReplay(a, *scene, options);
-  tellWithoutEffect(a, options);
+  tellWithoutEffect(a, options, scene->film());
   if (a.verbose)
     say(fmt::format("{}: {} shapes, {} lights, {}; loaded in {}\n", a.scene, scene->shapes().size(),
                     scene->emitters().size(), bytesText(double(scene->bytes())),

@@ -57,6 +57,7 @@ SavingOptions savingOf(const RenderArguments& a, const RenderOptions& options, c
   line("crop", fmt::format("{},{},{},{}", film.crop.x, film.crop.y, film.crop.width, film.crop.height));
   line("--integrator", a.method.integrator);
   line("--sampler", a.method.sampler);
+  line("--film", options.film == FilmKind::splat ? "splat" : "pixels");
   line("--cached", a.method.cached ? "yes" : "no");
   line("--set", fmt::format("{}", fmt::join(a.method.settings, " ")));
   line("--spp", std::to_string(options.spp));
@@ -64,6 +65,7 @@ SavingOptions savingOf(const RenderArguments& a, const RenderOptions& options, c
   line("--max-depth", std::to_string(options.maxDepth));
   line("--rr-depth", std::to_string(options.rrDepth));
   // What is summed up along the way.
+  line("--variance", options.variance && options.film == FilmKind::splat ? "yes" : "no");
   line("--aov", !options.features ? "none" : options.guideFeatures ? "guide" : "others than guide");
   line("--records", options.records ? "yes" : "no");
   return saving;

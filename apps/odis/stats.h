@@ -18,7 +18,7 @@ struct RunStats {
   uint64_t seed = 0;
   bool cached = false;
   std::optional<render::OperationCosts> costs;  // that decisions weighed; of frames that are guided
-  std::string scene, integrator, commandLine;
+  std::string scene, integrator, film, commandLine;
 };
 
 uint64_t peakMemory();  // of this process, in bytes

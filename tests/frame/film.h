@@ -98,7 +98,8 @@ inline TraceForFilm toyTrace(const ToyHost& host) {
     ToySight sight;
     FilmSample result;
     result.sample = host.trace(pass, pixelValues, pixel, sample, recorder, &sight);
-    result.splat = {sight.x, sight.y,
+    result.splat = {sight.x,
+                    sight.y,
                     {result.sample.value.y, sight.distance, sight.normal.z, sight.byLamp[0], sight.byLamp[1],
                      sight.otherLight}};
     return result;

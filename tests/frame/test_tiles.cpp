@@ -56,9 +56,7 @@ TEST(TileGrid, IsTheFrames) {
     Frame frame(options);
     frame.beginPass();
     std::vector<FrameSample> samples;
-    grid.forEachPixel(tile, [&](uint32_t pixel) {
-      samples.push_back({pixel, 0, {1, 1, 1}, 1});
-    });
+    grid.forEachPixel(tile, [&](uint32_t pixel) { samples.push_back({pixel, 0, {1, 1, 1}, 1}); });
     frame.add(samples);
     for (uint32_t pixel = 0; pixel < 40 * 20; ++pixel)
       EXPECT_EQ(frame.samples(pixel).count == 0, grid.tileOf(pixel) == tile);

@@ -53,10 +53,9 @@ InspectedPlace placeOfPixel(const render::Scene& scene, const render::LightSampl
   settings.maxDepth = options.maxDepth;
   settings.rrDepth = options.rrDepth;
   const render::Sampler sampler(options.sampler, options.seed, uint32_t(pixel.y * film.width + pixel.x), 0);
-  float filterWeight;
-  const render::Ray ray =
-      render::cameraRay(scene, pixel, render::cameraNumbers(scene, sampler), filterWeight);
-  render::Path path(ray, sampler);
+  const render::CameraRay camera =
+      render::cameraRay(scene, render::FilmKind::pixels, pixel, render::cameraNumbers(scene, sampler));
+  render::Path path(camera.ray, sampler);
   std::vector<PathVertex> vertices;
   render::tracePaths(settings, std::span(&path, 1), &vertices);
   for (size_t i = 0; i < vertices.size(); ++i) {

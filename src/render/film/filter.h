@@ -1,7 +1,7 @@
-// Reconstruction filters, sampled by importance: a sample belongs to one pixel, its position is drawn from
-// |filter| and its weight is the sign and scale that keep the estimate unbiased (Ernst et al. 2006, "Filter
-// Importance Sampling"). Pixels are thus independent of each other, and threads never write to a neighbour's
-// pixel.
+// Reconstruction filters. A film that splats evaluates them at all pixels that they reach from a sample. A
+// film whose pixels are independent of each other samples them by importance: a sample belongs to one pixel,
+// its position is drawn from |filter| and its weight is the sign and scale that keep the estimate unbiased
+// (Ernst et al. 2006, "Filter Importance Sampling").
 #pragma once
 
 #include <memory>
@@ -50,6 +50,9 @@ class Filter {
   }
   // The normalised filter (its integral is 1) at an offset from the pixel's centre.
   virtual float value(const Vec2& offset) const = 0;
+  // One axis of it, not normalised, at the centres of the pixels from reach() before a sample's own pixel to
+  // reach() after it: the sample lies at `offset` from its pixel's centre, -0.5 to 0.5.
+  virtual void taps(float offset, float* values) const = 0;
   virtual float radius() const = 0;  // in pixels
   virtual std::string name() const = 0;
 

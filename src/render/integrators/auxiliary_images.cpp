@@ -18,11 +18,11 @@ constexpr int kMaxDepth = 9;
 struct Mean {
   Rgb albedo;
   Vec3 normal;
-  uint32_t samples;
+  float samples;
 };
 
 Mean meanOf(const FeatureSums& sums) {
-  const float scale = sums.samples > 0 ? 1.0f / float(sums.samples) : 0.0f;
+  const float scale = sums.samples > 0 ? 1.0f / sums.samples : 0.0f;
   return {sums.albedo * scale, sums.normal * scale, sums.samples};
 }
 
@@ -51,7 +51,7 @@ class AuxiliaryRendering {
     }
     if (m_progress.cancelled()) return {};
     RenderedImage image;
-    writeFeatures(m_sums, false, image);
+    for (const FeatureSums& sums : m_sums) writeFeatures(sums, image);
     return {std::move(image.albedo), std::move(image.normal)};
   }
 

@@ -30,8 +30,10 @@ void useGuide(PathSettings& settings, const GuideView& guide, const RenderOption
 FrameOptions frameOptions(const RenderJob& job) {
   const RenderOptions& options = job.options();
   FrameOptions frame;
-  frame.width = uint32_t(job.crop().width);
-  frame.height = uint32_t(job.crop().height);
+  frame.width = uint32_t(job.tiles().sampled().width);
+  frame.height = uint32_t(job.tiles().sampled().height);
+  frame.tileOffsetX = uint32_t(job.tiles().offset().x);
+  frame.tileOffsetY = uint32_t(job.tiles().offset().y);
   frame.samplesPerPixel = uint32_t(options.spp);
   frame.seed = options.seed;
   frame.guided = false;
@@ -56,8 +58,12 @@ Pass FrameIntegrator::passOf(const FramePass& framePass) {
   if (framePass.guide->cellCount > 0) useGuide(pass.path, *framePass.guide, m_job.options());
   if (framePass.kind == ODIS_PASS_GUIDED) pass.pixelValues = m_frame.pixelValues();
   if (framePass.kind == ODIS_PASS_PILOT && m_job.options().records) pass.emitted = &m_job.pilotEmitted;
+  pass.splats.colors = m_film.get();
+  pass.splats.keep = framePass.weightsLater;
   if (!framePass.partOfImage) {
     pass.features = nullptr;
+    pass.guideFeatures = nullptr;
+    pass.splats = {};
     pass.path.features = false;
   }
   pass.samples = [this](uint32_t pixel) { return m_frame.samples(pixel); };
@@ -73,10 +79,17 @@ Pass FrameIntegrator::passOf(const FramePass& framePass) {
 
 // Shows what there is; pixels without a sample as those around them.
 void FrameIntegrator::showPicture() {
-  std::vector<Rgb> colors(m_job.pixelCount());
-  std::vector<float> weights(m_job.pixelCount());
+  std::vector<Rgb> colors(m_job.crop().pixels());
+  std::vector<float> weights(colors.size());
+  const std::vector<float> sums = m_film ? m_film->sums() : std::vector<float>();
   tbb::parallel_for(tbb::blocked_range<size_t>(0, colors.size()), [&](const auto& range) {
     for (size_t pixel = range.begin(); pixel < range.end(); ++pixel) {
+      if (m_film) {
+        const float* at = &sums[pixel * size_t(m_film->channels())];
+        weights[pixel] = at[3] > 0 ? 1 : 0;
+        colors[pixel] = at[3] > 0 ? Rgb(at[0], at[1], at[2]) / at[3] : Rgb(0, 0, 0);
+        continue;
+      }
       const Float3 color = m_frame.mean(uint32_t(pixel)).color;
       colors[pixel] = Rgb(color.x, color.y, color.z);
       weights[pixel] = m_frame.sampleCount(uint32_t(pixel)) > 0 ? 1 : 0;
@@ -116,9 +129,20 @@ void FrameIntegrator::run(const FramePass& framePass) {
   if (m_guideIsNew) stats.cellsBuilt += framePass.guide->cellCount;
   trace(framePass);
   const Stopwatch building;
+  const bool hasKept = framePass.weightsLater;
   m_frame.endPass(m_job.interrupted());
+  if (hasKept) addKept();
   m_guideIsNew = kind != ODIS_PASS_GUIDED || framePass.wantsVertices;
   if (m_guideIsNew) stats.secondsBuild += building.seconds();
+}
+
+// Adds the samples of a pass that has settled what they weigh.
+void FrameIntegrator::addKept() {
+  const auto weight = [this](uint32_t pixel) {
+    return m_frame.sampleWeight(pixel, m_frame.sampleCount(pixel) - 1);
+  };
+  if (m_film) m_film->addKept(weight);
+  if (m_job.featureFilm) m_job.featureFilm->addKept(weight);
 }
 
 void FrameIntegrator::render() {
@@ -144,11 +168,21 @@ Pass FrameIntegrator::passBefore(uint32_t pixel, uint32_t sample) {
 
 void FrameIntegrator::finish(RenderResult& result) {
   const ArrayView<const PixelSums> pilot = m_frame.pilotImage();
-  fillPixels(result, m_job.options(), [&](uint32_t pixel) {
+  const auto samplesOf = [&](uint32_t pixel) {
     const uint32_t samples = m_frame.sampleCount(pixel), later = samples - pilot[pixel].count;
     const bool pilotCounts = m_job.options().pilotWeight > 0 || later == 0;
-    return MeanOfSamples{m_frame.mean(pixel), pilotCounts ? samples : later};
-  });
+    return pilotCounts ? samples : later;
+  };
+  if (m_film) {
+    fillPixels(result, m_film->sums(), m_film->channels());
+    result.stats.fewestSamples = ~0u;
+    for (size_t i = 0; i < m_job.crop().pixels(); ++i)
+      result.stats.fewestSamples = std::min(result.stats.fewestSamples, samplesOf(m_job.pixelOfCrop(i)));
+  } else {
+    fillPixels(result, m_job.options(), [&](uint32_t pixel) {
+      return MeanOfSamples{m_frame.mean(pixel), samplesOf(pixel)};
+    });
+  }
   const FrameStatistics frame = m_frame.statistics();
   RenderStats& stats = result.stats;
   stats.samples = frame.samples;

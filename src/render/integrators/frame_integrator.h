@@ -11,7 +11,7 @@ namespace odis::render {
 class FrameIntegrator : public Integrator {
  public:
   FrameIntegrator(RenderJob& job, const FrameOptions& options)
-      : m_job(job), m_saver(job), m_frame(m_saver.begin(options)) {}
+      : m_job(job), m_film(job.newColorFilm()), m_saver(job, m_film.get()), m_frame(m_saver.begin(options)) {}
 
   void render() override;
   Pass passBefore(uint32_t pixel, uint32_t sample) override;
@@ -24,11 +24,13 @@ class FrameIntegrator : public Integrator {
  private:
   void trace(const FramePass& framePass);
   void showPicture();
+  void addKept();
   void run(const FramePass& framePass);
   Pass passOf(const FramePass& framePass);
   void beginStage(const FramePass& framePass);
 
   RenderJob& m_job;
+  std::unique_ptr<SplatFilm> m_film;  // null unless it splats
   FrameSaver m_saver;
   odis::Frame m_frame;
   const char* m_stage = nullptr;  // that progress tells of

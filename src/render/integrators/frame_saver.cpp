@@ -13,7 +13,8 @@ namespace {
 using nlohmann::json;
 
 // What the renderer keeps with the frame: the length of a JSON text in bytes (64 bits, little-endian), the
-// text, then the arrays of features and of the emission that camera rays met, as they lie in memory.
+// text, then the arrays of features and of the emission that camera rays met, and the films, as they lie in
+// memory.
 constexpr size_t kLengthBytes = 8;
 
 template <class T>
@@ -24,7 +25,7 @@ void append(std::vector<uint8_t>& bytes, const std::vector<T>& elements) {
   bytes.insert(bytes.end(), data, data + elements.size() * sizeof(T));
 }
 
-std::vector<uint8_t> hostDataOf(const RenderJob& job) {
+std::vector<uint8_t> hostDataOf(const RenderJob& job, const SplatFilm* film) {
   const RenderStats& stats = job.stats;
   const std::string text =
       json{{"subject", job.options().saving.subject}, {"rays", stats.rays},
@@ -35,7 +36,10 @@ std::vector<uint8_t> hostDataOf(const RenderJob& job) {
   for (size_t i = 0; i < kLengthBytes; ++i) bytes.push_back(uint8_t(uint64_t(text.size()) >> (8 * i)));
   bytes.insert(bytes.end(), text.begin(), text.end());
   append(bytes, job.features);
+  append(bytes, job.guideFeatures);
   append(bytes, job.pilotEmitted);
+  if (film) film->save(bytes);
+  if (job.featureFilm) job.featureFilm->save(bytes);
   return bytes;
 }
 
@@ -66,6 +70,11 @@ class HostData {
     if (size > 0) std::memcpy(static_cast<void*>(elements.data()), m_bytes.data() + m_at, size);
     m_at += size;
   }
+  void read(SplatFilm& film) {
+    std::span<const uint8_t> rest(m_bytes.data() + m_at, m_bytes.size() - m_at);
+    require(film.restore(rest), "lacks the film that the renderer summed up, or it is damaged");
+    m_at = m_bytes.size() - rest.size();
+  }
   void require(bool holds, const std::string& what) const {
     if (!holds) throw Error(ODIS_ERROR_FILE, m_file + ": " + what);
   }
@@ -91,7 +100,7 @@ void requireSame(const std::string& saved, const std::string& asked, const std::
                       is + "\"");
 }
 
-void restore(RenderJob& job, const odis::Frame& frame, const std::string& file) {
+void restore(RenderJob& job, SplatFilm* film, const odis::Frame& frame, const std::string& file) {
   HostData data(frame.hostData(), file);
   const json header = data.header();
   RenderStats& stats = job.stats;
@@ -106,10 +115,14 @@ void restore(RenderJob& job, const odis::Frame& frame, const std::string& file) 
     data.require(false, jsonReason(error));
   }
   const FrameStatistics size = frame.statistics();
-  data.require(size.width == uint32_t(job.crop().width) && size.height == uint32_t(job.crop().height),
+  const Crop& sampled = job.tiles().sampled();
+  data.require(size.width == uint32_t(sampled.width) && size.height == uint32_t(sampled.height),
                "has another size than it says");
   data.read(job.features);
+  data.read(job.guideFeatures);
   data.read(job.pilotEmitted);
+  if (film) data.read(*film);
+  if (job.featureFilm) data.read(*job.featureFilm);
 }
 
 }  // namespace
@@ -117,7 +130,7 @@ void restore(RenderJob& job, const odis::Frame& frame, const std::string& file) 
 odis::Frame FrameSaver::begin(const FrameOptions& options) {
   if (m_options.resumeFrom.empty()) return odis::Frame(options);
   odis::Frame frame = odis::Frame::load(m_options.resumeFrom, options.guide.model);
-  restore(m_job, frame, m_options.resumeFrom);
+  restore(m_job, m_film, frame, m_options.resumeFrom);
   return frame;
 }
 
@@ -130,7 +143,7 @@ void FrameSaver::save(odis::Frame& frame) {
   if (!m_news || m_options.file.empty()) return;
   m_news = false;
   try {
-    frame.setHostData(hostDataOf(m_job));
+    frame.setHostData(hostDataOf(m_job, m_film));
     frame.save(m_options.file);
   } catch (const Error& error) {
     m_job.progress().warn(error.what());

@@ -13,7 +13,8 @@ namespace odis::render {
 
 class FrameSaver {
  public:
-  explicit FrameSaver(RenderJob& job) : m_job(job), m_options(job.options().saving) {}
+  // `film` is that of the colours, null unless it splats.
+  FrameSaver(RenderJob& job, SplatFilm* film) : m_job(job), m_film(film), m_options(job.options().saving) {}
 
   // The job's frame: a new one, or the one of the file that the rendering goes on with. Throws OptionError
   // if that is of another rendering, odis::Error if it is no saved frame.
@@ -31,6 +32,7 @@ class FrameSaver {
   using Clock = std::chrono::steady_clock;
 
   RenderJob& m_job;
+  SplatFilm* m_film;
   const SavingOptions& m_options;
   std::atomic<bool> m_news{false};
   Clock::time_point m_last = Clock::now();

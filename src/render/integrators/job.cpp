@@ -7,15 +7,27 @@ namespace odis::render {
 RenderJob::RenderJob(const Scene& scene, const RenderOptions& options, Progress& progress)
     : m_scene(scene),
       m_options(options),
+      m_film(filmKindFor(*scene.film().filter, options.film)),
+      m_tiles(sampledPixels(scene.film(), m_film), m_film),
       m_progress(progress),
       m_lights(scene.emitters()),
       m_start(std::chrono::steady_clock::now()) {
-  if (options.features) features.resize(pixelCount());
+  if (options.features && m_film == FilmKind::splat)
+    featureFilm = std::make_unique<SplatFilm>(scene.film(), m_tiles, kFeatureChannels);
+  else if (options.features)
+    features.resize(pixelCount());
+  if (options.features && options.guideFeatures) guideFeatures.resize(pixelCount());
   if (options.records) pilotEmitted.assign(pixelCount(), Rgb(0, 0, 0));
 }
 
-uint32_t RenderJob::pixelIndex(Vec2i pixel) const {
-  return uint32_t(pixel.y - crop().y) * uint32_t(crop().width) + uint32_t(pixel.x - crop().x);
+uint32_t RenderJob::pixelOfCrop(size_t index) const {
+  const int x = int(index) % crop().width, y = int(index) / crop().width;
+  return pixelIndex(Vec2i(crop().x + x, crop().y + y));
+}
+
+std::unique_ptr<SplatFilm> RenderJob::newColorFilm() const {
+  if (m_film == FilmKind::pixels) return nullptr;
+  return std::make_unique<SplatFilm>(m_scene.film(), m_tiles, colorChannels(m_options.variance));
 }
 
 Pass RenderJob::pass() {
@@ -29,7 +41,11 @@ Pass RenderJob::pass() {
   pass.path.guideFeatures = m_options.guideFeatures;
   pass.sampler = m_options.sampler;
   pass.seed = m_options.seed;
-  pass.features = m_options.features ? &features : nullptr;
+  pass.tiles = m_tiles;
+  pass.film = m_film;
+  pass.features = features.empty() ? nullptr : &features;
+  pass.guideFeatures = guideFeatures.empty() ? nullptr : &guideFeatures;
+  pass.splats.features = featureFilm.get();
   return pass;
 }
 

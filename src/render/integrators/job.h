@@ -20,8 +20,16 @@ class RenderJob {
   const RenderOptions& options() const { return m_options; }
   const LightSampler& lights() const { return m_lights; }
   const Crop& crop() const { return m_scene.film().crop; }
-  size_t pixelCount() const { return size_t(crop().width) * size_t(crop().height); }
-  uint32_t pixelIndex(Vec2i pixel) const;
+  // Which kind of film the image has, and the pixels that are sampled for it: with a film that splats, those
+  // around the crop as well. Pixels are counted in these.
+  FilmKind film() const { return m_film; }
+  const TileGrid& tiles() const { return m_tiles; }
+  size_t pixelCount() const { return m_tiles.sampled().pixels(); }
+  // The numbers of a pixel of the full image, and of the crop's pixel number `index`.
+  uint32_t pixelIndex(const Vec2i& pixel) const { return m_tiles.pixelIndex(pixel); }
+  uint32_t pixelOfCrop(size_t index) const;
+  // A new film of the colours; null unless it splats.
+  std::unique_ptr<SplatFilm> newColorFilm() const;
 
   // A pass of unguided samples; samples() and deliver() are left to fill in.
   Pass pass();
@@ -36,12 +44,17 @@ class RenderJob {
   Progress& progress() { return m_progress; }
 
   RenderStats stats;
-  std::vector<FeatureSums> features;  // empty unless asked for
-  std::vector<Rgb> pilotEmitted;      // likewise
+  // Empty or null unless asked for; features are on a film if that splats.
+  std::vector<FeatureSums> features;
+  std::vector<GuideFeatureSums> guideFeatures;
+  std::unique_ptr<SplatFilm> featureFilm;
+  std::vector<Rgb> pilotEmitted;
 
  private:
   const Scene& m_scene;
   const RenderOptions& m_options;
+  FilmKind m_film;
+  TileGrid m_tiles;
   Progress& m_progress;
   LightSampler m_lights;
   std::chrono::steady_clock::time_point m_start;

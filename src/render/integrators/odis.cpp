@@ -80,15 +80,28 @@ class OdisIntegrator : public FrameIntegrator {
     FrameIntegrator::finish(result);
     const RenderOptions& options = m_job.options();
     if (options.features && options.guideFeatures)
-      for (uint32_t pixel = 0; pixel < m_job.pixelCount(); ++pixel)
-        result.image.guideSamples.push_back(float(frame().sampleCount(pixel)));
+      for (size_t i = 0; i < m_job.crop().pixels(); ++i)
+        result.image.guideSamples.push_back(float(frame().sampleCount(m_job.pixelOfCrop(i))));
     if (!options.records) return;
-    result.records = frame().pilotVertices();
-    for (PathVertex& v : result.records) v = divided(v, frame().pixelValues()[v.pixel]);
-    result.pilotEmitted = std::move(m_job.pilotEmitted);
+    result.records = recordsOfCrop();
+    for (size_t i = 0; i < m_job.crop().pixels(); ++i)
+      result.pilotEmitted.push_back(m_job.pilotEmitted[m_job.pixelOfCrop(i)]);
   }
 
  private:
+  // The pilot's vertices, of the crop's pixels, which are counted in the crop.
+  std::vector<PathVertex> recordsOfCrop() const {
+    const Crop& crop = m_job.crop();
+    std::vector<PathVertex> records;
+    for (const PathVertex& v : frame().pilotVertices()) {
+      const Vec2i at = m_job.tiles().pixelAt(v.pixel) - Vec2i(crop.x, crop.y);
+      if (at.x < 0 || at.y < 0 || at.x >= crop.width || at.y >= crop.height) continue;
+      records.push_back(divided(v, frame().pixelValues()[v.pixel]));
+      records.back().pixel = uint32_t(at.y * crop.width + at.x);
+    }
+    return records;
+  }
+
   RenderJob& m_job;
 };
 

@@ -3,6 +3,7 @@
 
 #include <odis/odis.hpp>
 
+#include "render/film/film_settings.h"
 #include "render/rivals/ppg_options.h"
 #include "render/rivals/restir_options.h"
 #include "render/sampler/sampler_kind.h"
@@ -36,6 +37,8 @@ struct OperationCosts {
 struct RenderOptions {
   IntegratorKind integrator = IntegratorKind::odis;
   SamplerKind sampler = SamplerKind::sobol;
+  // Filters that are not splatted (filmKindFor) are drawn from in any case.
+  FilmKind film = FilmKind::pixels;
   int spp = 4;
   uint64_t seed = 0;
   int threads = 0;    // 0: one a core

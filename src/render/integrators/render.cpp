@@ -20,6 +20,20 @@ bool isCaching(const RenderOptions& options) {
          (options.maxDepth < 0 || options.maxDepth >= kLeastCachedMaxDepth);
 }
 
+// Fills in the features of the crop's pixels.
+static void writeFeatures(const RenderJob& job, bool hasPilot, RenderedImage& image) {
+  for (const FeatureSums& sums : job.features) writeFeatures(sums, image);
+  if (job.featureFilm) {
+    const std::vector<float> sums = job.featureFilm->sums();
+    const auto channels = size_t(job.featureFilm->channels());
+    for (size_t i = 0; i < sums.size(); i += channels)
+      writeFeatures(featureSumsOf({&sums[i], channels}), image);
+  }
+  if (!job.options().guideFeatures || !hasPilot) return;
+  for (size_t i = 0; i < job.crop().pixels(); ++i)
+    writeGuideFeatures(job.guideFeatures[job.pixelOfCrop(i)], image);
+}
+
 RenderResult render(const Scene& scene, const RenderOptions& options, Progress& progress) {
   const ThreadLimit limit(options.threads);
   RenderJob job(scene, options, progress);
@@ -33,7 +47,7 @@ RenderResult render(const Scene& scene, const RenderOptions& options, Progress& 
   image.y = job.crop().y;
   image.width = job.crop().width;
   image.height = job.crop().height;
-  if (options.features) writeFeatures(job.features, options.guideFeatures && integrator->hasPilot(), image);
+  if (options.features) writeFeatures(job, integrator->hasPilot(), image);
   integrator->finish(result);
   RenderStats& stats = result.stats;
   stats.spp = double(stats.samples) / double(std::max<size_t>(job.pixelCount(), 1));

@@ -9,7 +9,8 @@ namespace {
 
 class RestirIntegrator : public Integrator {
  public:
-  explicit RestirIntegrator(RenderJob& job) : m_job(job), m_image(job.pixelCount()) {
+  explicit RestirIntegrator(RenderJob& job)
+      : m_job(job), m_image(job.pixelCount()), m_film(job.newColorFilm()) {
     if (job.options().features)
       throw OptionError("--integrator restir: renders the image alone, no features (--aov)");
   }
@@ -21,8 +22,8 @@ class RestirIntegrator : public Integrator {
     m_job.progress().begin("restir", m_job.pixelCount() * uint64_t(options.spp));
     const Pass pass = m_job.pass();
     for (uint32_t sample = 0; sample < uint32_t(options.spp) && !m_job.stop(); ++sample)
-      m_job.count(
-          renderRestirFrame({pass, options.restir, m_image}, sample, m_job.progress(), m_job.stopFunction()));
+      m_job.count(renderRestirFrame({pass, options.restir, m_image, m_film.get()}, sample, m_job.progress(),
+                                    m_job.stopFunction()));
     m_job.progress().end();
     m_job.stats.secondsGuided = stopwatch.seconds();
   }
@@ -33,6 +34,7 @@ class RestirIntegrator : public Integrator {
 
   void finish(RenderResult& result) override {
     for (const PixelSums& s : m_image) result.stats.samples += s.count;
+    if (m_film) return fillPixels(result, m_film->sums(), m_film->channels());
     fillPixels(result, m_job.options(), [this](uint32_t pixel) {
       const WeightedSums part{&m_image[pixel], 1};
       return meanOfParts({&part, 1});
@@ -42,6 +44,7 @@ class RestirIntegrator : public Integrator {
  private:
   RenderJob& m_job;
   std::vector<PixelSums> m_image;
+  std::unique_ptr<SplatFilm> m_film;  // null unless it splats
 };
 
 }  // namespace

@@ -1,5 +1,6 @@
 // ppg and openpgl: guides that learn from what they render (docs/rivals.md), sample after sample.
 #include <algorithm>
+#include <numeric>
 
 #include "render/integrators/integrator.h"
 #include "render/rivals/inverse_variance.h"
@@ -41,11 +42,13 @@ class RivalIntegrator : public Integrator {
   }
   // Runs a pass of some samples of every pixel, which are added to the image of the iteration.
   void runPass(SampleRange samples, TileVertices* vertices);
+  void fillFromFilms(RenderResult& result, std::span<const std::vector<float>> weights);
   void learnFrom(const TileVertices& vertices, uint32_t sample);
 
   RenderJob& m_job;
   std::unique_ptr<Rival> m_rival;
-  std::vector<Image> m_iterations;  // as far as they make the image
+  std::vector<Image> m_iterations;                  // as far as they make the image
+  std::vector<std::unique_ptr<SplatFilm>> m_films;  // theirs; null unless they splat
 };
 
 // Takes the first samples of every pixel, one after another: the rival learns from each what it guides the
@@ -78,8 +81,9 @@ void RivalIntegrator::runIteration(uint32_t& done, uint32_t end, bool learns) {
 }
 
 void RivalIntegrator::runPass(SampleRange samples, TileVertices* vertices) {
-  if (vertices) vertices->resize(tileCount(m_job.crop()));
+  if (vertices) vertices->resize(m_job.tiles().count());
   Pass pass = guidedPass();
+  pass.splats.colors = m_films.back().get();
   pass.samples = [samples](uint32_t) { return samples; };
   pass.wantsVertices = vertices;
   pass.deliver = [&](uint32_t tile, ArrayView<const FrameSample> taken, ArrayView<const PathVertex> met) {
@@ -106,15 +110,33 @@ void RivalIntegrator::beginIteration() {
   if (m_iterations.size() == kept) {
     for (const PixelSums& s : m_iterations.front()) m_job.stats.samples += s.count;
     m_iterations.erase(m_iterations.begin());
+    m_films.erase(m_films.begin());
   }
   m_iterations.emplace_back(m_job.pixelCount());
+  m_films.push_back(m_job.newColorFilm());
+}
+
+// Adds up the iterations on films that splat. Samples of many pixels make a pixel then: those of an iteration
+// all have the mean of their weights.
+void RivalIntegrator::fillFromFilms(RenderResult& result, std::span<const std::vector<float>> weights) {
+  std::vector<float> all;
+  for (size_t i = 0; i < weights.size(); ++i) {
+    const double sum = std::accumulate(weights[i].begin(), weights[i].end(), 0.0);
+    const auto weight = float(sum / double(weights[i].size()));
+    const std::vector<float> sums = m_films[i]->sums();
+    all.resize(sums.size());
+    for (size_t k = 0; k < sums.size(); ++k) all[k] += weight * sums[k];
+  }
+  fillPixels(result, all, m_films.front()->channels());
 }
 
 void RivalIntegrator::finish(RenderResult& result) {
   for (const Image& image : m_iterations)
     for (const PixelSums& s : image) result.stats.samples += s.count;
   if (m_rival->combination() == Rival::Combination::inverseVariance) {
-    const std::vector<std::vector<float>> weights = weighByVariance(m_iterations, m_job.crop().width);
+    const std::vector<std::vector<float>> weights =
+        weighByVariance(m_iterations, m_job.tiles().sampled().width);
+    if (m_job.film() == FilmKind::splat) return fillFromFilms(result, weights);
     fillPixels(result, m_job.options(), [&](uint32_t pixel) {
       std::array<WeightedSums, kIterationsCombined> parts;
       for (size_t i = 0; i < m_iterations.size(); ++i)
@@ -129,6 +151,11 @@ void RivalIntegrator::finish(RenderResult& result) {
     return std::all_of(image.begin(), image.end(), [](const PixelSums& s) { return s.count > 0; });
   });
   const Image& image = complete == m_iterations.rend() ? m_iterations.front() : *complete;
+  if (const auto& film = m_films[size_t(&image - m_iterations.data())]) {
+    for (const PixelSums& s : image)
+      result.stats.fewestSamples = std::min(result.stats.fewestSamples, s.count);
+    return fillPixels(result, film->sums(), film->channels());
+  }
   fillPixels(result, m_job.options(), [&](uint32_t pixel) {
     const WeightedSums part{&image[pixel], 1};
     return meanOfParts({&part, 1});

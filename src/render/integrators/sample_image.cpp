@@ -11,8 +11,7 @@ constexpr uint64_t kSampleImageSeed = 0x73616d706c65ull;
 
 SampleImage renderSampleImage(Pass pass, uint32_t sample, Purposes redrawn, Progress& progress,
                               const std::function<bool()>& stop) {
-  const Crop& crop = pass.path.scene->film().crop;
-  const size_t pixels = size_t(crop.width) * size_t(crop.height);
+  const size_t pixels = pass.grid().sampled().pixels();
   SampleImage image;
   image.emitted.assign(pixels, Rgb(0, 0, 0));
   image.value.assign(pixels, Rgb(0, 0, 0));
@@ -22,6 +21,8 @@ SampleImage renderSampleImage(Pass pass, uint32_t sample, Purposes redrawn, Prog
   pass.samples = [sample](uint32_t) { return SampleRange{sample, 1}; };
   pass.wantsVertices = false;
   pass.features = nullptr;
+  pass.guideFeatures = nullptr;
+  pass.splats = {};
   pass.path.features = false;
   pass.emitted = &image.emitted;
   pass.deliver = [&](uint32_t, ArrayView<const FrameSample> samples, ArrayView<const PathVertex>) {

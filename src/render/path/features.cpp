@@ -22,8 +22,8 @@ FirstHit firstHitAt(const Vertex& vertex, float distance) {
   return first;
 }
 
-// docs/figures.md names it.
-static_assert(sizeof(FeatureSums) == 88);
+// docs/figures.md names them.
+static_assert(sizeof(FeatureSums) == 68 && sizeof(GuideFeatureSums) == 20);
 
 void FeatureSums::add(const FirstHit& first, float sampleAlpha) {
   alpha += sampleAlpha;
@@ -36,12 +36,43 @@ void FeatureSums::add(const FirstHit& first, float sampleAlpha) {
   depth += first.depth;
   roughness += first.roughness;
   ++hits;
-  if (first.cell == kNoCell) return;
+}
+
+void GuideFeatureSums::add(const FirstHit& first) {
+  if (!first.valid || first.cell == kNoCell) return;
   bsdfFraction += first.bsdfFraction;
   entropy += render::entropy(first.texels);
   survival += first.survival;
   cell = first.cell;
   ++guided;
+}
+
+void appendFeatureChannels(const FirstHit& first, float sampleAlpha, std::vector<float>& channels) {
+  FeatureSums s;
+  s.add(first, sampleAlpha);
+  const Vec3 &n = s.normal, &ng = s.geometricNormal, &p = s.position;
+  const float all[] = {s.albedo.x, s.albedo.y, s.albedo.z,  n.x,     n.y,
+                       n.z,        s.hits,     s.samples,   s.alpha,  // those that are filtered
+                       ng.x,       ng.y,       ng.z,        p.x,     p.y,
+                       p.z,        s.depth,    s.roughness, s.hits};
+  static_assert(std::size(all) == size_t(kFeatureChannels.count));
+  channels.insert(channels.end(), std::begin(all), std::end(all));
+}
+
+FeatureSums featureSumsOf(std::span<const float> c) {
+  FeatureSums s;
+  s.albedo = Rgb(c[0], c[1], c[2]);
+  s.normal = Vec3(c[3], c[4], c[5]);
+  s.hits = std::max(c[6], 0.0f);
+  s.samples = c[7];
+  s.alpha = c[8];
+  // Means by absolute values, as sums over `hits` samples.
+  const float scale = c[17] > 0 ? s.hits / c[17] : 0;
+  s.geometricNormal = Vec3(c[9], c[10], c[11]) * scale;
+  s.position = Vec3(c[12], c[13], c[14]) * scale;
+  s.depth = c[15] * scale;
+  s.roughness = c[16] * scale;
+  return s;
 }
 
 float entropy(const uint16_t* texels) {
@@ -53,27 +84,27 @@ float entropy(const uint16_t* texels) {
   return float(std::log2(sum) - sumOfLogs / sum);
 }
 
-void writeFeatures(const std::vector<FeatureSums>& sums, bool guide, RenderedImage& image) {
+void writeFeatures(const FeatureSums& s, RenderedImage& image) {
   const auto unit = [](const Vec3& v) { return lengthSquared(v) > 0 ? normalize(v) : Vec3(0, 0, 0); };
-  for (const FeatureSums& s : sums) {
-    const float scale = s.hits > 0 ? 1.0f / float(s.hits) : 0.0f;
-    const float coverage = s.samples > 0 ? float(s.hits) / float(s.samples) : 0.0f;
-    image.albedo.push_back(s.albedo * (scale * coverage));
-    image.normal.push_back(unit(s.normal) * coverage);
-    image.geometricNormal.push_back(unit(s.geometricNormal));
-    image.position.push_back(s.position * scale);
-    image.depth.push_back(s.depth * scale);
-    image.roughness.push_back(s.roughness * scale);
-    image.alpha.push_back(s.samples > 0 ? s.alpha / float(s.samples) : 0.0f);
-    if (!guide) continue;
-    const auto mean = [&](float sum, float otherwise) {
-      return s.guided > 0 ? sum / float(s.guided) : otherwise;
-    };
-    image.guideBsdfFraction.push_back(mean(s.bsdfFraction, 1));
-    image.guideEntropy.push_back(mean(s.entropy, std::log2(float(kMapTexels))));
-    image.guideSurvival.push_back(mean(s.survival, 1));
-    image.guideCell.push_back(s.guided > 0 ? float(s.cell) : -1.0f);
-  }
+  const float scale = s.hits > 0 ? 1.0f / s.hits : 0.0f;
+  const float coverage = s.samples > 0 ? s.hits / s.samples : 0.0f;
+  image.albedo.push_back(s.albedo * (scale * coverage));
+  image.normal.push_back(unit(s.normal) * coverage);
+  image.geometricNormal.push_back(unit(s.geometricNormal));
+  image.position.push_back(s.position * scale);
+  image.depth.push_back(s.depth * scale);
+  image.roughness.push_back(s.roughness * scale);
+  image.alpha.push_back(s.samples > 0 ? s.alpha / s.samples : 0.0f);
+}
+
+void writeGuideFeatures(const GuideFeatureSums& s, RenderedImage& image) {
+  const auto mean = [&](float sum, float otherwise) {
+    return s.guided > 0 ? sum / float(s.guided) : otherwise;
+  };
+  image.guideBsdfFraction.push_back(mean(s.bsdfFraction, 1));
+  image.guideEntropy.push_back(mean(s.entropy, std::log2(float(kMapTexels))));
+  image.guideSurvival.push_back(mean(s.survival, 1));
+  image.guideCell.push_back(s.guided > 0 ? float(s.cell) : -1.0f);
 }
 
 }  // namespace odis::render

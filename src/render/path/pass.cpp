@@ -8,7 +8,6 @@ namespace odis::render {
 
 namespace {
 
-constexpr int kTileSize = 16;
 // A tile's paths are traced in batches of at least this size, but for the last one. In larger ones packets of
 // rays and columns are fuller at later bounces, but less of them stays in the second-level cache.
 constexpr size_t kLeastPaths = 512;
@@ -16,10 +15,6 @@ constexpr size_t kLeastPaths = 512;
 // Denormal numbers are slow and mean nothing here: flushed to zero (bit 15) and taken as zero (bit 6).
 void flushDenormals() {
   _mm_setcsr(_mm_getcsr() | 0x8040u);
-}
-
-int tilesX(const Crop& crop) {
-  return (crop.width + kTileSize - 1) / kTileSize;
 }
 
 // The samples of a pixel that are still to be traced.
@@ -31,19 +26,20 @@ struct PixelSamples {
 
 // Those of the pixels of a tile that have any, in blocks of 4 x 4 pixels, so that neighbours in the list are
 // neighbours in the image.
-std::vector<PixelSamples> samplesOfTile(const Pass& pass, uint32_t tile) {
+std::vector<PixelSamples> samplesOfTile(const Pass& pass, const TileGrid& grid, const Tile& tile) {
   constexpr int kBlock = 4;
-  const Crop& crop = pass.path.scene->film().crop;
-  const int x0 = int(tile) % tilesX(crop) * kTileSize, y0 = int(tile) / tilesX(crop) * kTileSize;
+  const Crop& sampled = tile.sampled;
   std::vector<PixelSamples> pixels;
   for (int i = 0; i < kTileSize * kTileSize; ++i) {
     const int block = i / (kBlock * kBlock), within = i % (kBlock * kBlock);
-    const int x = x0 + block % (kTileSize / kBlock) * kBlock + within % kBlock;
-    const int y = y0 + block / (kTileSize / kBlock) * kBlock + within / kBlock;
-    if (x >= crop.width || y >= crop.height) continue;
-    const uint32_t pixel = uint32_t(y) * uint32_t(crop.width) + uint32_t(x);
+    const Vec2i at(tile.corner.x + block % (kTileSize / kBlock) * kBlock + within % kBlock,
+                   tile.corner.y + block / (kTileSize / kBlock) * kBlock + within / kBlock);
+    if (at.x < sampled.x || at.y < sampled.y || at.x >= sampled.x + sampled.width ||
+        at.y >= sampled.y + sampled.height)
+      continue;
+    const uint32_t pixel = grid.pixelIndex(at);
     if (const SampleRange samples = pass.samples(pixel); samples.count > 0)
-      pixels.push_back({pixel, Vec2i(crop.x + x, crop.y + y), samples});
+      pixels.push_back({pixel, at, samples});
   }
   return pixels;
 }
@@ -51,15 +47,44 @@ std::vector<PixelSamples> samplesOfTile(const Pass& pass, uint32_t tile) {
 // The paths that are being traced and what a tile's samples brought; kept from tile to tile for its memory.
 struct TileResult {
   std::vector<Path> paths;
-  std::vector<Vec2i> places;  // of their pixels on the film
+  std::vector<Vec2i> places;   // of their pixels on the film
+  std::vector<float> weights;  // of their samples in the image
   std::vector<FrameSample> samples;
   std::vector<PathVertex> vertices;
   RayCounts counts;
+  std::vector<SplatPlace> splats;
+  std::vector<float> colors, features;  // of each splat, the channels of the films
+
+  void clear() {
+    clearPaths();
+    samples.clear();
+    vertices.clear();
+    counts = {};
+    splats.clear();
+    colors.clear();
+    features.clear();
+  }
+  void clearPaths() {
+    paths.clear();
+    places.clear();
+    weights.clear();
+  }
 };
 
+// Notes what a film that splats adds of a path.
+void collectSplat(const Splats& films, const Vec2i& inTile, const Path& path, float weight, const Rgb& value,
+                  TileResult& result) {
+  result.splats.push_back({path.place, weight, uint8_t(inTile.x), uint8_t(inTile.y)});
+  appendColorChannels(value, path.identity.sample, films.colors->channels(), result.colors);
+  if (films.features)
+    appendFeatureChannels(path.first, path.visible ? path.visibleWeight * path.identity.sampleWeight : 0,
+                          result.features);
+}
+
 // Adds what traced paths brought.
-void collect(const Pass& pass, std::span<const Path> paths, TileResult& result) {
-  for (const Path& path : paths) {
+void collect(const Pass& pass, const Tile& tile, TileResult& result) {
+  for (size_t i = 0; i < result.paths.size(); ++i) {
+    const Path& path = result.paths[i];
     const auto& [pixel, sample, filterWeight] = path.identity;
     // A path that is not a number (a broken normal, an overflow) would spoil its pixel for good: it counts as
     // black.
@@ -70,7 +95,23 @@ void collect(const Pass& pass, std::span<const Path> paths, TileResult& result) 
     if (pass.emitted) (*pass.emitted)[pixel] += path.emitted * filterWeight;
     if (pass.features)
       (*pass.features)[pixel].add(path.first, path.visible ? path.visibleWeight * filterWeight : 0);
+    if (pass.guideFeatures) (*pass.guideFeatures)[pixel].add(path.first);
+    if (pass.splats.colors)
+      collectSplat(pass.splats, result.places[i] - tile.corner, path, result.weights[i], value, result);
   }
+}
+
+// Adds the tile's samples to the films, or keeps them for them.
+void splat(const Splats& films, uint32_t tile, const TileResult& result) {
+  const auto addTo = [&](SplatFilm& film, std::span<const float> values) {
+    if (films.keep)
+      film.keep(tile, result.splats, values);
+    else
+      film.add(tile, result.splats, values);
+  };
+  if (!films.colors || result.splats.empty()) return;
+  addTo(*films.colors, result.colors);
+  if (films.features) addTo(*films.features, result.features);
 }
 
 // The rest of a camera's ray behind the lights that it meets first, one after another.
@@ -90,6 +131,7 @@ struct CameraSamples {
   CameraPlaces places;
   CameraRays rays;
   Column weights;  // of the filter
+  FilterSamples offsets;
 
   Ray ray(size_t lane) const {
     return {rays.origin[lane], rays.direction[lane], rays.tMax[lane], places.time[lane]};
@@ -106,14 +148,10 @@ void drawCameraNumbers(const Scene& scene, const SamplerBlock& samplers, CameraS
     places.time = {};
 }
 
-Vec2i pixelAt(const FilmSettings& film, uint32_t index) {
-  return {film.crop.x + int(index) % film.crop.width, film.crop.y + int(index) / film.crop.width};
-}
-
 // The path of a sample of a pixel, which lies at `at` on the film; addCameraRays() gives it its ray.
 Path pathWithoutRay(const Pass& pass, uint32_t pixel, Vec2i at, uint32_t sample) {
   const Scene& scene = *pass.path.scene;
-  const uint32_t place = uint32_t(at.y) * uint32_t(scene.film().width) + uint32_t(at.x);
+  const uint32_t place = samplerPixel(scene.film(), pass.film, at);
   Path path({Vec3(0, 0, 0), Vec3(0, 0, 1)}, {pass.sampler, pass.seed, place, sample, pass.redrawn});
   path.hidesEnvironment = scene.integrator().hideEmitters;
   path.visible = !pass.path.features || (!path.hidesEnvironment && !scene.environments().empty());
@@ -138,13 +176,28 @@ void keepOnFilm(const FilmSettings& film, std::span<const Vec2i> pixels, CameraS
   }
 }
 
+// Draws the places of samples in their pixels, from the filter or, for a film that splats, uniform in the
+// pixel.
+void drawPlaces(const FilmSettings& film, FilmKind kind, std::span<const Vec2i> pixels,
+                CameraSamples& samples) {
+  if (kind == FilmKind::pixels) {
+    keepOnFilm(film, pixels, samples);
+    return film.filter->sampleEach(pixels.size(), samples.u, samples.v, samples.offsets);
+  }
+  for (size_t i = 0; i < pixels.size(); ++i) {
+    samples.offsets.x[i] = samples.u[i] - 0.5f;
+    samples.offsets.y[i] = samples.v[i] - 0.5f;
+    samples.offsets.weight[i] = samples.weights[i] = 1;
+  }
+}
+
 // Finds the rays of samples, whose numbers are drawn and whose pixels lie there on the film.
-void findCameraRays(const Scene& scene, std::span<const Vec2i> pixels, CameraSamples& samples) {
+void findCameraRays(const Scene& scene, FilmKind film, std::span<const Vec2i> pixels,
+                    CameraSamples& samples) {
   const Sensor& sensor = scene.sensor();
   CameraPlaces& places = samples.places;
-  keepOnFilm(scene.film(), pixels, samples);
-  FilterSamples offsets;
-  scene.film().filter->sampleEach(pixels.size(), samples.u, samples.v, offsets);
+  const FilterSamples& offsets = samples.offsets;
+  drawPlaces(scene.film(), film, pixels, samples);
   for (size_t i = 0; i < pixels.size(); ++i) {
     places.filmX[i] = float(pixels[i].x) + 0.5f + offsets.x[i];
     places.filmY[i] = float(pixels[i].y) + 0.5f + offsets.y[i];
@@ -159,48 +212,53 @@ Ray seen(const Scene& scene, const Ray& ray) {
 }
 
 // Gives paths, whose pixels lie there on the film, their camera rays, several at once.
-void addCameraRays(const Scene& scene, std::span<Path> paths, std::span<const Vec2i> pixels) {
+void addCameraRays(const Scene& scene, FilmKind film, std::span<Path> paths, std::span<const Vec2i> pixels) {
   for (size_t begin = 0; begin < paths.size(); begin += SamplerBlock::kSize) {
     const auto some = paths.subspan(begin, std::min(SamplerBlock::kSize, paths.size() - begin));
     SamplerBlock samplers;
     for (const Path& path : some) samplers.add(path.sampler);
     CameraSamples samples;
     drawCameraNumbers(scene, samplers, samples);
-    findCameraRays(scene, pixels.subspan(begin, some.size()), samples);
+    findCameraRays(scene, film, pixels.subspan(begin, some.size()), samples);
     for (size_t i = 0; i < some.size(); ++i) {
       some[i].ray = seen(scene, samples.ray(i));
       some[i].identity.sampleWeight = samples.weights[i];
+      some[i].place = Vec2(samples.offsets.x[i], samples.offsets.y[i]);
     }
   }
 }
 
 // Traces all samples of a tile: two of each pixel at a time, or more where few pixels are left.
-void renderTile(const Pass& pass, uint32_t tile, TileResult& result) {
-  std::vector<PixelSamples> left = samplesOfTile(pass, tile);
+void renderTile(const Pass& pass, const TileGrid& grid, uint32_t index, TileResult& result) {
+  const Tile tile = grid.tile(index);
+  std::vector<PixelSamples> left = samplesOfTile(pass, grid, tile);
   std::vector<Path>& paths = result.paths;
   while (!left.empty()) {
     for (auto& [pixel, at, samples] : left) {
       paths.push_back(pathWithoutRay(pass, pixel, at, samples.first++));
       result.places.push_back(at);
+      result.weights.push_back(samples.weight);
       --samples.count;
     }
     std::erase_if(left, [](const PixelSamples& p) { return p.samples.count == 0; });
     if (!left.empty() && paths.size() < kLeastPaths) continue;
-    addCameraRays(*pass.path.scene, paths, result.places);
+    addCameraRays(*pass.path.scene, pass.film, paths, result.places);
     if (pass.firstHitsOnly)
       traceFirstHits(pass.path, paths);
     else
       tracePaths(pass.path, paths, pass.wantsVertices ? &result.vertices : nullptr);
-    collect(pass, paths, result);
-    paths.clear();
-    result.places.clear();
+    collect(pass, tile, result);
+    result.clearPaths();
   }
+  splat(pass.splats, index, result);
 }
 
 }  // namespace
 
-uint32_t tileCount(const Crop& crop) {
-  return uint32_t(tilesX(crop) * ((crop.height + kTileSize - 1) / kTileSize));
+// Pixels beyond the film's border, which a film that splats may ask for, have numbers of their own.
+uint32_t samplerPixel(const FilmSettings& film, FilmKind kind, const Vec2i& at) {
+  const int beyond = kind == FilmKind::splat && film.sampleBorder ? film.filter->reach() : 0;
+  return uint32_t(at.y + beyond) * uint32_t(film.width + 2 * beyond) + uint32_t(at.x + beyond);
 }
 
 CameraNumbers cameraNumbers(const Scene& scene, const Sampler& sampler) {
@@ -211,27 +269,27 @@ CameraNumbers cameraNumbers(const Scene& scene, const Sampler& sampler) {
   return {{samples.u[0], samples.v[0]}, samples.places.lens(0), samples.places.time[0]};
 }
 
-Ray cameraRay(const Scene& scene, Vec2i pixel, const CameraNumbers& numbers, float& filterWeight) {
+CameraRay cameraRay(const Scene& scene, FilmKind film, Vec2i pixel, const CameraNumbers& numbers) {
   CameraSamples samples{};
   samples.u[0] = numbers.pixel.x;
   samples.v[0] = numbers.pixel.y;
   samples.places.lensU[0] = numbers.lens.x;
   samples.places.lensV[0] = numbers.lens.y;
   samples.places.time[0] = numbers.time;
-  findCameraRays(scene, {&pixel, 1}, samples);
-  filterWeight = samples.weights[0];
-  return seen(scene, samples.ray(0));
+  findCameraRays(scene, film, {&pixel, 1}, samples);
+  return {seen(scene, samples.ray(0)), samples.weights[0], Vec2(samples.offsets.x[0], samples.offsets.y[0])};
 }
 
 Path cameraPath(const Pass& pass, uint32_t pixel, uint32_t sample) {
-  const Vec2i at = pixelAt(pass.path.scene->film(), pixel);
+  const Vec2i at = pass.grid().pixelAt(pixel);
   Path path = pathWithoutRay(pass, pixel, at, sample);
-  addCameraRays(*pass.path.scene, {&path, 1}, {&at, 1});
+  addCameraRays(*pass.path.scene, pass.film, {&path, 1}, {&at, 1});
   return path;
 }
 
 RayCounts runPass(const Pass& pass, Progress& progress, const std::function<bool()>& stop) {
-  const uint32_t tiles = tileCount(pass.path.scene->film().crop);
+  const TileGrid grid = pass.grid();
+  const uint32_t tiles = grid.count();
   std::vector<RayCounts> counts(tiles);
   tbb::parallel_for(
       tbb::blocked_range<uint32_t>(0, tiles, 1),
@@ -240,12 +298,8 @@ RayCounts runPass(const Pass& pass, Progress& progress, const std::function<bool
         for (uint32_t tile = range.begin(); tile < range.end(); ++tile) {
           if (stop()) return;
           thread_local TileResult result;
-          result.paths.clear();
-          result.places.clear();
-          result.samples.clear();
-          result.vertices.clear();
-          result.counts = {};
-          renderTile(pass, tile, result);
+          result.clear();
+          renderTile(pass, grid, tile, result);
           pass.deliver(tile, result.samples, result.vertices);
           counts[tile] = result.counts;
           progress.advance(result.samples.size());

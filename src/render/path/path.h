@@ -53,6 +53,7 @@ struct Path {
   Ray ray;
   Sampler sampler;
   PathIdentity identity;  // for the recorder
+  Vec2 place;             // of the camera's ray on the film, from the centre of its pixel
   float pixelValue = 1;   // an estimate of the pixel's luminance, for roulette
 
   Rgb radiance{0, 0, 0};

@@ -19,6 +19,7 @@ struct FramePixel {
   RestirPath path;
   Contribution own;  // of its sample, to itself
   float filterWeight = 1;
+  Vec2 place;  // on the film, from the pixel's centre
 };
 
 class ReusedFrame {
@@ -28,8 +29,9 @@ class ReusedFrame {
         m_scene(*pass.path.scene),
         m_options(options),
         m_sample(sample),
+        m_tiles(pass.grid()),
         m_time(m_scene.moves() ? samplerOf(0, kTimeSeed).get1D() : 0),
-        m_pixels(size_t(m_scene.film().crop.width) * size_t(m_scene.film().crop.height)) {}
+        m_pixels(m_tiles.sampled().pixels()) {}
 
   size_t pixelCount() const { return m_pixels.size(); }
 
@@ -37,12 +39,12 @@ class ReusedFrame {
   void trace(size_t index) {
     FramePixel& pixel = m_pixels[index];
     const Sampler sampler = samplerOf(index, 0);
-    const Crop& crop = m_scene.film().crop;
-    const Vec2i place(crop.x + int(index) % crop.width, crop.y + int(index) / crop.width);
     CameraNumbers numbers = cameraNumbers(m_scene, sampler);
     numbers.time = m_time;
-    const Ray ray = cameraRay(m_scene, place, numbers, pixel.filterWeight);
-    pixel.path = traceRestirPath(m_pass.path, ray, sampler, samplerOf(index, kBeyondSeed));
+    const CameraRay camera = cameraRay(m_scene, m_pass.film, m_tiles.pixelAt(uint32_t(index)), numbers);
+    pixel.filterWeight = camera.weight;
+    pixel.place = camera.place;
+    pixel.path = traceRestirPath(m_pass.path, camera.ray, sampler, samplerOf(index, kBeyondSeed));
     if (pixel.path.sample.valid) pixel.own = contributionOf(pixel.path.sample, pixel.path.point);
   }
 
@@ -55,12 +57,26 @@ class ReusedFrame {
   }
   const RayCounts& counts(size_t index) const { return m_pixels[index].path.counts; }
 
+  // Adds the values of a tile's pixels to a film that splats.
+  void splat(uint32_t index, std::span<const Rgb> values, SplatFilm& film) const {
+    const Tile tile = m_tiles.tile(index);
+    const Crop& sampled = tile.sampled;
+    std::vector<SplatPlace> places;
+    std::vector<float> colors;
+    for (int y = sampled.y; y < sampled.y + sampled.height; ++y)
+      for (int x = sampled.x; x < sampled.x + sampled.width; ++x) {
+        const uint32_t pixel = m_tiles.pixelIndex(Vec2i(x, y));
+        places.push_back({m_pixels[pixel].place, 1, uint8_t(x - tile.corner.x), uint8_t(y - tile.corner.y)});
+        appendColorChannels(values[pixel], m_sample, film.channels(), colors);
+      }
+    film.add(index, places, colors);
+  }
+  uint32_t tileCount() const { return m_tiles.count(); }
+
  private:
   Sampler samplerOf(size_t index, uint64_t stream) const {
-    const FilmSettings& film = m_scene.film();
-    const size_t x = size_t(film.crop.x) + index % size_t(film.crop.width),
-                 y = size_t(film.crop.y) + index / size_t(film.crop.width);
-    return {m_pass.sampler, m_pass.seed ^ stream, uint32_t(y) * uint32_t(film.width) + uint32_t(x), m_sample};
+    const uint32_t pixel = samplerPixel(m_scene.film(), m_pass.film, m_tiles.pixelAt(uint32_t(index)));
+    return {m_pass.sampler, m_pass.seed ^ stream, pixel, m_sample};
   }
 
   // What another pixel's sample would contribute; nothing if the two don't see each other.
@@ -77,7 +93,7 @@ class ReusedFrame {
   // never on samples.
   void findNeighbours(size_t index, Sampler& random, std::vector<const FramePixel*>& found) const {
     found.clear();
-    const int width = m_scene.film().crop.width, height = m_scene.film().crop.height;
+    const int width = m_tiles.sampled().width, height = m_tiles.sampled().height;
     const VisiblePoint& point = m_pixels[index].path.point;
     for (int i = 0; i < m_options.neighbours; ++i) {
       const Vec2 offset = squareToDisk(random.get2D()) * m_options.radius;
@@ -137,6 +153,7 @@ class ReusedFrame {
   const Scene& m_scene;
   RestirOptions m_options;
   uint32_t m_sample;
+  TileGrid m_tiles;
   // The same for all pixels: a neighbour's sample that was found at another time would not be one of here.
   float m_time;
   std::vector<FramePixel> m_pixels;
@@ -158,13 +175,17 @@ RayCounts renderRestirFrame(const RestirSetting& setting, uint32_t sample, Progr
   if (stop()) return total;
 
   std::vector<RayCounts> counts(frame.pixelCount());
+  std::vector<Rgb> values(frame.pixelCount());
   tbb::parallel_for(all, [&](const tbb::blocked_range<size_t>& range) {
     for (size_t i = range.begin(); i < range.end(); ++i) {
       counts[i] = frame.counts(i);
-      const Rgb value = frame.gather(i, counts[i]);
-      addSample(setting.image[i], toOdis(value), uint32_t(counts[i].rays + counts[i].shadowRays));
+      values[i] = frame.gather(i, counts[i]);
+      addSample(setting.image[i], toOdis(values[i]), uint32_t(counts[i].rays + counts[i].shadowRays));
     }
   });
+  if (setting.film)
+    tbb::parallel_for(uint32_t(0), frame.tileCount(),
+                      [&](uint32_t tile) { frame.splat(tile, values, *setting.film); });
   for (const RayCounts& pixel : counts) {
     total.rays += pixel.rays;
     total.shadowRays += pixel.shadowRays;

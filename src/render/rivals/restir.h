@@ -14,6 +14,7 @@ struct RestirSetting {
   const Pass& pass;
   const RestirOptions& options;
   std::vector<PixelSums>& image;  // that frames are added to
+  SplatFilm* film;                // likewise; null unless it splats
 };
 
 // Renders one frame: sample number `sample` of every pixel. Nothing is added if `stop` answers true

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "render/emitter/emitter.h"
-#include "render/film/filter.h"
+#include "render/film/film_settings.h"
 #include "render/sensor/sensor.h"
 #include "render/shape/shape.h"
 #include "render/xml/error.h"
@@ -17,17 +17,6 @@
 namespace odis::render {
 
 class Intersector;
-
-struct Crop {
-  int x = 0, y = 0, width = 0, height = 0;  // pixels of the full image
-};
-
-struct FilmSettings {
-  int width = 768, height = 576;
-  Crop crop;  // the whole image unless told otherwise
-  std::shared_ptr<const Filter> filter;
-  bool sampleBorder = false;  // whether pixels at the border see as far beyond it as their filter reaches
-};
 
 // The axis-aligned box and the sphere around everything that a ray can hit.
 struct SceneBounds {
