@@ -3,6 +3,7 @@
 #include <CLI/CLI.hpp>
 
 #include <chrono>
+#include <ctime>
 #include <filesystem>
 #include <limits>
 #include <memory>
@@ -194,7 +195,9 @@ static int runRender(RenderArguments& a) {
   std::optional<Viewer> viewer;
   ConsoleProgress progress(a.quiet);
   if (!a.tev.empty()) progress.setViewer(viewer.emplace(TevAddress(a.tev), a.output));
+  const std::clock_t processorStart = std::clock();
   RenderResult result = render::render(*scene, options, progress);
+  stats.processorSeconds = double(std::clock() - processorStart) / CLOCKS_PER_SEC;
   if (result.stats.interrupted) tellOfSaved(a);
   if (!isWorthWriting(a, result.stats)) return renderExitCode(a, result.stats);
   std::optional<DenoiserError> failure;

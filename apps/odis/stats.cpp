@@ -78,6 +78,7 @@ std::string statsJson(const RunStats& stats) {
                                    {"build", r.secondsBuild},
                                    {"guided", r.secondsGuided},
                                    {"write", stats.secondsWrite}}},
+                                 {"processorSeconds", stats.processorSeconds},
                                  {"samples", r.samples},
                                  {"rays", r.rays},
                                  {"shadowRays", r.shadowRays},

@@ -14,6 +14,7 @@ struct RunStats {
   render::RenderStats render;
   Denoising denoising;
   double secondsLoad = 0, secondsWrite = 0;
+  double processorSeconds = 0;  // of all threads together, from the first sample to the image
   uint64_t bytesScene = 0, bytesPeak = 0;
   uint64_t seed = 0;
   bool cached = false;

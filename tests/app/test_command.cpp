@@ -142,6 +142,7 @@ TEST_F(Odis, RendersWithMetadataAndStats) {
   EXPECT_EQ(stats.at("samples"), 12 * 8 * 2);
   EXPECT_GT(stats.at("bytes").at("peak"), 0);
   EXPECT_TRUE(stats.at("seconds").contains("guided"));
+  EXPECT_GT(stats.at("processorSeconds"), 0);
 }
 
 TEST_F(Odis, CostsThatDecisionsWeighedAreInTheHeader) {
