@@ -165,6 +165,10 @@ void bindPass(nb::module_& module) {
           "Whether the samples should come with their vertices.")
       .def_prop_ro("part_of_image", [](const Pass& pass) { return pass.described.partOfImage; })
       .def_prop_ro(
+          "weights_later", [](const Pass& pass) { return pass.described.weightsLater; },
+          "Whether Frame.sample_weights of the pass's samples are known only when it has ended, since\n"
+          "they depend on how many samples each pixel will have.")
+      .def_prop_ro(
           "seed", [](const Pass& pass) { return pass.described.seed; },
           "Seed of the random numbers that the samples are drawn with, in [0, 2^64).")
       .def_prop_ro(
@@ -231,9 +235,12 @@ Means are black where there are no samples, variances 0 where there are fewer th
       .def("sample_counts", &ImageFrame::sampleCounts,
            "The number of samples that each pixel has by now: (height, width), uint32.")
       .def("sample_weights", &ImageFrame::sampleWeights, "pixel"_a, "sample"_a,
-           R"(Weights of samples in their pixels, in units of a guided sample's: (count,), float32.
+           R"(Weights of samples in the image: (count,), float32.
 
-pixel, sample: uint32 of shape (count,). To be asked for after the last pass.)")
+pixel, sample: uint32 of shape (count,). Those of a pixel add up to samples_per_pixel, however many samples it
+has, so that a film that splats may add all samples of all pixels by their weights. Known in the pass already,
+but for passes with weights_later, and the same for all samples of a pixel in a pass. A pixel outside of the
+frame, or a sample that its pixel never has, raises Error (INVALID_ARGUMENT).)")
       .def_prop_ro("statistics", &ImageFrame::statistics, "FrameStatistics by now.")
       .def_prop_ro("vertex_counts", &ImageFrame::vertexCounts, "VertexCounts of the vertices learned from.")
       .def_prop_ro("guide", &ImageFrame::guide, "The Guide of today; without cells before one is built.")

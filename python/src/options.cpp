@@ -81,6 +81,9 @@ guided_cost: float >= 0 (1): what a ray of a guided path takes, relative to one 
     and refines in any case
 built_cell_cost, recorded_ray_cost: float >= 0 (70, 0.15): what it takes to build a cell of the guide, and to
     record what one ray brings, in the time that a ray takes: whether refining pays
+tile_offset_x, tile_offset_y: int in [0, 15] (0): tiles of 16 x 16 pixels begin so many pixels before the
+    image's first column and row: 5 and 0 for a crop that begins at column 37 and row 16, so that its tiles
+    are those of the whole image
 guide: GuideOptions
 
 Values out of their range raise Error (INVALID_ARGUMENT) where the options are used.)";
@@ -148,7 +151,8 @@ void bindFrameOptions(nb::module_& module) {
           [](FrameOptions* self, uint32_t width, uint32_t height, uint32_t samplesPerPixel,
              uint32_t refinementSamples, uint64_t seed, double pilotSamplesPerPixel, float pilotWeight,
              uint32_t oracleSamples, bool guided, bool adaptive, float guidedCost, float builtCellCost,
-             float recordedRayCost, std::optional<GuideOptions> guide) {
+             float recordedRayCost, uint32_t tileOffsetX, uint32_t tileOffsetY,
+             std::optional<GuideOptions> guide) {
             new (self) FrameOptions{{}, guide ? *guide : GuideOptions()};
             self->width = width;
             self->height = height;
@@ -163,6 +167,8 @@ void bindFrameOptions(nb::module_& module) {
             self->guidedCost = guidedCost;
             self->builtCellCost = builtCellCost;
             self->recordedRayCost = recordedRayCost;
+            self->tileOffsetX = tileOffsetX;
+            self->tileOffsetY = tileOffsetY;
           },
           "width"_a, "height"_a, nb::kw_only(), "samples_per_pixel"_a = defaults.samplesPerPixel,
           "refinement_samples"_a = defaults.refinementSamples, "seed"_a = defaults.seed,
@@ -170,7 +176,8 @@ void bindFrameOptions(nb::module_& module) {
           "pilot_weight"_a = defaults.pilotWeight, "oracle_samples"_a = defaults.oracleSamples,
           "guided"_a = defaults.guided, "adaptive"_a = defaults.adaptive,
           "guided_cost"_a = defaults.guidedCost, "built_cell_cost"_a = defaults.builtCellCost,
-          "recorded_ray_cost"_a = defaults.recordedRayCost, "guide"_a = nb::none())
+          "recorded_ray_cost"_a = defaults.recordedRayCost, "tile_offset_x"_a = defaults.tileOffsetX,
+          "tile_offset_y"_a = defaults.tileOffsetY, "guide"_a = nb::none())
       .def_rw("width", &FrameOptions::width)
       .def_rw("height", &FrameOptions::height)
       .def_rw("samples_per_pixel", &FrameOptions::samplesPerPixel)
@@ -184,6 +191,8 @@ void bindFrameOptions(nb::module_& module) {
       .def_rw("guided_cost", &FrameOptions::guidedCost)
       .def_rw("built_cell_cost", &FrameOptions::builtCellCost)
       .def_rw("recorded_ray_cost", &FrameOptions::recordedRayCost)
+      .def_rw("tile_offset_x", &FrameOptions::tileOffsetX)
+      .def_rw("tile_offset_y", &FrameOptions::tileOffsetY)
       .def_rw("guide", &FrameOptions::guide);
 }
 

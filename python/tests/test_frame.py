@@ -120,11 +120,43 @@ class Frames(unittest.TestCase):
         self.assertEqual(statistics.cells, len(self.frame.guide))
         self.assertEqual(self.frame.vertex_counts.outside_frame, 0)
         self.assertGreaterEqual(self.frame.vertex_counts.accepted, WIDTH * HEIGHT)
+
+    def test_weights(self):
+        """Those of a pixel add up to the samples asked for; a film that splats them gives the pixels' means."""
+        frame, splatted = odis.Frame(self.OPTIONS), np.zeros((WIDTH * HEIGHT, 4))
+        later = []
+        while (render_pass := frame.begin_pass()) is not None:
+            pixel, sample = samples_of(frame)
+            value, vertices = trace(render_pass, pixel, sample)
+            weight = frame.sample_weights(pixel, sample)
+            frame.add_samples(pixel, sample, value, np.full(len(pixel), 2, np.uint32), vertices)
+            frame.end_pass()
+            later.append(render_pass.weights_later)
+            if render_pass.weights_later:
+                weight = frame.sample_weights(pixel, sample)
+            np.add.at(splatted, pixel, np.insert(value * weight[:, None], 3, weight, axis=1))
+        self.assertEqual(later, [False, True] + [False] * (len(later) - 2))
+        np.testing.assert_allclose(splatted[:, 3], 16, rtol=1e-5)
+        np.testing.assert_allclose(splatted[:, :3] / 16, frame.image()[0].reshape(-1, 3), rtol=1e-4, atol=1e-6)
+        counts = frame.sample_counts().ravel()
+        self.assertGreater(counts.std(), 0)
         pixel = np.arange(WIDTH * HEIGHT, dtype=np.uint32)
-        self.assertLess(self.frame.sample_weights(pixel, 0 * pixel).max(), 1)
-        self.assertEqual(set(self.frame.sample_weights(pixel, 0 * pixel + 1)), {1})
-        with self.assertRaises(odis.Error):
-            self.frame.sample_weights(pixel + 1, pixel)
+        first, last = (frame.sample_weights(pixel, number) for number in (0 * pixel, counts - 1))
+        # A pilot sample weighs .6 times as much as another one would if all pixels had as many.
+        np.testing.assert_allclose(first, 0.6 * 16 / 15.6, rtol=1e-5)
+        np.testing.assert_allclose(last, 16 / 15.6 * 15 / (counts - 1), rtol=1e-5)
+        for outside, number in ((pixel + 1, pixel), (pixel, counts)):
+            with self.assertRaises(odis.Error):
+                frame.sample_weights(outside, number)
+
+    def test_tiles_of_a_crop(self):
+        """Parts of tiles that begin before the image come as whole ones do: the guide is another one."""
+        for offset in (dict(tile_offset_x=5, tile_offset_y=15), dict(tile_offset_x=15)):
+            frame, _ = render(odis.FrameOptions(WIDTH, HEIGHT, samples_per_pixel=4, **offset))
+            self.assertGreater(frame.statistics.samples, 0.95 * WIDTH * HEIGHT * 4)
+            self.assertEqual(frame.statistics.missing_samples, 0)
+        with self.assertRaisesRegex(odis.Error, "tileOffsetX, tileOffsetY: expected 0 to 15"):
+            odis.Frame(odis.FrameOptions(WIDTH, HEIGHT, tile_offset_x=16))
 
     def test_parts_of_many_threads_give_the_same_bits(self):
         again, _ = render(self.OPTIONS, parts=3)
