@@ -3,13 +3,14 @@
 
     bench/in_mitsuba.py SCENE.xml... [--variant llvm_ad_rgb] [--pixels 230400] [--spp 4,16] [--seeds 4] [--cache DIR]
     bench/in_mitsuba.py SCENE.xml... --methods "odis=,cached=--cached,paper=--preset paper-fast --set map-cosine=on"
+    bench/in_mitsuba.py SCENE.xml... --rfilter file --methods "splat=,pixels=--film pixels"
 
 Needs `pip install ".[mitsuba]"`. All methods run in one process and take turns, with max_depth 13, rr_depth 5,
-independent samples and a box filter. Times are wall clock and processor time without Dr.Jit's code generation and
-compilation: each kind renders once to warm up, and an image for which kernels were compiled is rendered again. Errors
-are 0.1 %-trimmed relMSE as src/eval/metrics.h has it, to references of `path` with other seeds. Values are medians
-over seeds, ratios are to `path`; the mean is that of all seeds' images, over the reference's, with its standard error
-without the reference's own. Scenes that do not load get `-`, and the reason on stderr.
+independent samples and a box filter, or another (--rfilter). Times are wall clock and processor time without Dr.Jit's
+code generation and compilation: each kind renders once to warm up, and an image for which kernels were compiled is
+rendered again. Errors are 0.1 %-trimmed relMSE as src/eval/metrics.h has it, to references of `path` with other seeds.
+Values are medians over seeds, ratios are to `path`; the mean is that of all seeds' images, over the reference's, with
+its standard error without the reference's own. Scenes that do not load get `-`, and the reason on stderr.
 """
 import argparse
 import hashlib
@@ -56,7 +57,9 @@ def reference_of(scene, path, args):
     if args.reference_spp % REFERENCE_PART:
         raise SystemExit(f"--reference-spp: expected a multiple of {REFERENCE_PART}")
     size = list(scene.sensors()[0].film().crop_size())
-    key = f"{os.path.abspath(path)} {os.stat(path).st_mtime} {size} {args.variant} {args.reference_spp} {SETTINGS}"
+    rfilter = "" if args.rfilter == "box" else f" {scene.sensors()[0].film().rfilter()}"
+    key = (f"{os.path.abspath(path)} {os.stat(path).st_mtime} {size} {args.variant} {args.reference_spp} "
+           f"{SETTINGS}{rfilter}")
     file = os.path.join(args.cache, f"{name_of(path)}-{hashlib.sha256(key.encode()).hexdigest()[:16]}.npz")
     if os.path.exists(file):
         return np.load(file)["image"]
@@ -82,13 +85,15 @@ def parse_methods(text):
     options.add_argument("--preset", default="default")
     options.add_argument("--set", action="append", default=[], dest="settings")
     options.add_argument("--cached", action="store_true")
+    options.add_argument("--film", default="splat")
     methods = {}
     for method in text.split(","):
         name, equals, words = method.partition("=")
         if not (name and equals):
             raise argparse.ArgumentTypeError(f"expected NAME=OPTIONS, found {method}")
         given = options.parse_args(shlex.split(words))
-        methods[name] = {"preset": given.preset, "settings": " ".join(given.settings), "cached": given.cached}
+        methods[name] = {"preset": given.preset, "settings": " ".join(given.settings), "cached": given.cached,
+                         "film": given.film}
     return methods
 
 
@@ -131,8 +136,10 @@ def main():
     parser.add_argument("--pixels", type=int, default=230400)
     parser.add_argument("--spp", default="4,16", help="samples per pixel, with commas (4,16)")
     parser.add_argument("--methods", type=parse_methods, default="odis=", metavar="NAME=OPTIONS,...",
-                        help="what to compare with path: names and the options --preset, --set and --cached of "
-                        "odis-mitsuba render (odis=)")
+                        help="what to compare with path: names and the options --preset, --set, --cached and "
+                        "--film of odis-mitsuba render (odis=)")
+    parser.add_argument("--rfilter", default="box", help="reconstruction filter of all images, such as gaussian; file: "
+                        "the one that each file names (box)")
     parser.add_argument("--seeds", type=int, default=4)
     parser.add_argument("--reference-spp", type=int, default=256)
     parser.add_argument("--cache", default="out/mitsuba-references", metavar="DIR", help="keeps references there")
@@ -146,7 +153,8 @@ def main():
     with dr.scoped_set_flag(dr.JitFlag.KernelHistory, True):
         for path in args.scenes:
             try:
-                scene = load_file(path, pixels=args.pixels, rfilter="box", sampler="independent", warn=lambda _: None)
+                rfilter = None if args.rfilter == "file" else args.rfilter
+                scene = load_file(path, pixels=args.pixels, rfilter=rfilter, sampler="independent", warn=lambda _: None)
                 reference = reference_of(scene, path, args)
             except (OSError, RuntimeError, ValueError) as error:
                 print(f"{name_of(path)}: {error}", file=sys.stderr)
