@@ -185,11 +185,13 @@ class Images(unittest.TestCase):
                                    "rfilter": {"type": "gaussian"}}
         del scene["back"]
         scene = mi.load_dict(scene)
-        ours, theirs = (np.mean([render(scene, kind, seed, 64, max_depth=3) for seed in range(4)], axis=0)
-                        for kind in ("odis", "path"))
-        self.assertEqual(ours.shape, theirs.shape)
-        self.assertLess(np.abs(ours[..., 3] - theirs[..., 3])[2:-2, 2:-2].max(), 0.15)
-        self.assertLess(np.abs((ours - theirs).mean((0, 1))).max(), 0.02)
+        splat, pixels, theirs = (
+            np.mean([render(scene, kind, seed, 64, max_depth=3, **film) for seed in range(4)], axis=0)
+            for kind, film in (("odis", {"film": "splat"}), ("odis", {"film": "pixels"}), ("path", {})))
+        for ours in (splat, pixels):
+            self.assertEqual(ours.shape, theirs.shape)
+            self.assertLess(np.abs(ours[..., 3] - theirs[..., 3])[2:-2, 2:-2].max(), 0.15)
+            self.assertLess(np.abs((ours - theirs).mean((0, 1))).max(), 0.02)
 
     def test_without_emitters(self):
         scene = box()
@@ -261,6 +263,8 @@ class Errors(unittest.TestCase):
         for parameters, expected in (({"max_depth": -2}, "max_depth: expected"), ({"rr_depth": 0}, "rr_depth: expected"),
                                      ({"max_dept": 3}, "max_dept"),
                                      ({"preset": "papre"}, "preset: expected one of default, paper, paper-fast"),
+                                     ({"film": "spalt"}, "film: expected one of splat, pixels, found spalt"),
+                                     ({"film": True}, "film: expected a string, found True"),
                                      ({"cached": "no"}, "cached: expected true or false, found no"),
                                      ({"settings": "cells"}, "expected words key=value .* found cells"),
                                      ({"settings": "cels=3"}, "no cels in Mitsuba; did you mean cells?"),

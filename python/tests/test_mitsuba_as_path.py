@@ -120,12 +120,13 @@ class FilmBorder(unittest.TestCase):
         crop = {"crop_width": 3, "crop_height": 4, "crop_offset_x": 5, "crop_offset_y": 2}
         for kind in ("gaussian", "tent", "mitchell"):
             for more in ({}, crop):
-                image = base.render(walls(rfilter={"type": kind}, **more), "odis", 1, 1024, max_depth=1)
+                image = base.render(walls(rfilter={"type": kind}, **more), "odis", 1, 1024, max_depth=1, film="pixels")
                 # The filter's weights vary by 1 to 5 % of the mean of 1024.
                 np.testing.assert_allclose(image, 1, atol=0.25 if kind == "mitchell" else 0.1)
                 self.assertAlmostEqual(image.mean(), 1, delta=0.02)
         scene = walls(rfilter={"type": "gaussian"}, sample_border=True)
-        ours, theirs = (base.render(scene, kind, 1, 4096, max_depth=1).mean((0, 2)) for kind in ("odis", "path"))
+        ours, theirs = (base.render(scene, kind, 1, 4096, max_depth=1, **film).mean((0, 2))
+                        for kind, film in (("odis", {"film": "pixels"}), ("path", {})))
         self.assertGreater(theirs[0], 10)
         np.testing.assert_allclose(ours, theirs, rtol=0.1)
 

@@ -132,6 +132,23 @@ class Command(InFolder):
         np.testing.assert_array_equal(np.array(mi.Bitmap(str(self.folder / "a.exr"))),
                                       np.array(mi.render(scene, integrator=integrator)))
 
+    def test_film(self):
+        """The file says which; with a box filter both are one."""
+        scenes = {"box": self.scene, "tent": self.write("tent.xml", scene_text().replace('"box"', '"tent"'))}
+        for rfilter, words, expected in (("tent", (), "splat"), ("tent", ("--film", "splat"), "splat"),
+                                         ("tent", ("--film", "pixels"), "pixels"), ("box", (), "pixels"),
+                                         ("tent", ("--integrator", "path"), "splat")):
+            image, stats = self.folder / "a.exr", self.folder / "stats.json"
+            self.assertEqual(run("render", scenes[rfilter], "--quiet", "--spp", 8, *words, "-o", image, "--stats-json",
+                                 stats), (0, ""))
+            self.assertEqual(dict(mi.Bitmap(str(image)).metadata().items())["odis:film"], expected)
+            self.assertEqual(json.loads(stats.read_text())["film"], expected)
+            if words[:1] != ("--integrator",):
+                scene = mi.load_file(str(scenes[rfilter]))
+                integrator = odis.mitsuba.guide(scene, film=expected)
+                np.testing.assert_allclose(np.array(mi.Bitmap(str(image))), np.array(
+                    mi.render(scene, integrator=integrator, spp=8)), rtol=1e-5)
+
     def test_resolution_aovs_and_formats(self):
         words = ("render", self.scene, "--resolution", "10x6", "--quiet", "--spp", 4, "--aovs", "dd:depth,n:sh_normal")
         for integrator in ("odis", "path"):
@@ -163,6 +180,8 @@ class Command(InFolder):
                  ((scene, "--set", "cels=3"), "did you mean cells"), ((scene, "--set", "refine=x"), "found x"),
                  ((scene, "--cached", "--integrator", "path"), "--cached: expected --integrator odis"),
                  ((scene, "--set", "refine=0", "--integrator", "path"), "--set: expected --integrator odis"),
+                 ((scene, "--film", "pixel"), "--film: invalid choice: 'pixel' (choose from"),
+                 ((scene, "--film", "pixels", "--integrator", "path"), "--film pixels: expected --integrator odis"),
                  ((scene, "--cached", "--variant", "llvm_ad_spectral"), "cached: expected a variant in rgb"),
                  ((scene, "--variant", "llvm_ad_mono"), "rgb or spectral"),
                  ((scene, "-o", self.folder / "a.exr", "--aovs", "a:b"), "found a:b; the types are albedo, depth"),

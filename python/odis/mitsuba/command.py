@@ -16,6 +16,7 @@ import odis
 
 from . import from_scene, scene_files
 from .aovs import check_aovs
+from .film import FILMS, film_of
 from .integrator import check_variant
 from .kernel_history import compile_seconds
 from .outputs import check_outputs, is_special, write_whole
@@ -98,6 +99,9 @@ def make_parser():
                         help="odis is guided, path is Mitsuba's path tracer (odis)")
     render.add_argument("--cached", action="store_true", help="ends paths with the mean radiance of where they "
                         "arrive: less noise, less time, but biased: docs/cached.md")
+    render.add_argument("--film", choices=FILMS, default=FILMS[0],
+                        help="splat adds each sample to all pixels that the film's filter reaches, as path does; "
+                        "pixels to one, for which the filter draws it: noisier, and what a denoiser wants (splat)")
     render.add_argument("--preset", choices=PRESETS, default="default",
                         help="paper, paper-fast: the method of Bako et al. 2019, docs/paper.md (default)")
     render.add_argument("--set", action="append", default=[], metavar="KEY=VALUE", dest="settings",
@@ -190,7 +194,8 @@ class Rendering:
         if not os.path.exists(self.args.scene):
             raise Problem(BAD_INPUT, f"{self.args.scene}: there is no such file")
         args = self.args
-        for option, given in (("--preset", args.preset != "default"), ("--set", args.settings), ("--cached", args.cached)):
+        for option, given in (("--preset", args.preset != "default"), ("--set", args.settings),
+                              ("--cached", args.cached), ("--film pixels", args.film == "pixels")):
             if given and args.integrator != "odis":
                 raise Problem(BAD_INPUT, f"{option}: expected --integrator odis, path has no such thing")
         format_of(self.output)
@@ -231,7 +236,7 @@ class Rendering:
         try:
             if kind == "odis":
                 return from_scene.guide(scene, preset=args.preset, settings=" ".join(args.settings), cached=args.cached,
-                                        **given, **({"aovs": args.aovs} if args.aovs else {}))
+                                        film=args.film, **given, **({"aovs": args.aovs} if args.aovs else {}))
             path = {"type": "path", **from_scene.settings_of_scene(scene), **given}
             return mi.load_dict({"type": "aov", "aovs": args.aovs, "image": path} if args.aovs else path)
         except (RuntimeError, TypeError, ValueError) as error:
@@ -263,7 +268,8 @@ class Rendering:
         self.result = {
             "width": bitmap.width(), "height": bitmap.height(), "samples": bitmap.width() * bitmap.height() * spp,
             "spp": spp, "seed": self.args.seed, "integrator": self.args.integrator, "preset": self.args.preset,
-            "settings": self.args.settings, "cached": self.args.cached, "variant": self.args.variant,
+            "settings": self.args.settings, "cached": self.args.cached,
+            "film": film_of(self.args.film, sensor.film().rfilter()), "variant": self.args.variant,
             "rays": integrator.rays if odis_renders else None}
         return bitmap
 
@@ -286,7 +292,7 @@ class Rendering:
             metadata = {"generatedBy": ", ".join(f"{name} {version}" for name, version in versions.items()),
                         "commandLine": shlex.join([NAME, *self.args.words]), "seed": self.args.seed,
                         "samplesPerPixel": self.result["spp"], "integrator": self.args.integrator,
-                        "variant": self.args.variant,
+                        "variant": self.args.variant, "odis:film": self.result["film"],
                         "cached": "yes: the image is biased" if self.args.cached else "no"}
             self.write(self.output, encoded(bitmap, format_of(self.output), metadata))
             self.seconds["compile"] += (compiling := compile_seconds())

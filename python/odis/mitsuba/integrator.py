@@ -15,7 +15,7 @@ import odis
 from . import checks, path, recording
 from .aovs import make_aovs, nested_integrators
 from .arrays import array_of
-from .film_filter import make_film_filter
+from .film import make_film
 from .guide_tables import make_guide_tables
 from .kernel_history import compile_seconds
 from .lights import make_light_table
@@ -44,18 +44,15 @@ METER = "IrradianceMeter"
 
 
 class Camera:
-    """Rays of the samples of a sensor's film."""
+    """Rays of the samples of a sensor's film. seed: that of their generators; film: PixelFilm or SplatFilm."""
 
-    def __init__(self, sensor, seed, film_filter):
-        self.sensor, self.seed, self.film_filter = sensor, seed, film_filter
+    def __init__(self, sensor, seed, film):
+        self.sensor, self.seed, self.film = sensor, seed, film
 
     def __call__(self, pixel, number):
-        sensor, film = self.sensor, self.sensor.film()
+        sensor = self.sensor
         rng = generator_of(self.seed, pixel, number)
-        width, height = film.crop_size()
-        at = mi.Point2u(pixel % width, pixel // width)
-        offset, filter_weight = self.film_filter.sample(at, rng)
-        position = mi.Point2f(at) + 0.5 + offset
+        position, filter_weight = self.film.place(pixel, rng)
         aperture = mi.Point2f(0.5)
         if sensor.needs_aperture_sample():
             aperture = rng.next_2d()
@@ -65,7 +62,8 @@ class Camera:
         wavelength = rng.next() if mi.is_spectral else mi.Float(0.5)
         # The irradiance meter has rays with differentials alone.
         sample_ray = sensor.sample_ray_differential if sensor.class_name() == METER else sensor.sample_ray
-        ray, weight = sample_ray(moment, wavelength, position / mi.ScalarVector2f(width, height), aperture)
+        ray, weight = sample_ray(moment, wavelength, position / mi.ScalarVector2f(sensor.film().crop_size()),
+                                 aperture)
         ray = mi.Ray3f(ray)
         return rng, ray, weight * filter_weight
 
@@ -113,9 +111,8 @@ class PartOfPass:
     recorded: object  # bool: whether its vertices are
 
 
-def parts_of_pass(frame, frame_pass, pixels_per_recorded):
-    """The samples of a pass, in parts that fit."""
-    first, count = frame.samples()
+def parts_of_pass(frame_pass, first, count, pixels_per_recorded):
+    """The samples of a pass, in parts that fit. first, count: odis.Frame.samples()."""
     height, width = first.shape
     order, tile_begin = tile_order(width, height)
     first, count = first.ravel()[order], count.ravel()[order]
@@ -160,6 +157,8 @@ def make_integrator():
     class OdisIntegrator(mi.SamplingIntegrator):
         """Parameters: max_depth (-1), rr_depth (5) and hide_emitters (false), as of `path`; aovs (""), as of `aov`;
         cached (false): paths may end with cached radiance, which biases the image (docs/cached.md);
+        film ("splat"): each sample is added to all pixels that the film's filter reaches, as those of `path` are, or,
+        with "pixels", drawn by the filter for one, as a denoiser wants it;
         preset ("default", or "paper" and "paper-fast", docs/paper.md); settings (""): words key=value with blanks
         between them (docs/settings.md), such as "cells=64 refine=0", which win over those of the preset.
 
@@ -171,7 +170,7 @@ def make_integrator():
 
         # Dr.Jit traverses __dict__, also of an integrator that a scene holds, and would compile kernels anew whenever
         # something in there changes: all is kept out of it.
-        __slots__ = ("settings", "scene", "known", "film_filter", "frame", "rays", "seconds",
+        __slots__ = ("settings", "scene", "known", "film", "frame", "rays", "seconds",
                      "progress", "separate_compile", "aovs", "given", "cached", "unguided", "said_unguided",
                      "samples_per_lane")
 
@@ -180,6 +179,7 @@ def make_integrator():
             parameters = read_parameters(props)
             super().__init__(props)
             self.given, self.settings, self.cached = parameters.given, parameters.path, parameters.cached
+            self.film = parameters.film
             self.scene, self.known = None, None
             self.progress, self.separate_compile = None, False
             self.aovs = make_aovs(mi.load_dict({"type": "aov", "aovs": parameters.aovs})) if parameters.aovs else None
@@ -203,7 +203,9 @@ def make_integrator():
                 image = self._render(sensor, seed, spp)
                 if self.aovs is not None:
                     with self._timed("aovs"):
-                        image = np.concatenate([image, self.aovs.image(scene, sensor, seed, spp)], axis=2)
+                        # The film divides them by the weights, too.
+                        image, aovs = np.array(image), self.aovs.image(scene, sensor, seed, spp)
+                        image = np.concatenate([image, aovs * image[..., -1:]], axis=2)
                 film.prepare(self.aov_names())
                 film.put_block(mi.ImageBlock(mi.TensorXf(image), film.crop_offset()))
                 own = scene.integrator()
@@ -241,16 +243,13 @@ def make_integrator():
             self.scene, self.known = scene, path.SceneTables(materials, make_light_table(scene))
 
         def _render(self, sensor, seed, spp):
-            """The image as the film stores it: colour, alpha if it has it, and weight."""
-            film = sensor.film()
-            self.film_filter = make_film_filter(film)
-            width, height = film.crop_size()
+            """The image as the film stores it: colours, alpha if it has it, and weights."""
+            film = make_film(self.film, sensor.film())
+            width, height = film.size
             cached = self.cached and not 0 <= self.settings.max_depth < LEAST_CACHED_MAX_DEPTH
             self.frame = frame = odis.Frame(
                 self.given.frame_options((width, height), spp, seed, self.known.lights, cached, self.settings.max_depth))
             pixels_per_recorded = PIXELS_PER_RECORDED_IF_CACHED if cached else PIXELS_PER_RECORDED
-            has_alpha = mi.has_flag(film.flags(), mi.FilmFlags.Alpha)
-            valid = np.zeros(width * height) if has_alpha else None  # samples of each pixel
             progress, traced, self.rays = checks.progress(self.progress or default_progress()), 0, 0
             progress(0)
             tables, values, rebuilt = None, None, False
@@ -263,34 +262,34 @@ def make_integrator():
                         values = array_of(mi.Float, frame.pixel_values)
                 self.samples_per_lane = SAMPLES_PER_LANE if self.rays >= MANY_RAYS * traced else 1
                 rebuilt = frame_pass.wants_vertices
-                for part in parts_of_pass(frame, frame_pass, pixels_per_recorded):
-                    self._trace_part(sensor, frame_pass, tables, values, part, valid)
+                # An opaque number, so that the same kernel serves all seeds.
+                camera = Camera(sensor, dr.opaque(mi.UInt64, hash_seed(frame_pass.seed)), film)
+                with self._timed("add"):
+                    first, count = frame.samples()
+                    film.begin_pass(frame, frame_pass, first, count)
+                for part in parts_of_pass(frame_pass, first, count, pixels_per_recorded):
+                    self._trace_part(camera, frame_pass, tables, values, part)
                     traced += part.pixel.size
                     progress(min(traced / (spp * width * height), 1))  # adaptive passes may take a few samples more
                 with self._timed("build"):
                     frame.end_pass()
+                with self._timed("add"):
+                    film.end_pass(frame)
             progress(1)
-            channels = [frame.image()[0]]
-            if has_alpha:
-                alpha = valid.reshape(height, width, 1) / np.maximum(frame.sample_counts(), 1)[..., None]
-                channels.append(alpha.astype(np.float32))
-            return np.concatenate(channels + [np.ones((height, width, 1), np.float32)], axis=2)
+            return film.image(frame)
 
-        def _trace_part(self, sensor, frame_pass, tables, values, part, valid):
-            """Traces some samples of a pass and hands them to the frame."""
+        def _trace_part(self, camera, frame_pass, tables, values, part):
+            """Traces some samples of a pass and hands them to the film and the frame."""
             with self._timed("pilot" if frame_pass.kind == odis.PassKind.PILOT else "guided"):
                 samples = path.Samples(array_of(mi.UInt32, part.pixel), array_of(mi.UInt32, part.number), values,
                                        result=dr.zeros(mi.Float, 4 * part.pixel.size))
-                # An opaque number, so that the same kernel serves all seeds.
-                seed = dr.opaque(mi.UInt64, hash_seed(frame_pass.seed))
-                vertices = self._trace(Camera(sensor, seed, self.film_filter), tables, samples, part.recorded)
+                vertices = self._trace(camera, tables, samples, part.recorded)
             with self._timed("add"):
+                camera.film.add(camera.seed, samples)
                 result = np.asarray(samples.result).reshape(-1, 4)
                 tags = result[:, 3].view(np.uint32)
                 rays = tags & np.uint32(path.VALID - 1)
                 self.rays += int(rays.sum())
-                if valid is not None:
-                    valid += np.bincount(part.pixel, weights=tags >> 31, minlength=valid.size)
                 self.frame.add_samples(part.pixel, part.number, result[:, :3], rays, vertices)
 
         def _trace(self, camera, tables, samples, recorded):

@@ -7,9 +7,10 @@ import mitsuba as mi
 from . import path
 from .aovs import check_aovs
 from .checks import of_type, whole_number
+from .film import FILMS
 from .settings import GivenSettings
 
-TEXTS = ("aovs", "preset", "settings")
+TEXTS = ("aovs", "film", "preset", "settings")
 NAMES = ("max_depth", "rr_depth", "hide_emitters", "cached", *TEXTS)
 
 
@@ -18,6 +19,7 @@ class Parameters:
     given: GivenSettings
     path: path.Settings
     cached: bool
+    film: str  # one of FILMS
     aovs: str
 
 
@@ -35,4 +37,7 @@ def read_parameters(props):
     aovs = of_type("aovs", props.get("aovs", ""), str, "a string")
     if aovs:
         check_aovs(aovs)
-    return Parameters(given, settings, cached, aovs)
+    film = of_type("film", props.get("film", FILMS[0]), str, "a string")
+    if film not in FILMS:
+        raise ValueError(f"odis: film: expected one of {', '.join(FILMS)}, found {film}")
+    return Parameters(given, settings, cached, film, aovs)
