@@ -4,6 +4,7 @@
 #include "odis/api/objects.h"
 #include "odis/files/crc32.h"
 #include "odis/frame.h"
+#include "odis/saved_frame.h"
 #include "odis/saved_vertices.h"
 
 namespace {
@@ -62,12 +63,14 @@ void goOn(core::Frame& frame, uint32_t pixels, bool interrupted) {
 
 void readFrame(const Archive& file) {
   static OdisModelImpl formulas{core::Model()};
+  const bool hasMeans = core::SavedOptions(file).frame.keepPixelMeans;
   const bool networks = file.value<uint64_t>("frame.model") != 0;
-  const uint64_t pixels = file.get<PixelSums>("frame.pilot").size();
   for (const bool interrupted : {true, false}) {
     core::Frame frame = core::Frame::load(file, networks ? nullptr : &formulas, core::threadTasks(1));
-    goOn(frame, uint32_t(pixels), interrupted);
-    for (uint32_t pixel = 0; pixel < pixels; ++pixel) frame.mean(pixel);
+    const core::FrameStatistics size = frame.summary();
+    const uint32_t pixels = size.width * size.height;
+    goOn(frame, pixels, interrupted);
+    for (uint32_t pixel = 0; hasMeans && pixel < pixels; ++pixel) frame.mean(pixel);
     core::ArchiveWriter again("frame");
     frame.save(again);
   }

@@ -148,8 +148,10 @@ ODIS_API void odisDescribeVertices(OdisPathVertices* vertices, const OdisPathVer
 // ---- frame: an image from its first sample to its last ----
 
 ODIS_API void odisInitFrameOptions(OdisFrameOptions* options, size_t size);
-// 112 bytes a pixel for sums, 12 for decisions; 84 bytes a vertex that is learned from, until the guide is
-// built anew, and 112 more for some of the pilot's; the guide's own.
+// Memory: 112 bytes a pixel for means (keepPixelMeans) and 9 for decisions. Without means at most 37 a pixel
+// in all until the first pass after the pilot has ended, if the pilot has at most one sample in a pixel (else
+// up to 40 more), and 9 from then on. While counts are settled 50 more for a moment. 84 bytes a vertex that
+// is learned from, until the guide is built anew, and 112 more for some of the pilot's; the guide's own.
 ODIS_API OdisFrame odisNewFrame(OdisContext context, const OdisFrameOptions* options);
 ODIS_API void odisRetainFrame(OdisFrame frame);
 ODIS_API void odisReleaseFrame(OdisFrame frame);
@@ -188,16 +190,19 @@ ODIS_API bool odisGuideIsFinal(OdisFrame frame);
 // Known in the pass already (OdisSampleRange.weight), but for passes with weightsLater. Here and below, a
 // pixel outside of the frame is an error.
 ODIS_API float odisGetSampleWeight(OdisFrame frame, uint32_t pixel, uint32_t sample);
-// The weighted mean of the samples that a pixel has by now, and that mean's variance.
+// The weighted mean of the samples that a pixel has by now, and that mean's variance. An error without
+// OdisFrameOptions.keepPixelMeans.
 ODIS_API bool odisGetPixelMean(OdisFrame frame, uint32_t pixel, OdisPixelMean* mean);
-// The number of samples that a pixel has by now.
+// The number of samples that a pixel has by now; without keepPixelMeans that the passes asked for which have
+// ended.
 ODIS_API uint32_t odisGetSampleCount(OdisFrame frame, uint32_t pixel);
 ODIS_API bool odisGetFrameStatistics(OdisFrame frame, OdisFrameStatistics* statistics);
 ODIS_API bool odisGetFrameVertexCounts(OdisFrame frame, OdisVertexCounts* counts);
 // Another reference to the guide of today; without cells before one is built, and where none is because no
 // sample follows the pilot (unless the frame learns into a builder of the host's).
 ODIS_API OdisGuide odisGetFrameGuide(OdisFrame frame);
-// Sums over the pilot's samples of each pixel. Valid as long as the frame.
+// Sums over the pilot's samples of each pixel. Valid as long as the frame. An error without
+// OdisFrameOptions.keepPixelMeans.
 ODIS_API const OdisPixelSums* odisGetPilotImage(OdisFrame frame);
 // Copies the pilot's vertices, tile after tile, within a tile ordered by pixel, sample, depth; returns how
 // many there are. None once the guide is built, unless they are kept. NULL: counts them only.

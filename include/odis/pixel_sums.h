@@ -73,8 +73,10 @@ inline PixelMean weightedMean(ArrayView<const WeightedSums> parts) {
 
 // Estimates each pixel's luminance, which contributions are measured by: the mean over a block of 8 x 8
 // pixels, with a little of the image's mean so that nothing is divided by almost nothing. `width` is that
-// of the image in pixels; the result has an entry for each pixel.
-inline std::vector<float> estimatePixelValues(ArrayView<const PixelSums> image, uint32_t width) {
+// of the image in pixels; the result has an entry for each pixel. `image` has image.size() pixels, and
+// image[pixel] are the sums over its samples.
+template <class Image>
+std::vector<float> estimatePixelValuesOf(const Image& image, uint32_t width) {
   constexpr uint32_t kValueBlock = 8;
   const uint32_t height = width > 0 ? uint32_t(image.size() / width) : 0;
   const size_t blocksX = (width + kValueBlock - 1) / kValueBlock,
@@ -87,12 +89,12 @@ inline std::vector<float> estimatePixelValues(ArrayView<const PixelSums> image, 
         visit(size_t(y) * width + x, y / kValueBlock * blocksX + x / kValueBlock);
   };
   forEachPixel([&](size_t pixel, size_t block) {
-    const double* s = image[pixel].sum;
-    const double value = luminance({float(s[0]), float(s[1]), float(s[2])});
+    const PixelSums& sums = image[pixel];
+    const double value = luminance({float(sums.sum[0]), float(sums.sum[1]), float(sums.sum[2])});
     sum[block] += value;
-    count[block] += image[pixel].count;
+    count[block] += sums.count;
     total += value;
-    samples += image[pixel].count;
+    samples += sums.count;
   });
   const double mean = samples > 0 ? total / samples : 1;
   std::vector<float> result(image.size());
@@ -101,6 +103,9 @@ inline std::vector<float> estimatePixelValues(ArrayView<const PixelSums> image, 
     result[pixel] = float(std::max(value + 0.1 * mean, 1e-20));
   });
   return result;
+}
+inline std::vector<float> estimatePixelValues(ArrayView<const PixelSums> image, uint32_t width) {
+  return estimatePixelValuesOf(image, width);
 }
 
 }  // namespace odis

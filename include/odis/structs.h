@@ -183,6 +183,10 @@ typedef struct OdisFrameOptions {
   // samples per pixel.
   bool adaptive ODIS_DEFAULT(true);
   bool keepPilotVertices ODIS_DEFAULT(false);  // whether the pilot's vertices stay after the guide is built
+  // Whether the frame keeps sums over the samples of each pixel, of which odisGetPixelMean and
+  // odisGetPilotImage are made. false, for a host with a film of its own (docs/own-film.md): it keeps what it
+  // decides by, and those two are errors. All decisions are the same, to the bit.
+  bool keepPixelMeans ODIS_DEFAULT(true);
   // Tiles of 16 x 16 pixels begin this many pixels before the image's first column and row, 0 to 15: 5 and 0
   // for a crop that begins at column 37 and row 16, so that its tiles are those of the whole image.
   uint32_t tileOffsetX ODIS_DEFAULT(0), tileOffsetY ODIS_DEFAULT(0);

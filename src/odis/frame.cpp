@@ -99,9 +99,10 @@ Frame::Data::Data(const FrameOptions& o, std::shared_ptr<const Tasks> shared,
       guideOptions(builder ? builder->options() : GuideOptions()),
       lightParts(guideOptions.lightParts, guideOptions.lightParts + guideOptions.lightPartCount),
       modelId(builder ? builder->modelId() : 0),
+      pixelCount(size_t(o.width) * o.height),
       schedule(o),
-      pilot(size_t(o.width) * o.height),
-      later(pilot.size()),
+      pilot(keptOfPilot(o, schedule)),
+      later(keptOfLater(o, schedule)),
       tiles(o, std::move(shared)),
       next(o.guided ? ODIS_PASS_PILOT : ODIS_PASS_GUIDED) {}
 
@@ -121,7 +122,7 @@ SampleRange Frame::Data::samples(uint32_t pixel) const {
 
 void Frame::Data::refusePixel(uint32_t pixel, const char* function) const {
   throw std::out_of_range(std::string(function) + ": expected a pixel of the frame, found " +
-                          std::to_string(pixel) + " of " + std::to_string(pilot.size()));
+                          std::to_string(pixel) + " of " + std::to_string(pixelCount));
 }
 
 // Whether vertices were forgotten: a sample with more than the camera's ray has been at a surface. Hosts that
@@ -132,7 +133,7 @@ bool Frame::Data::lacksVertices() const {
 }
 
 void Frame::Data::describePass() {
-  const size_t pixels = pilot.size();
+  const size_t pixels = pixelCount;
   pass = {};
   passVertexCount = passSamplesCame = passRaysCame = passVerticesCame = 0;
   pass.kind = next;
@@ -175,8 +176,10 @@ bool Frame::Data::keepsVertices() const {
 // Takes a tile's samples and vertices.
 void Frame::Data::take(uint32_t tile, ArrayView<const FrameSample> samples, TileVertices& vertices) {
   if (pass.partOfImage) {
-    std::vector<PixelSums>& sums = next == ODIS_PASS_PILOT ? pilot : later;
-    for (const FrameSample& s : samples) addSample(sums[s.pixel], finiteOrBlack(s.value, notFinite), s.rays);
+    const bool ofPilot = next == ODIS_PASS_PILOT;
+    PixelSamples& kept = ofPilot ? pilot : later;
+    for (const FrameSample& s : samples) kept.add(s.pixel, finiteOrBlack(s.value, notFinite), s.rays);
+    (ofPilot ? pilotSamplesTaken : laterSamplesTaken) += samples.size();
   }
   if (!pass.wantsVertices) return;
   uint64_t rays = 0;
@@ -209,7 +212,8 @@ void Frame::Data::describePixels() {
 
 // Pixel values come from the pilot's image.
 void Frame::Data::endPilot() {
-  pixelValues = estimatePixelValues(pilot, options.width);
+  pixelValues = pilot.kept().empty() ? estimatePixelValues(pilot.sums(), options.width)
+                                     : estimatePixelValuesOf(pilot, options.width);
   describePixels();
   pilotVertices = std::move(passVertices);
   pilotVertexCount = passVertexCount;
@@ -299,11 +303,19 @@ void Frame::Data::resume() {
   resumed.reset();
 }
 
+// Decides by the first samples, which are not needed any more once that is done.
 void Frame::Data::endGuidedPass() {
   if (end == schedule.spreadAfter()) spreadSamples();
-  if (guidingDoesNotPay())
+  const bool givesUp = guidingDoesNotPay();
+  if (!options.keepPixelMeans) pilot = later = {};
+  if (givesUp)
     giveUpGuiding();
-  else if (learns())
+  else
+    learnFromGuidedPass();
+}
+
+void Frame::Data::learnFromGuidedPass() {
+  if (learns())
     refineGuide();
   else
     done = end;
@@ -417,8 +429,8 @@ uint64_t Frame::samplesLeftOut() const {
 
 uint64_t Frame::bytes() const {
   const Data& d = *m_data;
-  constexpr uint64_t kPerPixel = 2 * sizeof(PixelSums) + sizeof(float) + 2 * sizeof(uint32_t);
-  return d.pilot.size() * kPerPixel + d.tiles.bytes() + d.keptBytes + d.guide.bytes() + d.hostData.size() +
+  const uint64_t ofPixels = d.pilot.bytes() + d.later.bytes() + d.pixelValues.size() * sizeof(float);
+  return ofPixels + d.schedule.bytes() + d.tiles.bytes() + d.keptBytes + d.guide.bytes() + d.hostData.size() +
          (d.builder && d.ownsBuilder ? d.builder->heldBytes() : 0);
 }
 

@@ -40,9 +40,10 @@ using SampleRange = OdisSampleRange;
 using FrameSample = OdisFrameSample;
 using FrameStatistics = OdisFrameStatistics;
 
-// Pixels are counted row by row. Memory: 112 bytes a pixel for sums, 12 for decisions; 84 bytes a vertex
-// that is learned from, until the guide is built anew, 112 more for some of the pilot's, 188 more where
-// vertices are kept; the guide's own. All functions throw std::logic_error when they are called out of order.
+// Pixels are counted row by row. Memory: 112 bytes a pixel for means and 9 for decisions, or 37 and later 9
+// in all without means (odisNewFrame has the details); 84 bytes a vertex that is learned from, until the
+// guide is built anew, 112 more for some of the pilot's, 188 more where vertices are kept; the guide's own.
+// All functions throw std::logic_error when they are called out of order.
 class Frame {
  public:
   // Throws std::invalid_argument where an option is out of its range. `builder` is the one to learn into,
@@ -83,9 +84,11 @@ class Frame {
   // passes with weightsLater. Here and below std::out_of_range is thrown for a pixel outside of the frame,
   // here for a sample that it never has, too.
   float sampleWeight(uint32_t pixel, uint32_t sample) const;
-  // The weighted mean of the samples that a pixel has by now, and that mean's variance.
+  // The weighted mean of the samples that a pixel has by now, and that mean's variance. Throws
+  // std::logic_error without keepPixelMeans.
   PixelMean mean(uint32_t pixel) const;
-  // The number of samples that a pixel has by now.
+  // The number of samples that a pixel has by now; without keepPixelMeans that passes asked for which have
+  // ended.
   uint32_t sampleCount(uint32_t pixel) const;
 
   FrameStatistics statistics() const;
@@ -93,7 +96,7 @@ class Frame {
   FrameStatistics summary() const;
   VertexCounts vertexCounts() const;
   const Guide& guide() const;
-  // Sums over the pilot's samples of each pixel.
+  // Sums over the pilot's samples of each pixel. Throws std::logic_error without keepPixelMeans.
   ArrayView<const PixelSums> pilotImage() const;
   // The pilot's vertices, tile after tile, within a tile ordered by pixel, sample, depth. Empty once the
   // guide is built, unless they are kept.

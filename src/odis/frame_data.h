@@ -4,6 +4,7 @@
 #include <atomic>
 
 #include "odis/frame.h"
+#include "odis/image/pixel_samples.h"
 #include "odis/image/schedule.h"
 #include "odis/image/tiles.h"
 
@@ -21,9 +22,12 @@ struct ResumedPass {
 
 struct FramePosition;
 
-// What a pilot sample weighs in its pixel in units of a guided one; `later` are the pixel's other samples.
-float pilotWeight(const FrameOptions& options, const Schedule& schedule, uint32_t pixel,
-                  const PixelSums& later);
+// What a pilot sample weighs in its pixel in units of a guided one; the pixel has `later` other samples.
+float pilotWeight(const FrameOptions& options, const Schedule& schedule, uint32_t pixel, uint32_t later);
+// What a frame keeps of the pilot's samples and of those after it, at the beginning: sums, of which there are
+// means, or what decisions need.
+PixelSamples keptOfPilot(const FrameOptions& options, const Schedule& schedule);
+PixelSamples keptOfLater(const FrameOptions& options, const Schedule& schedule);
 // Throws std::invalid_argument where an option is out of its range.
 const FrameOptions& checkedOptions(const FrameOptions& options);
 
@@ -55,6 +59,7 @@ struct Frame::Data {
   void settleRefinement();
   void buildGuide();
   void endGuidedPass();
+  void learnFromGuidedPass();
   void spreadSamples();
   bool guidingDoesNotPay();
   void giveUpGuiding();
@@ -65,9 +70,10 @@ struct Frame::Data {
   bool learns() const { return done < schedule.lastRefinement(); }
   SampleRange samples(uint32_t pixel) const;
   void requirePixel(uint32_t pixel, const char* function) const {
-    if (pixel >= pilot.size()) refusePixel(pixel, function);
+    if (pixel >= pixelCount) refusePixel(pixel, function);
   }
   [[noreturn]] void refusePixel(uint32_t pixel, const char* function) const;
+  void requireMeans(const char* function) const;
   bool lacksVertices() const;
   // Whether the guide learns from the pass's samples of a pixel, or keeps their vertices.
   bool wantsVertices(uint32_t pixel) const {
@@ -75,7 +81,13 @@ struct Frame::Data {
     return pass.wantsVertices &&
            (pixel % options.width + 2 * (pixel / options.width)) % pixelsPerLearned == 0;
   }
-  float pilotWeightOf(uint32_t pixel) const { return pilotWeight(options, schedule, pixel, later[pixel]); }
+  // How many samples a pixel has by now; without means, those of the passes that have ended, all of which are
+  // taken to have come.
+  uint32_t pilotTaken(uint32_t pixel) const;
+  uint32_t laterTaken(uint32_t pixel) const;
+  float pilotWeightOf(uint32_t pixel) const {
+    return pilotWeight(options, schedule, pixel, laterTaken(pixel));
+  }
 
   // Goes on with the pass that was under way when the frame was saved.
   void resume();
@@ -88,8 +100,9 @@ struct Frame::Data {
   GuideOptions guideOptions;
   std::vector<OdisLightParts> lightParts;
   uint64_t modelId;  // the same for models that decide the same; 0 where there is none
+  size_t pixelCount;
   Schedule schedule;
-  std::vector<PixelSums> pilot, later;  // of the pilot's samples, and of those after it
+  PixelSamples pilot, later;  // the pilot's samples, and those after it
   TileCollector tiles;
   std::vector<float> pixelValues;
   Guide guide;
@@ -109,6 +122,7 @@ struct Frame::Data {
   std::vector<VertexSamples> passSamples;   // [tile], of a pass that is learned from
   std::vector<VertexSamples> unguided;      // what BSDF sampling fractions are chosen by
   std::atomic<uint64_t> notFinite{0};
+  std::atomic<uint64_t> pilotSamplesTaken{0}, laterSamplesTaken{0};
   std::atomic<uint64_t> passVertexCount{0};  // vertices of the pass that are learned from, so far
   std::atomic<uint64_t> keptBytes{0};  // of vertices, of what was taken from them, and of maps at pixels
   // Of the pass, so far: all that came, learned from or not.

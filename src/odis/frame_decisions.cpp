@@ -8,7 +8,7 @@ namespace odis::core {
 
 // Settles how many samples each pixel has.
 void Frame::Data::spreadSamples() {
-  std::vector<PixelNoise> noise(pilot.size());
+  std::vector<PixelNoise> noise(pixelCount);
   tasks->forEach(options.height, [&](size_t row) {
     for (size_t pixel = row * options.width; pixel < (row + 1) * options.width; ++pixel) {
       PixelSums sums = pilot[pixel];
@@ -21,7 +21,7 @@ void Frame::Data::spreadSamples() {
 
 // Whether the guide should be built once more, after as many more samples as were guided and one.
 bool Frame::Data::nextRefinementPays() const {
-  const double pixels = double(pilot.size()), learnedInPass = std::min(pixels, double(kMostGuidedSamples));
+  const double pixels = double(pixelCount), learnedInPass = std::min(pixels, double(kMostGuidedSamples));
   const double pilotSamples = double(schedule.pilotSamples()), next = 2.0 * done + 1;
   PossibleRefinement possible;
   possible.predictedRatio = cells.predictedVarianceRatio();

@@ -1,5 +1,7 @@
 // What there is to see of a frame: the image, and numbers.
+#include <algorithm>
 #include <stdexcept>
+#include <string>
 
 #include "odis/frame_data.h"
 
@@ -7,9 +9,34 @@ namespace odis::core {
 
 // All that comes after the pilot depends on it, how many samples a pixel has included. The pilot's share in
 // its pixel must not: it stays what it would be if all pixels had as many samples.
-float pilotWeight(const FrameOptions& options, const Schedule& schedule, uint32_t pixel,
-                  const PixelSums& later) {
-  return later.count > 0 ? options.pilotWeight * schedule.remainingRatio(pixel) : 1;
+float pilotWeight(const FrameOptions& options, const Schedule& schedule, uint32_t pixel, uint32_t later) {
+  return later > 0 ? options.pilotWeight * schedule.remainingRatio(pixel) : 1;
+}
+
+PixelSamples keptOfPilot(const FrameOptions& options, const Schedule& schedule) {
+  const size_t pixels = size_t(options.width) * options.height;
+  return options.keepPixelMeans ? PixelSamples::sums(pixels)
+                                : PixelSamples::few(pixels, schedule.mostPilotSamples());
+}
+// Counts are settled by the samples of the first pass, of which there is one in each pixel if it is guided.
+PixelSamples keptOfLater(const FrameOptions& options, const Schedule& schedule) {
+  const size_t pixels = size_t(options.width) * options.height;
+  const uint32_t first = options.guided ? 1 : schedule.spreadAfter();
+  return options.keepPixelMeans ? PixelSamples::sums(pixels)
+                                : PixelSamples::few(pixels, std::min(first, schedule.mostRemaining()));
+}
+
+void Frame::Data::requireMeans(const char* function) const {
+  if (!options.keepPixelMeans)
+    throw std::logic_error(std::string(function) + ": expected a frame with OdisFrameOptions.keepPixelMeans");
+}
+
+uint32_t Frame::Data::pilotTaken(uint32_t pixel) const {
+  if (options.keepPixelMeans) return pilot.sums()[pixel].count;
+  return next == ODIS_PASS_PILOT ? 0 : schedule.pilotCount(pixel);
+}
+uint32_t Frame::Data::laterTaken(uint32_t pixel) const {
+  return options.keepPixelMeans ? later.sums()[pixel].count : schedule.remaining(pixel, 0, done).count;
 }
 
 float Frame::sampleWeight(uint32_t pixel, uint32_t sample) const {
@@ -24,27 +51,26 @@ float Frame::sampleWeight(uint32_t pixel, uint32_t sample) const {
 PixelMean Frame::mean(uint32_t pixel) const {
   const Data& d = *m_data;
   d.requirePixel(pixel, "odisGetPixelMean");
+  d.requireMeans("odisGetPixelMean");
   const float pilotWeight = d.schedule.pilotCount(pixel) > 0 ? d.pilotWeightOf(pixel) : 1;
-  const WeightedSums parts[] = {{&d.pilot[pixel], pilotWeight}, {&d.later[pixel], 1}};
+  const WeightedSums parts[] = {{&d.pilot.sums()[pixel], pilotWeight}, {&d.later.sums()[pixel], 1}};
   return weightedMean({parts, 2});
 }
 
 uint32_t Frame::sampleCount(uint32_t pixel) const {
   m_data->requirePixel(pixel, "odisGetSampleCount");
-  return m_data->pilot[pixel].count + m_data->later[pixel].count;
+  return m_data->pilotTaken(pixel) + m_data->laterTaken(pixel);
 }
 
 FrameStatistics Frame::statistics() const {
   const Data& d = *m_data;
   FrameStatistics result = summary();
   double pilot = 0, all = 0;
-  for (uint32_t pixel = 0; pixel < d.pilot.size(); ++pixel) {
-    const uint32_t pilotCount = d.pilot[pixel].count;
+  for (uint32_t pixel = 0; pixel < d.pixelCount; ++pixel) {
+    const uint32_t pilotCount = d.pilotTaken(pixel);
     const double weight = pilotCount > 0 ? pilotCount * double(d.pilotWeightOf(pixel)) : 0;
     pilot += weight;
-    all += weight + d.later[pixel].count;
-    result.samples += pilotCount + d.later[pixel].count;
-    result.pilotSamples += pilotCount;
+    all += weight + d.laterTaken(pixel);
   }
   result.pilotFraction = all > 0 ? pilot / all : 0;
   return result;
@@ -55,6 +81,8 @@ FrameStatistics Frame::summary() const {
   FrameStatistics result;
   result.width = d.options.width;
   result.height = d.options.height;
+  result.samples = d.pilotSamplesTaken + d.laterSamplesTaken;
+  result.pilotSamples = d.pilotSamplesTaken;
   result.notFinite = d.notFinite;
   result.pilotVertices = d.pilotVertexCount;
   result.cells = d.guide.view().cellCount;
@@ -81,7 +109,8 @@ const Guide& Frame::guide() const {
 }
 
 ArrayView<const PixelSums> Frame::pilotImage() const {
-  return m_data->pilot;
+  m_data->requireMeans("odisGetPilotImage");
+  return m_data->pilot.sums();
 }
 
 size_t Frame::pilotVertexCount() const {

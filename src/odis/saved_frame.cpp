@@ -169,16 +169,35 @@ void Frame::save(ArchiveWriter& file) const {
   file.add("frame.lightParts", d.lightParts);
   file.addValue("frame.model", d.modelId);
   file.add("frame.hostData", d.hostData);
-  file.addValue(
-      "frame.position",
-      FramePosition{d.guidesBuilt, d.notFinite, d.outsideFrame, d.twice, d.buildingBytes, d.pilotVertexCount,
-                    d.missingSamples, d.passesWithoutVertices, d.measuredCostRatio, d.schedule.pilotSamples(),
-                    d.schedule.passEnd(d.done), d.schedule.spreadAfter(), uint32_t(d.next), d.oraclePasses,
-                    d.done, d.finished, d.builder != nullptr, d.guidingGivenUp});
+  file.addValue("frame.position", FramePosition{d.guidesBuilt,
+                                                d.notFinite,
+                                                d.outsideFrame,
+                                                d.twice,
+                                                d.buildingBytes,
+                                                d.pilotVertexCount,
+                                                d.pilotSamplesTaken,
+                                                d.laterSamplesTaken,
+                                                d.missingSamples,
+                                                d.passesWithoutVertices,
+                                                d.measuredCostRatio,
+                                                d.schedule.pilotSamples(),
+                                                d.schedule.passEnd(d.done),
+                                                d.schedule.spreadAfter(),
+                                                uint32_t(d.next),
+                                                d.oraclePasses,
+                                                d.done,
+                                                d.finished,
+                                                d.builder != nullptr,
+                                                d.guidingGivenUp});
   file.addValue("frame.vertexCounts", d.vertexCounts);
   file.add("frame.counts", d.schedule.counts());
-  file.add("frame.pilot", d.pilot);
-  file.add("frame.later", d.later);
+  file.add("frame.pilot", d.pilot.sums());
+  file.add("frame.later", d.later.sums());
+  if (!d.options.keepPixelMeans) {
+    file.add("frame.pilot.kept", d.pilot.kept());
+    file.add("frame.later.kept", d.later.kept());
+    file.add("frame.tiles", std::vector<uint8_t>(d.tiles.tileCount()));
+  }
   file.add("frame.pixelValues", d.pixelValues);
   saveTiles(file, "frame.pilotVertices", d.pilotVertices);
   SavedVertexSamples::save(file, "frame.unguided", d.unguided);
@@ -197,9 +216,10 @@ void Frame::save(ArchiveWriter& file) const {
 }
 
 SavedOptions::SavedOptions(const Archive& file)
-    : frame(readChecked<FrameOptions>(file, "frame.options",
-                                      {offsetof(FrameOptions, guided), offsetof(FrameOptions, adaptive),
-                                       offsetof(FrameOptions, keepPilotVertices)})),
+    : frame(readChecked<FrameOptions>(
+          file, "frame.options",
+          {offsetof(FrameOptions, guided), offsetof(FrameOptions, adaptive),
+           offsetof(FrameOptions, keepPilotVertices), offsetof(FrameOptions, keepPixelMeans)})),
       guide(readChecked<GuideOptions>(
           file, "frame.guideOptions",
           {offsetof(GuideOptions, controlVariate), offsetof(GuideOptions, pixelDirectLight),
@@ -222,11 +242,15 @@ SavedOptions::SavedOptions(const Archive& file)
 
 namespace {
 
-// A damaged size must not cost more memory than the file has.
-std::vector<PixelSums> readPilot(const Archive& file, const FrameOptions& options) {
-  std::vector<PixelSums> pilot = file.get<PixelSums>("frame.pilot");
-  file.require(uint64_t(options.width) * options.height == pilot.size(), "frame.options: are damaged");
-  return pilot;
+// The number of pixels. A damaged size must not cost much more memory than the file has: where there may be
+// nothing of each pixel, a byte of each tile proves it.
+size_t readSize(const Archive& file, const FrameOptions& options) {
+  const uint64_t pixels = uint64_t(options.width) * options.height;
+  const bool isSound = options.keepPixelMeans
+                           ? pixels == file.count<PixelSums>("frame.pilot")
+                           : TileGrid(options).tileCount() == file.count<uint8_t>("frame.tiles");
+  file.require(isSound, "frame.options: are damaged");
+  return pixels;
 }
 
 PixelMaps readPixelMaps(const Archive& file, size_t pixels) {
@@ -245,25 +269,25 @@ PixelMaps readPixelMaps(const Archive& file, size_t pixels) {
 
 SavedFrame::SavedFrame(const Archive& file)
     : options(file),
+      pixelCount(readSize(file, options.frame)),
       modelId(file.value<uint64_t>("frame.model")),
       hostData(file.get<uint8_t>("frame.hostData")),
-      pilot(readPilot(file, options.frame)),
-      later(file.get<PixelSums>("frame.later", pilot.size())),
       pixelValues(file.get<float>("frame.pixelValues")),
       schedule(options.frame),
       vertexCounts(file.value<VertexCounts>("frame.vertexCounts")),
-      pilotVertices(loadTiles(file, "frame.pilotVertices", pilot.size())),
-      unguided(SavedVertexSamples::load(file, "frame.unguided", pilot.size())),
+      pilotVertices(loadTiles(file, "frame.pilotVertices", pixelCount)),
+      unguided(SavedVertexSamples::load(file, "frame.unguided", pixelCount)),
       guide(Guide::load(file)),
-      pixelMaps(readPixelMaps(file, pilot.size())),
+      pixelMaps(readPixelMaps(file, pixelCount)),
       oraclePixels(file.get<PixelOracle::Pixel>("pixels.oracle")) {
-  const auto isFull = [this](size_t size) { return size == 0 || size == pilot.size(); };
+  const auto isFull = [this](size_t size) { return size == 0 || size == pixelCount; };
   file.require(isFull(oraclePixels.size()), "pixels.oracle: are damaged");
   file.require(isFull(guide.view().pixelCount), "guide.pixelCells: are damaged");
   file.require(isFull(pixelValues.size()), "frame.pixelValues: are damaged");
   const std::vector<uint32_t> counts = file.get<uint32_t>("frame.counts");
   file.require(isFull(counts.size()) && schedule.restore(counts), "frame.counts: are damaged");
   readPosition(file);
+  readPixels(file);
   if (file.contains("pass.tilesDone")) readPass(file);
 }
 
@@ -284,13 +308,29 @@ void SavedFrame::readPosition(const Archive& file) {
                "guide.built: is damaged");
 }
 
+// What is kept of pixels' samples; nothing where means are the host's and all is decided.
+void SavedFrame::readPixels(const Archive& file) {
+  const bool hasMeans = options.frame.keepPixelMeans;
+  if (hasMeans || position.next != ODIS_PASS_GUIDED || position.done == 0) {
+    pilot = keptOfPilot(options.frame, schedule);
+    later = keptOfLater(options.frame, schedule);
+  }
+  const auto read = [&](PixelSamples& samples, const std::string& name) {
+    std::vector<KeptSample> kept;
+    if (!hasMeans) kept = file.get<KeptSample>(name + ".kept");
+    file.require(samples.restore(file.get<PixelSums>(name), std::move(kept)), name + ": is damaged");
+  };
+  read(pilot, "frame.pilot");
+  read(later, "frame.later");
+}
+
 // What the pass under way has already.
 void SavedFrame::readPass(const Archive& file) {
   const size_t tiles = TileCollector(options.frame).tileCount();
   pass = std::make_unique<ResumedPass>();
   pass->tilesDone = file.get<uint8_t>("pass.tilesDone", tiles);
-  pass->vertices = loadTiles(file, "pass.vertices", pilot.size());
-  pass->samples = SavedVertexSamples::load(file, "pass", pilot.size());
+  pass->vertices = loadTiles(file, "pass.vertices", pixelCount);
+  pass->samples = SavedVertexSamples::load(file, "pass", pixelCount);
   const auto fits = [tiles](size_t size) { return size == 0 || size == tiles; };
   file.require(fits(pass->vertices.size()) && fits(pass->samples.size()), "pass.vertices: are damaged");
 }
@@ -299,6 +339,8 @@ void SavedFrame::readPass(const Archive& file) {
 void Frame::Data::moveTo(const FramePosition& at) {
   guidesBuilt = at.guidesBuilt;
   notFinite = at.notFinite;
+  pilotSamplesTaken = at.pilotSamplesTaken;
+  laterSamplesTaken = at.laterSamplesTaken;
   outsideFrame = at.outsideFrame;
   twice = at.twice;
   missingSamples = at.missingSamples;

@@ -9,6 +9,7 @@ namespace odis::core {
 // Where a frame is between its first sample and its last.
 struct FramePosition {
   uint64_t guidesBuilt, notFinite, outsideFrame, twice, buildingBytes, pilotVertices;
+  uint64_t pilotSamplesTaken, laterSamplesTaken;
   uint64_t missingSamples, passesWithoutVertices;
   double measuredCostRatio;
   // What the schedule says. One of the same options has to say it again, or other samples would be taken from
@@ -33,11 +34,12 @@ struct SavedFrame {
   explicit SavedFrame(const Archive& file);
 
   SavedOptions options;
+  size_t pixelCount;
   uint64_t modelId;
   std::vector<uint8_t> hostData;
-  std::vector<PixelSums> pilot, later;
   std::vector<float> pixelValues;
   Schedule schedule;
+  PixelSamples pilot, later;
   FramePosition position;
   VertexCounts vertexCounts;
   VertexTiles pilotVertices;
@@ -49,6 +51,7 @@ struct SavedFrame {
 
  private:
   void readPosition(const Archive& file);
+  void readPixels(const Archive& file);
   void readPass(const Archive& file);
 };
 

@@ -161,7 +161,7 @@ TEST(ApiContext, MemoryIsCounted) {
     FrameOptions options;
     options.width = options.height = 64;
     const Frame frame(options, context);
-    EXPECT_GE(context.memoryUse(), 64u * 64 * 124);
+    EXPECT_GE(context.memoryUse(), 64u * 64 * 112);
   }
   EXPECT_EQ(heard.held, 0);
   EXPECT_TRUE(heard.messages.empty());

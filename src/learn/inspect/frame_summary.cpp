@@ -36,6 +36,7 @@ std::vector<ChosenOption> chosenOptions(const core::SavedOptions& saved) {
   ofFrame("builtCellCost", &core::FrameOptions::builtCellCost);
   ofFrame("recordedRayCost", &core::FrameOptions::recordedRayCost);
   ofFrame("keepPilotVertices", &core::FrameOptions::keepPilotVertices);
+  ofFrame("keepPixelMeans", &core::FrameOptions::keepPixelMeans);
   ofFrame("tileOffsetX", &core::FrameOptions::tileOffsetX);
   ofFrame("tileOffsetY", &core::FrameOptions::tileOffsetY);
   ofGuide("cellsPerDiagonal", &core::GuideOptions::cellsPerDiagonal);
@@ -105,17 +106,22 @@ BuilderSummary summarizeBuilder(const core::Archive& file) {
 }
 
 void addImage(FrameSummary& result, const core::SavedFrame& saved) {
-  const auto pixels = uint32_t(saved.pilot.size());
+  const auto pixels = uint32_t(saved.pixelCount);
+  result.samples = saved.position.pilotSamplesTaken + saved.position.laterSamplesTaken;
+  result.hasMeans = saved.options.frame.keepPixelMeans;
+  if (!result.hasMeans) {
+    result.image.resize(pixels, render::Rgb(0, 0, 0));
+    return;
+  }
   result.fewest = UINT64_MAX;
   for (uint32_t pixel = 0; pixel < pixels; ++pixel) {
-    const PixelSums &pilot = saved.pilot[pixel], &later = saved.later[pixel];
+    const PixelSums &pilot = saved.pilot.sums()[pixel], &later = saved.later.sums()[pixel];
     const WeightedSums parts[] = {
-        {&pilot, core::pilotWeight(saved.options.frame, saved.schedule, pixel, later)}, {&later, 1}};
+        {&pilot, core::pilotWeight(saved.options.frame, saved.schedule, pixel, later.count)}, {&later, 1}};
     const Float3 color = weightedMean({parts, 2}).color;
     result.image.emplace_back(color.x, color.y, color.z);
     result.luminance += luminance(color) / double(pixels);
     const uint64_t samples = uint64_t(pilot.count) + later.count;
-    result.samples += samples;
     result.rays += uint64_t(pilot.rays) + later.rays;
     result.fewest = std::min(result.fewest, samples);
     result.most = std::max(result.most, samples);

@@ -73,8 +73,9 @@ struct BuilderSummary {
 struct FrameSummary {
   uint32_t width = 0, height = 0;
   std::vector<ChosenOption> options;
-  std::string model, state;            // in words
-  size_t tiles = 0, tilesDone = 0;     // of the pass under way; 0: none is
+  std::string model, state;         // in words
+  size_t tiles = 0, tilesDone = 0;  // of the pass under way; 0: none is
+  bool hasMeans = true;  // else the film is the host's: no rays, counts and luminance, a black image
   uint64_t samples = 0, rays = 0;      // of the image
   uint64_t fewest = 0, most = 0;       // samples of a pixel
   double luminance = 0;                // mean of the image

@@ -108,11 +108,15 @@ std::string frameText(const FrameSummary& f) {
   out += fact("model", f.model);
   for (const ChosenOption& option : f.options) out += fact("option " + option.name, option.value);
   const auto pixels = double(f.image.size());
-  out += fact("samples of a pixel",
-              fmt::format("{} to {}, mean {:.4g}", f.fewest, f.most, double(f.samples) / pixels));
-  out +=
-      fact("rays of a sample", fmt::format("{:.3g}", f.samples > 0 ? double(f.rays) / double(f.samples) : 0));
-  out += fact("mean luminance", fmt::format("{:.6g}", f.luminance));
+  const double samples = double(f.samples) / pixels;
+  if (f.hasMeans) {
+    out += fact("samples of a pixel", fmt::format("{} to {}, mean {:.4g}", f.fewest, f.most, samples));
+    out += fact("rays of a sample",
+                fmt::format("{:.3g}", f.samples > 0 ? double(f.rays) / double(f.samples) : 0));
+    out += fact("mean luminance", fmt::format("{:.6g}", f.luminance));
+  } else {
+    out += fact("samples of a pixel", fmt::format("mean {:.4g}; the image is the host's", samples));
+  }
   out += fact("samples not finite", std::to_string(f.notFinite));
   if (f.pilotVertices)
     out += fact("pilot's vertices",

@@ -70,6 +70,11 @@ class Archive {
   // Throws FileError if something else is saved here.
   void requireKind(std::string_view kind) const;
   bool contains(const std::string& name) const { return m_arrays.count(name) > 0; }
+  // How many elements an array has. Throws FileError as get().
+  template <class T>
+  size_t count(const std::string& name) const {
+    return find(name, sizeof(T)).size() / sizeof(T);
+  }
   // The elements of an array. Throws FileError if there is none of that name with elements of that size.
   template <class T>
   std::vector<T> get(const std::string& name) const {

@@ -34,9 +34,10 @@ double grayOf(const Color& color) {
   return luminance({float(color[0]), float(color[1]), float(color[2])});
 }
 
-// The samples of an image and what they are compared with.
+// The samples of an image and what they are compared with. Pixels are sums over samples, or give them.
+template <class Pixels>
 struct GuidedImage {
-  ArrayView<const PixelSums> pixels;
+  const Pixels& pixels;
   uint32_t width, height;
 
   // Sums over the samples of a rectangle without those of one pixel of it.
@@ -50,8 +51,9 @@ struct GuidedImage {
         addTo(sum, pixel);
         count += pixel.count;
       }
-    addTo(sum, pixels[without], -1);
-    return {sum, count - pixels[without].count};
+    const PixelSums& leftOut = pixels[without];
+    addTo(sum, leftOut, -1);
+    return {sum, count - leftOut.count};
   }
 };
 
@@ -94,12 +96,14 @@ struct Kinds {
 };
 
 // Compares the samples of a row of the image. `least` is added to the pixels' values.
-Kinds compareRow(ArrayView<const PixelSums> unguided, const GuidedImage& samples, uint32_t y, double least) {
+template <class Pixels>
+Kinds compareRow(const Pixels& unguided, const GuidedImage<Pixels>& samples, uint32_t y, double least) {
   Kinds result;
   const uint32_t blocks = (samples.width + kPixelBlock - 1) / kPixelBlock;
   for (uint32_t x = 0; x < samples.width; ++x) {
     const size_t i = size_t(y) * samples.width + x;
-    const PixelSums* kinds[] = {&unguided[i], &samples.pixels[i]};
+    const PixelSums &ofUnguided = unguided[i], &ofGuided = samples.pixels[i];
+    const PixelSums* kinds[] = {&ofUnguided, &ofGuided};
     if (kinds[0]->count == 0 || kinds[1]->count == 0) continue;
     auto [near, nearCount] = samples.around(x - std::min(x, 1u), y - std::min(y, 1u), x + 2, y + 2, i);
     const uint32_t blockX = x / kPixelBlock * kPixelBlock, blockY = y / kPixelBlock * kPixelBlock;
@@ -160,14 +164,14 @@ std::optional<GuidingGain> ratioOf(const BlockVariances& blocks) {
   return GuidingGain{ratio, std::sqrt(squares) / sums[0]};
 }
 
-}  // namespace
-
-std::optional<GuidingGain> guidedOverUnguided(const Tasks& tasks, ArrayView<const PixelSums> unguided,
-                                              ArrayView<const PixelSums> guided, uint32_t width) {
-  const GuidedImage samples{guided, width, uint32_t(guided.size() / width)};
+template <class Pixels>
+std::optional<GuidingGain> gainOf(const Tasks& tasks, const Pixels& unguided, const Pixels& guided,
+                                  uint32_t width) {
+  const GuidedImage<Pixels> samples{guided, width, uint32_t(guided.size() / width)};
   Color sum{};
   uint64_t count = 0;
-  for (const PixelSums& pixel : guided) {
+  for (size_t i = 0; i < guided.size(); ++i) {
+    const PixelSums& pixel = guided[i];
     addTo(sum, pixel);
     count += pixel.count;
   }
@@ -185,6 +189,20 @@ std::optional<GuidingGain> guidedOverUnguided(const Tasks& tasks, ArrayView<cons
   if (!gain) return {};
   const double rays = all.raysPerSample(1) / all.raysPerSample(0);
   return GuidingGain{gain->ratio * rays, gain->standardError * rays};
+}
+
+}  // namespace
+
+std::optional<GuidingGain> guidedOverUnguided(const Tasks& tasks, ArrayView<const PixelSums> unguided,
+                                              ArrayView<const PixelSums> guided, uint32_t width) {
+  return gainOf(tasks, unguided, guided, width);
+}
+
+std::optional<GuidingGain> guidedOverUnguided(const Tasks& tasks, const PixelSamples& unguided,
+                                              const PixelSamples& guided, uint32_t width) {
+  if (unguided.kept().empty() && guided.kept().empty())
+    return guidedOverUnguided(tasks, ArrayView<const PixelSums>(unguided.sums()), guided.sums(), width);
+  return gainOf(tasks, unguided, guided, width);
 }
 
 bool guidingIsWorse(const GuidingGain& gain, double guidedCost) {

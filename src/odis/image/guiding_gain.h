@@ -3,7 +3,7 @@
 
 #include <optional>
 
-#include "odis/pixel_sums.h"
+#include "odis/image/pixel_samples.h"
 #include "odis/work/tasks.h"
 
 namespace odis::core {
@@ -24,6 +24,8 @@ struct GuidingGain {
 // blocks of 8 x 8 pixels.
 std::optional<GuidingGain> guidedOverUnguided(const Tasks& tasks, ArrayView<const PixelSums> unguided,
                                               ArrayView<const PixelSums> guided, uint32_t width);
+std::optional<GuidingGain> guidedOverUnguided(const Tasks& tasks, const PixelSamples& unguided,
+                                              const PixelSamples& guided, uint32_t width);
 
 // Whether guided samples, whose rays take `guidedCost` times as long, are worse with a confidence of 99 %.
 // What was spent on the guide is spent in either case.

@@ -32,24 +32,19 @@ double pilotSamplesPerPixel(const OdisFrameOptions& options) {
   return pixels >= kManyPixels && options.samplesPerPixel < kManySamples ? 0.25 : 1.0;
 }
 
-// For each pixel how many of its samples belong to the pilot: `pilotSpp` rounded, or, if that is below one,
-// a sample in one pixel of each square of 1 / pilotSpp pixels (of the next whole side), which is chosen by
-// a hash of the square and the seed.
-std::vector<uint32_t> pilotCounts(const OdisFrameOptions& options, double pilotSpp) {
-  const size_t pixels = size_t(options.width) * options.height;
-  if (pilotSpp >= 1)
-    return std::vector<uint32_t>(pixels,
-                                 uint32_t(std::min(std::round(pilotSpp), double(options.samplesPerPixel))));
-  std::vector<uint32_t> counts(pixels, 0);
+// The pixels of a pilot of less than a sample per pixel: one of each square of 1 / pilotSpp pixels (of the
+// next whole side), which is chosen by a hash of the square and the seed.
+std::vector<uint8_t> pixelsInPilot(const OdisFrameOptions& options, double pilotSpp) {
+  std::vector<uint8_t> isInPilot(size_t(options.width) * options.height, 0);
   const uint32_t side = uint32_t(std::lround(1 / std::sqrt(pilotSpp)));
   for (uint32_t y = 0; y < options.height; y += side)
     for (uint32_t x = 0; x < options.width; x += side) {
       const uint64_t hash = mixBits(options.seed ^ (uint64_t(y / side) << 32 | (x / side)));
       const uint32_t chosenX = x + uint32_t(hash % side), chosenY = y + uint32_t((hash >> 32) % side);
       if (chosenX < options.width && chosenY < options.height)
-        counts[size_t(chosenY) * options.width + chosenX] = 1;
+        isInPilot[size_t(chosenY) * options.width + chosenX] = 1;
     }
-  return counts;
+  return isInPilot;
 }
 
 }  // namespace
@@ -61,8 +56,11 @@ Schedule::Schedule(const OdisFrameOptions& options)
   double pilotSpp = 0;
   if (options.guided) {
     pilotSpp = pilotSamplesPerPixel(options);
-    m_pilotCounts = pilotCounts(options, pilotSpp);
-    if (pilotSpp >= 1 && !m_pilotCounts.empty()) m_mostRemaining -= m_pilotCounts[0];
+    if (pilotSpp >= 1)
+      m_pilotEverywhere = uint32_t(std::min(std::round(pilotSpp), double(options.samplesPerPixel)));
+    else
+      m_isInPilot = pixelsInPilot(options, pilotSpp);
+    m_mostRemaining -= m_pilotEverywhere;
     if (options.oracleSamples == 0)
       m_lastRefinement = std::bit_floor(std::min(options.refinementSamples, m_mostRemaining / 2) + 1) - 1;
   }
@@ -72,7 +70,8 @@ Schedule::Schedule(const OdisFrameOptions& options)
 }
 
 uint64_t Schedule::pilotSamples() const {
-  return std::accumulate(m_pilotCounts.begin(), m_pilotCounts.end(), uint64_t(0));
+  return m_isInPilot.empty() ? m_pixels * m_pilotEverywhere
+                             : std::accumulate(m_isInPilot.begin(), m_isInPilot.end(), uint64_t(0));
 }
 
 uint64_t Schedule::remainingSamples() const {

@@ -12,17 +12,19 @@ namespace odis::core {
 using SampleRange = OdisSampleRange;
 
 // A pixel's first samples are the pilot's, where there is one; what remains is guided. The guide learns
-// from the first samples that remain, too, and after some of them it is settled how many each pixel has. 8
-// bytes a pixel.
+// from the first samples that remain, too, and after some of them it is settled how many each pixel has. A
+// byte a pixel where not all are in the pilot, and 4 once counts are settled.
 class Schedule {
  public:
   explicit Schedule(const OdisFrameOptions& options);
 
   // How many samples of the pixel belong to the pilot.
   uint32_t pilotCount(uint32_t pixel) const {
-    assert(m_pilotCounts.empty() || pixel < m_pilotCounts.size());
-    return m_pilotCounts.empty() ? 0 : m_pilotCounts[pixel];
+    assert(m_isInPilot.empty() || pixel < m_isInPilot.size());
+    return m_isInPilot.empty() ? m_pilotEverywhere : m_isInPilot[pixel];
   }
+  // The number of those in the pixel that has the most.
+  uint32_t mostPilotSamples() const { return m_isInPilot.empty() ? m_pilotEverywhere : 1; }
   // The number of samples of all pilots together.
   uint64_t pilotSamples() const;
   // How many samples remain after them in all pixels together, as far as that is settled.
@@ -61,6 +63,8 @@ class Schedule {
   // would if all pixels had as many: all of them together weigh as much as there are samples per pixel.
   float sampleWeight(uint32_t pixel, bool ofPilot, double pilotWeight) const;
 
+  uint64_t bytes() const { return m_isInPilot.size() + m_counts.size() * sizeof(uint32_t); }
+
  private:
   // How many samples are left in all pixels together when `done` of those that remain are taken in each. 0
   // before it is settled how many each pixel has.
@@ -68,8 +72,9 @@ class Schedule {
 
   uint64_t m_pixels;
   uint32_t m_spp;
-  std::vector<uint32_t> m_pilotCounts;  // [pixel]; empty: no pilot
-  std::vector<uint32_t> m_counts;       // [pixel] all samples; empty: m_spp everywhere
+  std::vector<uint8_t> m_isInPilot;  // [pixel] 1 for a sample, else 0; empty: m_pilotEverywhere
+  uint32_t m_pilotEverywhere = 0;
+  std::vector<uint32_t> m_counts;  // [pixel] all samples; empty: m_spp everywhere
   uint32_t m_mostRemaining, m_lastRefinement = 0, m_spreadAfter = 0;
 };
 
