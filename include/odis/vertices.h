@@ -71,7 +71,8 @@ typedef struct OdisPathVertex {
   // whole shutter time.
   float time ODIS_DEFAULT(0);
 
-  // These three numbers identify the vertex. Sums are ordered by them, whatever the order of delivery.
+  // These three numbers identify the vertex. Frames order sums by them, whatever the order of delivery;
+  // builders add in the order in which vertices come.
   uint32_t pixel ODIS_DEFAULT(0);   // index within the frame
   uint32_t sample ODIS_DEFAULT(0);  // of the pixel
   uint16_t depth ODIS_DEFAULT(0);   // 1 for the first vertex

@@ -277,7 +277,7 @@ def main():
     parser.add_argument("pages", nargs="*", metavar="PAGE", help="default: all")
     arguments = parser.parse_args()
     pages = arguments.pages or ["README.md", *sorted(str(p.relative_to(ROOT)) for p in ROOT.glob("docs/*.md")),
-                                "examples/README.md", "examples/tiny/README.md"]
+                                "examples/README.md", "examples/tiny/README.md", "examples/film/README.md"]
     with tempfile.TemporaryDirectory(prefix="odis-manual-") as folder:
         runner = Runner(arguments.odis.resolve(), pathlib.Path(folder))
         for page in pages:

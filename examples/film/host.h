@@ -1,0 +1,215 @@
+// What the programs of this folder share: a small path tracer, guided by ODIS (diffuse surfaces, next-event
+// estimation, roulette; ../tiny/tiny_odis.cpp says what each line is for), a command line and an image file.
+#pragma once
+
+#include <array>
+#include <atomic>
+#include <cstdint>
+#include <cstdio>
+#include <cstdlib>
+#include <functional>
+#include <string>
+#include <thread>
+
+#include <odis/odis.hpp>
+
+#include "../tiny/scene.h"
+
+struct Settings {
+  std::string scene = "sun", output = "image", save;
+  uint32_t width = 640, height = 360, spp = 16, threads = std::max(std::thread::hardware_concurrency(), 1u);
+  uint32_t passes = UINT32_MAX;  // after which the program ends
+  uint64_t seed = 0;
+  bool guided = true;
+};
+
+// `--name value` for the names above; complains with std::invalid_argument.
+inline Settings parseSettings(int count, char** arguments) {
+  Settings settings;
+  for (int i = 1; i < count; i += 2) {
+    const std::string name = arguments[i], value = i + 1 < count ? arguments[i + 1] : "";
+    const auto number = [&] {
+      if (value.empty() || value.size() > 9 || value.find_first_not_of("0123456789") != std::string::npos)
+        throw std::invalid_argument(name + " needs a whole number, not '" + value + "'");
+      return uint32_t(std::atol(value.c_str()));
+    };
+    if (name == "--scene")
+      settings.scene = value;
+    else if (name == "-o")
+      settings.output = value;
+    else if (name == "--save")
+      settings.save = value;
+    else if (name == "--width")
+      settings.width = number();
+    else if (name == "--height")
+      settings.height = number();
+    else if (name == "--spp")
+      settings.spp = number();
+    else if (name == "--seed")
+      settings.seed = number();
+    else if (name == "--threads")
+      settings.threads = number();
+    else if (name == "--passes")
+      settings.passes = number();
+    else if (name == "--guided")
+      settings.guided = number() != 0;
+    else
+      throw std::invalid_argument("unknown argument '" + name + "'");
+  }
+  return settings;
+}
+
+// A frame whose film is the host's.
+inline odis::FrameOptions frameOptions(const Settings& settings, const Scene& scene) {
+  odis::FrameOptions options;
+  options.width = settings.width, options.height = settings.height;
+  options.samplesPerPixel = settings.spp, options.seed = settings.seed, options.guided = settings.guided;
+  options.guide.lightGroups = uint32_t(scene.lightCount());
+  options.keepPixelMeans = false;
+  return options;
+}
+
+// Calls body(i) for each i below count, on so many threads.
+inline void parallelFor(uint32_t count, uint32_t threads, const std::function<void(uint32_t)>& body) {
+  std::atomic<uint32_t> next{0};
+  std::vector<std::thread> workers;
+  for (uint32_t t = 0; t < threads; ++t)
+    workers.emplace_back([&] {
+      for (uint32_t i = next++; i < count; i = next++) body(i);
+    });
+  for (std::thread& worker : workers) worker.join();
+}
+
+// ---- paths ----
+
+// Independent random numbers in [0, 1) for one sample (SplitMix64).
+class Random {
+ public:
+  Random(uint64_t seed, uint32_t pixel, uint32_t sample)
+      : m_state(mix(mix(seed * 0x9e3779b97f4a7c15ull + pixel) + sample)) {}
+  float next() { return float(mix(m_state += 0x9e3779b97f4a7c15ull) >> 40) * 0x1p-24f; }
+
+ private:
+  static uint64_t mix(uint64_t x) {
+    x = (x ^ (x >> 30)) * 0xbf58476d1ce4e5b9ull;
+    x = (x ^ (x >> 27)) * 0x94d049bb133111ebull;
+    return x ^ (x >> 31);
+  }
+  uint64_t m_state;
+};
+
+inline constexpr size_t kMostLights = 2;
+
+// What a path brings: to the frame its colour and its rays, to the film everything but the rays.
+struct Traced {
+  uint32_t pixel = 0, sample = 0;
+  float x = 0, y = 0;  // its place in the image, in pixels
+  Vec3 color, albedo, normal;
+  std::array<Vec3, kMostLights> byLight;  // parts of the colour
+  uint32_t rays = 0;                      // shadow rays included
+  float weight = 0;                       // in the film, where it is known already
+
+  odis::FrameSample forFrame() const { return {pixel, sample, color, rays}; }
+};
+
+inline float powerHeuristic(float pdf, float other) {
+  return pdf > 0 ? 1 / (1 + other / pdf * (other / pdf)) : 0;
+}
+
+// Traces a path of a pass; `recorder` is null where its vertices are not wanted.
+inline Traced trace(const Scene& scene, const Settings& settings, const odis::FramePass& pass,
+                    odis::ArrayView<const float> pixelValues, uint32_t pixel, uint32_t sample,
+                    odis::PathRecorder* recorder) {
+  const odis::GuideView& guide = *pass.guide;
+  Random random(pass.seed, pixel, sample);
+  Traced traced;
+  traced.pixel = pixel, traced.sample = sample;
+  // Positions are uniform in the pixel, whatever the filter of the film is.
+  traced.x = float(pixel % settings.width) + random.next();
+  traced.y = float(pixel / settings.width) + random.next();
+  const float scale = 2 / float(settings.width);
+  Ray ray = scene.cameraRay(scale * traced.x - 1, 0.5f * scale * float(settings.height) - scale * traced.y);
+  Vec3 throughput{1, 1, 1};
+  float rayPdf = 0;                                                              // of the ray's direction
+  std::vector<float> lights(scene.lightCount(), 1 / float(scene.lightCount()));  // the probability of each
+  const uint32_t path = recorder ? recorder->begin({pixel, sample}) : 0;
+  const auto bring = [&](const Vec3& color, size_t light) {
+    traced.color = traced.color + color;
+    traced.byLight[light] = traced.byLight[light] + color;
+  };
+  for (uint32_t depth = 1;; ++depth) {
+    const Hit hit = scene.intersect(ray);
+    ++traced.rays;
+    if (!hit.shape) break;
+    if (depth == 1) traced.albedo = hit.color, traced.normal = hit.n;
+    odis::SurfaceEvent surface;
+    surface.position = hit.p, surface.normal = hit.n, surface.wo = ray.direction * -1;
+    surface.distance = hit.distance;
+    if (recorder) recorder->surface(path, surface);
+    if (maxComponent(hit.emission) > 0) {
+      const size_t light = scene.lightIndex(hit.shape);
+      odis::EmissionEvent emission;
+      emission.radiance = hit.emission;
+      emission.lightPdf =
+          hit.shape->directionPdf(ray.origin, ray.direction, hit.distance) * lights[light];
+      emission.misWeight = depth > 1 ? powerHeuristic(rayPdf, emission.lightPdf) : 1;
+      bring(throughput * hit.emission * emission.misWeight, light);
+      if (recorder) recorder->emission(path, emission);
+    }
+    if (depth == 16) break;
+
+    // What the guide has learned here: whether the path goes on, which light is asked, where the path goes.
+    const uint32_t cell = odis::findCell(guide, {hit.p, hit.n});
+    const odis::CellDecisions told = cell != odis::kNoCell ? guide.decisions[cell] : odis::CellDecisions();
+    float survival = depth > 3 ? std::min(maxComponent(throughput), 0.95f) : 1;
+    if (cell != odis::kNoCell && depth > 1)
+      survival = odis::survivalProbability(guide.rules, told.survivalFactor,
+                                           luminance(throughput) / pixelValues[pixel], depth);
+    if (random.next() >= survival) break;
+    throughput = throughput / survival;
+    if (recorder) recorder->survived(path, survival);
+    const odis::Mixture mixture(told.bsdfFraction[0], 1.0f);
+    odis::VertexMap<float> map;
+    if (mixture.guides()) map.prepare(guide.maps, int32_t(cell), hit.n, 0);
+    const auto pdfOf = [&](const Vec3& wi) {
+      const float bsdf = std::max(dot(wi, hit.n), 0.0f) / kPi;
+      return mixture.guides() ? mixture.pdf(bsdf, bsdf, map.pdf(wi)) : bsdf;
+    };
+
+    // Next-event estimation.
+    const float* table = told.learnedLightFraction > 0 ? odis::learnedLights(guide, cell).cdf : nullptr;
+    for (size_t i = 0; table && i < lights.size(); ++i)
+      lights[i] = std::lerp(1 / float(lights.size()), table[i + 1] - table[i], told.learnedLightFraction);
+    const size_t chosen = lights.size() > 1 && random.next() >= lights[0] ? 1 : 0;
+    const float u1 = random.next(), u2 = random.next();
+    LightSample light = scene.sampleLight(chosen, lights[chosen], hit.p, u1, u2);
+    const float cosine = std::max(dot(light.wi, hit.n), 0.0f);
+    if (cosine > 0) {
+      ++traced.rays;
+      if (scene.isHidden({hit.p, light.wi}, light.distance)) light.pdf = 0;
+      odis::LightEvent event;
+      const Vec3 unweighted =
+          light.pdf > 0 ? hit.color * light.radiance * (cosine / kPi / light.pdf) : Vec3();
+      const Vec3 weighted = unweighted * powerHeuristic(light.pdf, light.pdf > 0 ? pdfOf(light.wi) : 0);
+      event.unweighted = unweighted, event.weighted = weighted, event.wi = light.wi, event.pdf = light.pdf;
+      event.bsdfPdf = event.guidablePdf = cosine / kPi;
+      event.group = uint32_t(chosen), event.groupProbability = lights[chosen];
+      bring(throughput * weighted, chosen);
+      if (recorder) recorder->light(path, event);
+    }
+
+    // The path goes on in a direction of the BSDF, or of the map.
+    const float v1 = random.next(), v2 = random.next(), r = std::sqrt(v1), phi = 2 * kPi * v2;
+    Vec3 wi = Frame(hit.n).toWorld({r * std::cos(phi), r * std::sin(phi), std::sqrt(1 - v1)});
+    if (random.next() >= mixture.bsdfFraction()) wi = map.sample(v1, v2).wi;
+    rayPdf = pdfOf(wi);
+    odis::BounceEvent bounce;
+    const Vec3 weight = rayPdf > 0 ? hit.color * (std::max(dot(wi, hit.n), 0.0f) / kPi / rayPdf) : Vec3();
+    bounce.wi = wi, bounce.weight = weight, bounce.pdf = rayPdf;
+    if (recorder) recorder->bounce(path, bounce);
+    throughput = throughput * weight;
+    ray = {hit.p, wi};
+    if (maxComponent(throughput) == 0) break;
+  }
+  return traced;
+}

@@ -1,0 +1,57 @@
+// A progressive host: there is an image after every pass, and the rendering may end after any of them and go
+// on another day, with the same bits as if it had not ended. --passes ends it, --save names the file that it
+// goes on from.
+#include "film.h"
+
+#include <odis/tiles.h>
+
+// A frame that was saved, with its film, or a new one.
+odis::Frame openFrame(const Settings& settings, const odis::FrameOptions& options, Film& film) {
+  std::FILE* file = settings.save.empty() ? nullptr : std::fopen(settings.save.c_str(), "rb");
+  if (!file) return odis::Frame(options);
+  std::fclose(file);
+  odis::Frame frame = odis::Frame::load(settings.save, options.guide.model);
+  film.restore(frame.hostData());
+  return frame;
+}
+
+int main(int count, char** arguments) try {
+  const Settings settings = parseSettings(count, arguments);
+  const Scene scene = makeScene(settings.scene);
+  odis::FrameOptions options = frameOptions(settings, scene);
+  // The film is to be right after every pass: with even counts the weights so far are alike in all pixels.
+  options.adaptive = false;
+  Film film(wholeImage(settings));
+  odis::Frame frame = openFrame(settings, options, film);
+  const odis::TileGrid tiles(options);
+  for (uint32_t passes = 0; passes < settings.passes; ++passes) {
+    const odis::FramePass* pass = frame.beginPass();
+    if (!pass) break;
+    std::vector<std::vector<Traced>> samples(tiles.tileCount());
+    parallelFor(tiles.tileCount(), settings.threads, [&](uint32_t tile) {
+      thread_local odis::PathRecorder recorder;
+      std::vector<odis::FrameSample> forFrame;
+      tiles.forEachPixel(tile, [&](uint32_t pixel) {
+        odis::PathRecorder* const records = frame.wantsVertices(pixel) ? &recorder : nullptr;
+        const odis::SampleRange range = frame.samples(pixel);
+        for (uint32_t i = range.first; i < range.first + range.count; ++i) {
+          samples[tile].push_back(trace(scene, settings, *pass, frame.pixelValues(), pixel, i, records));
+          samples[tile].back().weight = range.weight;
+          forFrame.push_back(samples[tile].back().forFrame());
+        }
+      });
+      frame.add(forFrame, recorder.finish());
+    });
+    // The library learns on a thread of its own while this one makes the image.
+    frame.startEndPass();
+    for (const std::vector<Traced>& ofTile : samples)
+      for (const Traced& s : ofTile) film.splat(s, s.weight);
+    film.write(settings.output);
+    frame.waitForPass();
+    frame.setHostData(film.bytes());
+    if (!settings.save.empty()) frame.save(settings.save);
+  }
+} catch (const std::exception& error) {
+  std::fprintf(stderr, "error: %s\n", error.what());
+  return 1;
+}
