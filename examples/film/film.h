@@ -28,7 +28,9 @@ class Film {
     const auto first = [](float at, int begin) {
       return std::max(int(std::floor(at - kRadius - 0.5f)) + 1, begin);
     };
-    const auto end = [](float at, int end) { return std::min(int(std::floor(at + kRadius - 0.5f)) + 1, end); };
+    const auto end = [](float at, int end) {
+      return std::min(int(std::floor(at + kRadius - 0.5f)) + 1, end);
+    };
     for (int y = first(s.y, m_area.y0); y < end(s.y, m_area.y1); ++y)
       for (int x = first(s.x, m_area.x0); x < end(s.x, m_area.x1); ++x) {
         const float f = weight * filter(float(x) + 0.5f - s.x) * filter(float(y) + 0.5f - s.y);
@@ -57,7 +59,8 @@ class Film {
     return {reinterpret_cast<const uint8_t*>(m_pixels.data()), m_pixels.size() * sizeof(Pixel)};
   }
   void restore(odis::ArrayView<const uint8_t> saved) {
-    if (saved.size() != m_pixels.size() * sizeof(Pixel)) throw std::runtime_error("the film has another size");
+    if (saved.size() != m_pixels.size() * sizeof(Pixel))
+      throw std::runtime_error("the film has another size");
     std::copy(saved.begin(), saved.end(), reinterpret_cast<uint8_t*>(m_pixels.data()));
   }
 

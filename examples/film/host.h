@@ -150,8 +150,7 @@ inline Traced trace(const Scene& scene, const Settings& settings, const odis::Fr
       const size_t light = scene.lightIndex(hit.shape);
       odis::EmissionEvent emission;
       emission.radiance = hit.emission;
-      emission.lightPdf =
-          hit.shape->directionPdf(ray.origin, ray.direction, hit.distance) * lights[light];
+      emission.lightPdf = hit.shape->directionPdf(ray.origin, ray.direction, hit.distance) * lights[light];
       emission.misWeight = depth > 1 ? powerHeuristic(rayPdf, emission.lightPdf) : 1;
       bring(throughput * hit.emission * emission.misWeight, light);
       if (recorder) recorder->emission(path, emission);

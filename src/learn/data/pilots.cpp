@@ -36,7 +36,7 @@ Pilot trace(const render::Scene& scene, const render::LightSampler& lights, uint
   pass.wantsVertices = true;
   Pilot pilot;
   pilot.image.assign(pixels, render::Rgb(0, 0, 0));
-  render::TileVertices tiles(pass.grid().count());
+  render::TileVertices tiles(pass.sampledTiles().count());
   pass.deliver = [&](uint32_t tile, ArrayView<const FrameSample> samples,
                      ArrayView<const PathVertex> vertices) {
     for (const FrameSample& s : samples) pilot.image[s.pixel] = render::Rgb(s.value.x, s.value.y, s.value.z);

@@ -13,11 +13,9 @@ namespace {
 
 constexpr int kMostTaps = 2 * kMostSplatReach + 1;
 
-// Rows are filled up with zeros to vectors of eight; blocks end that far beyond their last pixel.
-constexpr int kVector = 8;
 constexpr int kColorChannels = 4;
 
-using Taps = std::array<float, kMostTaps + kVector>;
+using Taps = std::array<float, kMostTaps>;
 
 // The filter along both axes at the pixels around a sample.
 struct FilterAround {
@@ -25,31 +23,32 @@ struct FilterAround {
   int taps;
 };
 
-// Adds a sample of four channels to the pixels around it, rows of which lie `stride` floats apart.
+// Adds a sample of four channels to the pixels around it, rows of which lie `stride` numbers apart.
 ODIS_WIDE void addColors(const FilterAround& filter, const float* value, float weight, size_t stride,
-                         float* to) {
+                         double* to) {
   const float scaled[kColorChannels] = {weight * value[0], weight * value[1], weight * value[2],
                                         weight * value[3]};
-  alignas(32) float row[kColorChannels * kMostTaps + kVector];
+  alignas(32) double row[kColorChannels * kMostTaps];
   for (int k = 0; k < filter.taps; ++k)
-    for (int c = 0; c < kColorChannels; ++c) row[kColorChannels * k + c] = filter.x[size_t(k)] * scaled[c];
-  const int width = (kColorChannels * filter.taps + kVector - 1) / kVector * kVector;
-  for (int i = kColorChannels * filter.taps; i < width; ++i) row[i] = 0;
+    for (int c = 0; c < kColorChannels; ++c)
+      row[kColorChannels * k + c] = double(filter.x[size_t(k)]) * double(scaled[c]);
   for (int j = 0; j < filter.taps; ++j, to += stride) {
-    const float scale = filter.y[size_t(j)];
-    for (int i = 0; i < width; ++i) to[i] += scale * row[i];
+    const double scale = filter.y[size_t(j)];
+    for (int i = 0; i < kColorChannels * filter.taps; ++i) to[i] += scale * row[i];
   }
 }
 
 // The same of any channels, the first of which are multiplied by the filter, others by its absolute value.
 void addChannels(const FilterAround& filter, const float* value, float weight, const SplatChannels& channels,
-                 size_t stride, float* to) {
+                 size_t stride, double* to) {
   for (int j = 0; j < filter.taps; ++j, to += stride) {
-    float* at = to;
+    double* at = to;
     for (int k = 0; k < filter.taps; ++k) {
-      const float scale = weight * filter.x[size_t(k)] * filter.y[size_t(j)];
-      for (int c = 0; c < channels.count; ++c)
-        *at++ += (c < channels.filtered ? scale : std::abs(scale)) * value[c];
+      const double x = filter.x[size_t(k)], y = filter.y[size_t(j)];
+      for (int c = 0; c < channels.count; ++c) {
+        const double scaled = weight * value[c];
+        *at++ += c < channels.filtered ? y * (x * scaled) : std::abs(y) * (std::abs(x) * scaled);
+      }
     }
   }
 }
@@ -78,13 +77,13 @@ bool readArray(std::span<const uint8_t>& bytes, std::vector<T>& array) {
 
 }  // namespace
 
-SplatFilm::SplatFilm(const FilmSettings& film, const TileGrid& tiles, const SplatChannels& channels)
+SplatFilm::SplatFilm(const FilmSettings& film, const SampledTiles& tiles, const SplatChannels& channels)
     : m_filter(film.filter),
       m_crop(film.crop),
       m_tiles(tiles),
       m_channels(channels),
       m_reach(m_filter->reach()),
-      m_side(kTileSize + 2 * m_reach),
+      m_side(int(kTileSize) + 2 * m_reach),
       m_blocks(tiles.count()),
       m_kept(tiles.count()) {
   assert(m_reach <= kMostSplatReach);
@@ -96,9 +95,10 @@ void SplatFilm::add(uint32_t tile, std::span<const SplatPlace> places, std::span
   assert(values.size() == places.size() * channels);
   const bool areColors = m_channels.count == kColorChannels && m_channels.filtered == kColorChannels;
   const size_t stride = size_t(m_side) * channels;
-  // Sums of the few samples of a call are added to those of all: less is rounded away in long renderings.
-  thread_local std::vector<float> block;
-  block.assign(blockSize() + kVector, 0.0f);
+  // Sums of the few samples of a call, which are added to those of all before: so little is rounded away that
+  // constants stay constant, and long renderings exact, in single precision.
+  thread_local std::vector<double> block;
+  block.assign(blockSize(), 0.0);
   FilterAround filter;
   filter.taps = 2 * m_reach + 1;
   for (size_t i = 0; i < places.size(); ++i) {
@@ -106,7 +106,7 @@ void SplatFilm::add(uint32_t tile, std::span<const SplatPlace> places, std::span
     assert(place.x < kTileSize && place.y < kTileSize);
     m_filter->taps(place.offset.x, filter.x.data());
     m_filter->taps(place.offset.y, filter.y.data());
-    float* to = &block[size_t(place.y) * stride + size_t(place.x) * channels];
+    double* to = &block[size_t(place.y) * stride + size_t(place.x) * channels];
     if (areColors)
       addColors(filter, &values[i * channels], place.weight, stride, to);
     else
@@ -114,7 +114,7 @@ void SplatFilm::add(uint32_t tile, std::span<const SplatPlace> places, std::span
   }
   std::vector<float>& sums = m_blocks[tile];
   if (sums.empty()) sums.assign(blockSize(), 0.0f);
-  for (size_t i = 0; i < sums.size(); ++i) sums[i] += block[i];
+  for (size_t i = 0; i < sums.size(); ++i) sums[i] += float(block[i]);
 }
 
 void SplatFilm::keep(uint32_t tile, std::span<const SplatPlace> places, std::span<const float> values) {
@@ -127,7 +127,7 @@ void SplatFilm::addKept(const std::function<float(uint32_t pixel)>& weight) {
   tbb::parallel_for(uint32_t(0), m_tiles.count(), [&](uint32_t tile) {
     Kept& kept = m_kept[tile];
     if (kept.places.empty()) return;
-    const Vec2i corner = m_tiles.tile(tile).corner;
+    const Vec2i corner = m_tiles.corner(tile);
     for (SplatPlace& place : kept.places)
       place.weight = weight(m_tiles.pixelIndex(corner + Vec2i(place.x, place.y)));
     add(tile, kept.places, kept.values);
@@ -141,8 +141,8 @@ std::vector<float> SplatFilm::sums() const {
   for (uint32_t tile = 0; tile < m_tiles.count(); ++tile) {
     if (m_blocks[tile].empty()) continue;
     // Of the block and of the crop, in pixels of the crop.
-    const int left = m_tiles.tile(tile).corner.x - m_reach - m_crop.x,
-              top = m_tiles.tile(tile).corner.y - m_reach - m_crop.y;
+    const int left = m_tiles.corner(tile).x - m_reach - m_crop.x,
+              top = m_tiles.corner(tile).y - m_reach - m_crop.y;
     const int x0 = std::max(left, 0), x1 = std::min(left + m_side, m_crop.width);
     if (x0 >= x1) continue;
     for (int y = std::max(top, 0); y < std::min(top + m_side, m_crop.height); ++y) {

@@ -12,7 +12,7 @@
 #include <span>
 #include <vector>
 
-#include "render/film/tile_grid.h"
+#include "render/film/sampled_tiles.h"
 
 namespace odis::render {
 
@@ -37,14 +37,14 @@ struct SplatChannels {
 // default gaussian; samples that are kept take 20 bytes and 4 a channel.
 class SplatFilm {
  public:
-  SplatFilm(const FilmSettings& film, const TileGrid& tiles, const SplatChannels& channels);
+  SplatFilm(const FilmSettings& film, const SampledTiles& tiles, const SplatChannels& channels);
 
   int channels() const { return m_channels.count; }
   // Adds samples of a tile, [sample][channel]. Threads may add to different tiles.
   void add(uint32_t tile, std::span<const SplatPlace> places, std::span<const float> values);
   // Keeps samples whose weights are not known yet. Likewise.
   void keep(uint32_t tile, std::span<const SplatPlace> places, std::span<const float> values);
-  // Adds those that were kept with the weight of their pixel, whose number is that of TileGrid::pixelIndex.
+  // Adds those that were kept with the weight of their pixel, whose number is that of SampledTiles::pixelIndex.
   void addKept(const std::function<float(uint32_t pixel)>& weight);
 
   // [pixel of the crop][channel]
@@ -66,7 +66,7 @@ class SplatFilm {
 
   std::shared_ptr<const Filter> m_filter;
   Crop m_crop;
-  TileGrid m_tiles;
+  SampledTiles m_tiles;
   SplatChannels m_channels;
   int m_reach, m_side;                       // of a tile with its border, in pixels
   std::vector<std::vector<float>> m_blocks;  // [tile][pixel][channel]; empty: nothing was added

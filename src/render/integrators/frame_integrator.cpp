@@ -29,11 +29,7 @@ void useGuide(PathSettings& settings, const GuideView& guide, const RenderOption
 
 FrameOptions frameOptions(const RenderJob& job) {
   const RenderOptions& options = job.options();
-  FrameOptions frame;
-  frame.width = uint32_t(job.tiles().sampled().width);
-  frame.height = uint32_t(job.tiles().sampled().height);
-  frame.tileOffsetX = uint32_t(job.tiles().offset().x);
-  frame.tileOffsetY = uint32_t(job.tiles().offset().y);
+  FrameOptions frame{job.tiles().asFrame(), {}};
   frame.samplesPerPixel = uint32_t(options.spp);
   frame.seed = options.seed;
   frame.guided = false;

@@ -23,7 +23,7 @@ class RenderJob {
   // Which kind of film the image has, and the pixels that are sampled for it: with a film that splats, those
   // around the crop as well. Pixels are counted in these.
   FilmKind film() const { return m_film; }
-  const TileGrid& tiles() const { return m_tiles; }
+  const SampledTiles& tiles() const { return m_tiles; }
   size_t pixelCount() const { return m_tiles.sampled().pixels(); }
   // The numbers of a pixel of the full image, and of the crop's pixel number `index`.
   uint32_t pixelIndex(const Vec2i& pixel) const { return m_tiles.pixelIndex(pixel); }
@@ -54,7 +54,7 @@ class RenderJob {
   const Scene& m_scene;
   const RenderOptions& m_options;
   FilmKind m_film;
-  TileGrid m_tiles;
+  SampledTiles m_tiles;
   Progress& m_progress;
   LightSampler m_lights;
   std::chrono::steady_clock::time_point m_start;

@@ -11,7 +11,7 @@ constexpr uint64_t kSampleImageSeed = 0x73616d706c65ull;
 
 SampleImage renderSampleImage(Pass pass, uint32_t sample, Purposes redrawn, Progress& progress,
                               const std::function<bool()>& stop) {
-  const size_t pixels = pass.grid().sampled().pixels();
+  const size_t pixels = pass.sampledTiles().sampled().pixels();
   SampleImage image;
   image.emitted.assign(pixels, Rgb(0, 0, 0));
   image.value.assign(pixels, Rgb(0, 0, 0));

@@ -24,23 +24,13 @@ struct PixelSamples {
   SampleRange samples;
 };
 
-// Those of the pixels of a tile that have any, in blocks of 4 x 4 pixels, so that neighbours in the list are
-// neighbours in the image.
-std::vector<PixelSamples> samplesOfTile(const Pass& pass, const TileGrid& grid, const Tile& tile) {
-  constexpr int kBlock = 4;
-  const Crop& sampled = tile.sampled;
+// Those of the pixels of a tile that have any.
+std::vector<PixelSamples> samplesOfTile(const Pass& pass, const SampledTiles& tiles, uint32_t tile) {
   std::vector<PixelSamples> pixels;
-  for (int i = 0; i < kTileSize * kTileSize; ++i) {
-    const int block = i / (kBlock * kBlock), within = i % (kBlock * kBlock);
-    const Vec2i at(tile.corner.x + block % (kTileSize / kBlock) * kBlock + within % kBlock,
-                   tile.corner.y + block / (kTileSize / kBlock) * kBlock + within / kBlock);
-    if (at.x < sampled.x || at.y < sampled.y || at.x >= sampled.x + sampled.width ||
-        at.y >= sampled.y + sampled.height)
-      continue;
-    const uint32_t pixel = grid.pixelIndex(at);
+  tiles.forEachPixel(tile, [&](uint32_t pixel) {
     if (const SampleRange samples = pass.samples(pixel); samples.count > 0)
-      pixels.push_back({pixel, at, samples});
-  }
+      pixels.push_back({pixel, tiles.pixelAt(pixel), samples});
+  });
   return pixels;
 }
 
@@ -82,7 +72,7 @@ void collectSplat(const Splats& films, const Vec2i& inTile, const Path& path, fl
 }
 
 // Adds what traced paths brought.
-void collect(const Pass& pass, const Tile& tile, TileResult& result) {
+void collect(const Pass& pass, const Vec2i& corner, TileResult& result) {
   for (size_t i = 0; i < result.paths.size(); ++i) {
     const Path& path = result.paths[i];
     const auto& [pixel, sample, filterWeight] = path.identity;
@@ -97,7 +87,7 @@ void collect(const Pass& pass, const Tile& tile, TileResult& result) {
       (*pass.features)[pixel].add(path.first, path.visible ? path.visibleWeight * filterWeight : 0);
     if (pass.guideFeatures) (*pass.guideFeatures)[pixel].add(path.first);
     if (pass.splats.colors)
-      collectSplat(pass.splats, result.places[i] - tile.corner, path, result.weights[i], value, result);
+      collectSplat(pass.splats, result.places[i] - corner, path, result.weights[i], value, result);
   }
 }
 
@@ -229,9 +219,8 @@ void addCameraRays(const Scene& scene, FilmKind film, std::span<Path> paths, std
 }
 
 // Traces all samples of a tile: two of each pixel at a time, or more where few pixels are left.
-void renderTile(const Pass& pass, const TileGrid& grid, uint32_t index, TileResult& result) {
-  const Tile tile = grid.tile(index);
-  std::vector<PixelSamples> left = samplesOfTile(pass, grid, tile);
+void renderTile(const Pass& pass, const SampledTiles& tiles, uint32_t tile, TileResult& result) {
+  std::vector<PixelSamples> left = samplesOfTile(pass, tiles, tile);
   std::vector<Path>& paths = result.paths;
   while (!left.empty()) {
     for (auto& [pixel, at, samples] : left) {
@@ -247,10 +236,10 @@ void renderTile(const Pass& pass, const TileGrid& grid, uint32_t index, TileResu
       traceFirstHits(pass.path, paths);
     else
       tracePaths(pass.path, paths, pass.wantsVertices ? &result.vertices : nullptr);
-    collect(pass, tile, result);
+    collect(pass, tiles.corner(tile), result);
     result.clearPaths();
   }
-  splat(pass.splats, index, result);
+  splat(pass.splats, tile, result);
 }
 
 }  // namespace
@@ -281,25 +270,24 @@ CameraRay cameraRay(const Scene& scene, FilmKind film, Vec2i pixel, const Camera
 }
 
 Path cameraPath(const Pass& pass, uint32_t pixel, uint32_t sample) {
-  const Vec2i at = pass.grid().pixelAt(pixel);
+  const Vec2i at = pass.sampledTiles().pixelAt(pixel);
   Path path = pathWithoutRay(pass, pixel, at, sample);
   addCameraRays(*pass.path.scene, pass.film, {&path, 1}, {&at, 1});
   return path;
 }
 
 RayCounts runPass(const Pass& pass, Progress& progress, const std::function<bool()>& stop) {
-  const TileGrid grid = pass.grid();
-  const uint32_t tiles = grid.count();
-  std::vector<RayCounts> counts(tiles);
+  const SampledTiles tiles = pass.sampledTiles();
+  std::vector<RayCounts> counts(tiles.count());
   tbb::parallel_for(
-      tbb::blocked_range<uint32_t>(0, tiles, 1),
+      tbb::blocked_range<uint32_t>(0, tiles.count(), 1),
       [&](const tbb::blocked_range<uint32_t>& range) {
         flushDenormals();
         for (uint32_t tile = range.begin(); tile < range.end(); ++tile) {
           if (stop()) return;
           thread_local TileResult result;
           result.clear();
-          renderTile(pass, grid, tile, result);
+          renderTile(pass, tiles, tile, result);
           pass.deliver(tile, result.samples, result.vertices);
           counts[tile] = result.counts;
           progress.advance(result.samples.size());

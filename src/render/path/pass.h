@@ -38,7 +38,7 @@ inline void appendColorChannels(const Rgb& value, uint32_t sample, int count, st
 struct Pass {
   PathSettings path;
   // The pixels that are traced; those of the film's crop unless told otherwise. Pixels are counted in these.
-  std::optional<TileGrid> tiles;
+  std::optional<SampledTiles> tiles;
   SamplerKind sampler = SamplerKind::sobol;
   uint64_t seed = 0;
   FilmKind film = FilmKind::pixels;
@@ -59,7 +59,7 @@ struct Pass {
   std::vector<GuideFeatureSums>* guideFeatures = nullptr;
   std::vector<Rgb>* emitted = nullptr;
 
-  TileGrid grid() const { return tiles ? *tiles : TileGrid(path.scene->film().crop, film); }
+  SampledTiles sampledTiles() const { return tiles ? *tiles : SampledTiles(path.scene->film().crop, film); }
 };
 
 // Runs the pass; tiles that had not begun when `stop` first answered true are left out. Returns the rays

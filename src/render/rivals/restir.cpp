@@ -29,7 +29,7 @@ class ReusedFrame {
         m_scene(*pass.path.scene),
         m_options(options),
         m_sample(sample),
-        m_tiles(pass.grid()),
+        m_tiles(pass.sampledTiles()),
         m_time(m_scene.moves() ? samplerOf(0, kTimeSeed).get1D() : 0),
         m_pixels(m_tiles.sampled().pixels()) {}
 
@@ -58,18 +58,15 @@ class ReusedFrame {
   const RayCounts& counts(size_t index) const { return m_pixels[index].path.counts; }
 
   // Adds the values of a tile's pixels to a film that splats.
-  void splat(uint32_t index, std::span<const Rgb> values, SplatFilm& film) const {
-    const Tile tile = m_tiles.tile(index);
-    const Crop& sampled = tile.sampled;
+  void splat(uint32_t tile, std::span<const Rgb> values, SplatFilm& film) const {
     std::vector<SplatPlace> places;
     std::vector<float> colors;
-    for (int y = sampled.y; y < sampled.y + sampled.height; ++y)
-      for (int x = sampled.x; x < sampled.x + sampled.width; ++x) {
-        const uint32_t pixel = m_tiles.pixelIndex(Vec2i(x, y));
-        places.push_back({m_pixels[pixel].place, 1, uint8_t(x - tile.corner.x), uint8_t(y - tile.corner.y)});
-        appendColorChannels(values[pixel], m_sample, film.channels(), colors);
-      }
-    film.add(index, places, colors);
+    m_tiles.forEachPixel(tile, [&](uint32_t pixel) {
+      const Vec2i inTile = m_tiles.pixelAt(pixel) - m_tiles.corner(tile);
+      places.push_back({m_pixels[pixel].place, 1, uint8_t(inTile.x), uint8_t(inTile.y)});
+      appendColorChannels(values[pixel], m_sample, film.channels(), colors);
+    });
+    film.add(tile, places, colors);
   }
   uint32_t tileCount() const { return m_tiles.count(); }
 
@@ -153,7 +150,7 @@ class ReusedFrame {
   const Scene& m_scene;
   RestirOptions m_options;
   uint32_t m_sample;
-  TileGrid m_tiles;
+  SampledTiles m_tiles;
   // The same for all pixels: a neighbour's sample that was found at another time would not be one of here.
   float m_time;
   std::vector<FramePixel> m_pixels;
