@@ -15,14 +15,10 @@ struct SplatCase {
 };
 
 std::vector<SplatCase> splatCases() {
-  return {{"box of 3 pixels", makeBoxFilter(1.5f)},
-          {"tent", makeTentFilter()},
-          {"wide tent", makeTentFilter(2.25f)},
-          {"gaussian", makeGaussianFilter()},
-          {"wide gaussian", makeGaussianFilter(2)},
-          {"mitchell", makeMitchellFilter()},
-          {"catmullrom", makeMitchellFilter(0.0f, 0.5f)},
-          {"lanczos", makeLanczosFilter()}};
+  return {{"box of 3 pixels", makeBoxFilter(1.5f)},       {"tent", makeTentFilter()},
+          {"wide tent", makeTentFilter(2.25f)},           {"gaussian", makeGaussianFilter()},
+          {"wide gaussian", makeGaussianFilter(2)},       {"mitchell", makeMitchellFilter()},
+          {"catmullrom", makeMitchellFilter(0.0f, 0.5f)}, {"lanczos", makeLanczosFilter()}};
 }
 
 FilmSettings filmOf(const std::shared_ptr<const Filter>& filter, int width, int height) {
@@ -138,7 +134,9 @@ double worstAtEdge(const SplatCase& c, bool withWeights) {
   const auto count = [](const Vec2i& p) { return p.x < 8 ? asked / 2 : asked * 3; };
   const auto weight = [&](const Vec2i& p) { return withWeights ? float(asked) / float(count(p)) : 1.0f; };
   for (uint32_t seed = 0; seed < images; ++seed)
-    addAll(film, tiles, samplesOf(tiles.sampled(), count, weight, [](float x, float) { return x >= 8; }, seed));
+    addAll(film, tiles,
+           samplesOf(
+               tiles.sampled(), count, weight, [](float x, float) { return x >= 8; }, seed));
   const std::vector<float> sums = film.sums();
   double worst = 0;
   for (int x = 0; x < 16; ++x) {

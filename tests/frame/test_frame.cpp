@@ -165,6 +165,34 @@ TEST(Frame, WeightsOfAPixelAddUpToTheSamplesAskedFor) {
     }
 }
 
+// Once nothing is decided any more, pixels have the same share of their samples whenever a rendering ends: a
+// film that splats is right then as well.
+TEST(Frame, EachPassTakesTheSameShareOfEveryPixelsSamples) {
+  const FrameOptions options = toyOptions(48, 48, 64);
+  Frame frame(options);
+  const ToyHost host({}, 48, 48);
+  std::vector<std::vector<uint32_t>> counts;  // [pass][pixel] so far
+  while (const FramePass* pass = frame.beginPass()) {
+    runPass(frame, *pass, host, 48 * 48);
+    frame.endPass();
+    counts.emplace_back();
+    for (uint32_t pixel = 0; pixel < 48 * 48; ++pixel) counts.back().push_back(frame.sampleCount(pixel));
+  }
+  const std::vector<uint32_t>& all = counts.back();
+  EXPECT_GT(*std::max_element(all.begin(), all.end()), 2 * *std::min_element(all.begin(), all.end()));
+  constexpr uint32_t alike = 4;  // of the pilot, and three that the guide learned from
+  size_t passes = 0;
+  for (const std::vector<uint32_t>& some : counts) {
+    if (some[0] <= alike) continue;
+    ++passes;
+    const double share = double(some[0] - alike) / (all[0] - alike);
+    for (uint32_t pixel = 0; pixel < 48 * 48; ++pixel)
+      ASSERT_NEAR(some[pixel] - alike, share * (all[pixel] - alike), 1 + double(all[pixel]) / all[0])
+          << "pass " << passes << ", pixel " << pixel;
+  }
+  EXPECT_GE(passes, 4u);
+}
+
 // Hosts deliver the tiles of a crop as those of the whole image.
 TEST(Frame, TilesBeginBeforeTheImage) {
   FrameOptions options = toyOptions(40, 20, 4);

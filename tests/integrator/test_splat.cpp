@@ -97,10 +97,10 @@ TEST(Splat, CropsTogetherAreTheWhole) {
     const auto integer = [](const char* name, int value) {
       return "<integer name=\"crop_" + std::string(name) + "\" value=\"" + std::to_string(value) + "\"/>";
     };
-    const auto scene = test::loadScene(filtered(
-        test::indirectRoom(50), "gaussian",
-        integer("offset_x", crop.x) + integer("offset_y", crop.y) + integer("width", crop.width) +
-            integer("height", crop.height)));
+    const auto scene =
+        test::loadScene(filtered(test::indirectRoom(50), "gaussian",
+                                 integer("offset_x", crop.x) + integer("offset_y", crop.y) +
+                                     integer("width", crop.width) + integer("height", crop.height)));
     const RenderedImage part = test::renderScene(*scene, options).image;
     ASSERT_EQ(part.color.size(), crop.pixels());
     for (int y = 0; y < crop.height; ++y)
@@ -116,8 +116,8 @@ TEST(Splat, CropsTogetherAreTheWhole) {
 TEST(Splat, CropsOfGuidedImagesCountTheirOwnPixels) {
   const auto scene = test::loadScene(
       filtered(test::indirectRoom(40), "gaussian",
-                 "<integer name=\"crop_offset_x\" value=\"7\"/><integer name=\"crop_offset_y\" value=\"20\"/>"
-                 "<integer name=\"crop_width\" value=\"12\"/><integer name=\"crop_height\" value=\"9\"/>"));
+               "<integer name=\"crop_offset_x\" value=\"7\"/><integer name=\"crop_offset_y\" value=\"20\"/>"
+               "<integer name=\"crop_width\" value=\"12\"/><integer name=\"crop_height\" value=\"9\"/>"));
   RenderOptions options = splatting(IntegratorKind::odis, 8);
   options.features = options.guideFeatures = options.records = true;
   const RenderResult result = test::renderScene(*scene, options);
@@ -162,9 +162,11 @@ TEST(Splat, BordersAreSampledWhereTheFileSaysSo) {
                           "<emitter type=\"area\"><rgb name=\"radiance\" value=\"1\"/></emitter></shape>";
   const RenderOptions options = splatting(IntegratorKind::path, 64);
   const auto inside = test::renderScene(*test::loadScene(filtered(sky, "gaussian")), options).image;
-  const auto beyond = test::renderScene(
-      *test::loadScene(filtered(sky, "gaussian", "<boolean name=\"sample_border\" value=\"true\"/>")),
-      options).image;
+  const auto beyond =
+      test::renderScene(
+          *test::loadScene(filtered(sky, "gaussian", "<boolean name=\"sample_border\" value=\"true\"/>")),
+          options)
+          .image;
   // The lamp fills the film: its border is dark only if there are samples beyond.
   EXPECT_NEAR(inside.color[10].y, 1, 1e-3);
   EXPECT_LT(beyond.color[10].y, 0.9f);

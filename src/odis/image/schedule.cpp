@@ -67,6 +67,7 @@ Schedule::Schedule(const OdisFrameOptions& options)
   // Two samples of a pixel tell how much they differ; a pilot's may be the first.
   if (options.adaptive && m_spp >= kFewestToSpread && pilotSpp + 2 < m_spp)
     m_spreadAfter = options.guided ? 1 : 2;
+  m_decided = std::max(m_lastRefinement, m_spreadAfter);
 }
 
 uint64_t Schedule::pilotSamples() const {
@@ -81,15 +82,25 @@ uint64_t Schedule::remainingSamples() const {
 }
 
 SampleRange Schedule::remaining(uint32_t pixel, uint32_t begin, uint32_t end) const {
-  const uint32_t all = sampleCount(pixel), first = std::min(pilotCount(pixel) + begin, all);
-  return {first, std::min(all - first, end - begin)};
+  const uint32_t first = doneIn(pixel, begin);
+  return {pilotCount(pixel) + first, doneIn(pixel, end) - first};
+}
+
+uint32_t Schedule::doneIn(uint32_t pixel, uint32_t done) const {
+  const uint32_t all = sampleCount(pixel) - pilotCount(pixel), alike = std::min(m_decided, all);
+  if (m_counts.empty() || done <= m_decided || done >= m_mostRemaining) return std::min(done, all);
+  return alike + uint32_t(uint64_t(all - alike) * (done - m_decided) / (m_mostRemaining - m_decided));
 }
 
 uint32_t Schedule::passEnd(uint32_t done) const {
   if (done < m_lastRefinement) return done + 1;
   if (done < m_spreadAfter) return m_spreadAfter;
-  if (!m_counts.empty() && samplesAfter(done) <= kSamplesPerPass * m_counts.size()) return m_mostRemaining;
-  return std::min(m_mostRemaining, done + std::clamp(done, 1u, kSamplesPerPass));
+  const uint32_t few = std::clamp(done, 1u, kSamplesPerPass);
+  if (m_counts.empty()) return std::min(m_mostRemaining, done + few);
+  // So many in the mean over the pixels.
+  const double left = double(samplesAfter(done)) / double(m_counts.size());
+  if (left <= kSamplesPerPass) return m_mostRemaining;
+  return std::min(m_mostRemaining, done + uint32_t(std::ceil((m_mostRemaining - done) * few / left)));
 }
 
 uint64_t Schedule::samplesAfter(uint32_t done) const {

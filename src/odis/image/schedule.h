@@ -36,12 +36,15 @@ class Schedule {
   }
   // How many samples remain after the pilot in the pixel that has the most.
   uint32_t mostRemaining() const { return m_mostRemaining; }
-  // The samples of a pixel among those between `begin` and `end` of what remains after the pilot.
+  // The samples of a pixel among those between `begin` and `end` of what remains after the pilot, counted in
+  // the pixel that has the most. While something may be decided pixels have as many as that one, later the
+  // same share of theirs: weights of a pixel's samples then add up to about the same in all pixels whenever
+  // the rendering ends.
   SampleRange remaining(uint32_t pixel, uint32_t begin, uint32_t end) const;
 
-  // Where a pass ends that begins when `done` of the samples that remain are taken in every pixel. Passes
-  // that something is decided after have as few samples as can be, others as many as were taken before,
-  // while there is progress to be seen.
+  // Where a pass ends that begins when `done` of the samples that remain are taken in the pixel that has the
+  // most. Passes that something is decided after have as few samples as can be, others as many as were taken
+  // before, while there is progress to be seen.
   uint32_t passEnd(uint32_t done) const;
   // After how many of the samples that remain the guide is built for the last time: one less than a power
   // of two, and at least as many samples must be left. 0: after the pilot only.
@@ -66,6 +69,8 @@ class Schedule {
   uint64_t bytes() const { return m_isInPilot.size() + m_counts.size() * sizeof(uint32_t); }
 
  private:
+  // How many of what remains after the pilot a pixel has had when the one with the most has had `done`.
+  uint32_t doneIn(uint32_t pixel, uint32_t done) const;
   // How many samples are left in all pixels together when `done` of those that remain are taken in each. 0
   // before it is settled how many each pixel has.
   uint64_t samplesAfter(uint32_t done) const;
@@ -76,6 +81,7 @@ class Schedule {
   uint32_t m_pilotEverywhere = 0;
   std::vector<uint32_t> m_counts;  // [pixel] all samples; empty: m_spp everywhere
   uint32_t m_mostRemaining, m_lastRefinement = 0, m_spreadAfter = 0;
+  uint32_t m_decided = 0;  // after how many that remain nothing is decided any more
 };
 
 }  // namespace odis::core

@@ -33,8 +33,8 @@ enum class FilmKind {
 // sample.
 inline constexpr int kMostSplatReach = 16;
 
-// The kind of film that a filter is used with where this one is asked for. Samples of a box of one pixel count
-// in one pixel either way.
+// The kind of film that a filter is used with where this one is asked for. Samples of a box of one pixel
+// count in one pixel either way.
 inline FilmKind filmKindFor(const Filter& filter, FilmKind asked) {
   return filter.reach() > 0 && filter.reach() <= kMostSplatReach ? asked : FilmKind::pixels;
 }

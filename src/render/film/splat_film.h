@@ -44,7 +44,7 @@ class SplatFilm {
   void add(uint32_t tile, std::span<const SplatPlace> places, std::span<const float> values);
   // Keeps samples whose weights are not known yet. Likewise.
   void keep(uint32_t tile, std::span<const SplatPlace> places, std::span<const float> values);
-  // Adds those that were kept with the weight of their pixel, whose number is that of SampledTiles::pixelIndex.
+  // Adds those that were kept with the weight of their pixel, counted as SampledTiles::pixelIndex does.
   void addKept(const std::function<float(uint32_t pixel)>& weight);
 
   // [pixel of the crop][channel]

@@ -30,6 +30,7 @@ void useGuide(PathSettings& settings, const GuideView& guide, const RenderOption
 FrameOptions frameOptions(const RenderJob& job) {
   const RenderOptions& options = job.options();
   FrameOptions frame{job.tiles().asFrame(), {}};
+  frame.keepPixelMeans = job.film() == FilmKind::pixels;
   frame.samplesPerPixel = uint32_t(options.spp);
   frame.seed = options.seed;
   frame.guided = false;
@@ -163,20 +164,14 @@ Pass FrameIntegrator::passBefore(uint32_t pixel, uint32_t sample) {
 }
 
 void FrameIntegrator::finish(RenderResult& result) {
-  const ArrayView<const PixelSums> pilot = m_frame.pilotImage();
-  const auto samplesOf = [&](uint32_t pixel) {
-    const uint32_t samples = m_frame.sampleCount(pixel), later = samples - pilot[pixel].count;
-    const bool pilotCounts = m_job.options().pilotWeight > 0 || later == 0;
-    return pilotCounts ? samples : later;
-  };
   if (m_film) {
-    fillPixels(result, m_film->sums(), m_film->channels());
-    result.stats.fewestSamples = ~0u;
-    for (size_t i = 0; i < m_job.crop().pixels(); ++i)
-      result.stats.fewestSamples = std::min(result.stats.fewestSamples, samplesOf(m_job.pixelOfCrop(i)));
+    fillPixels(result, *m_film);
   } else {
+    const ArrayView<const PixelSums> pilot = m_frame.pilotImage();
     fillPixels(result, m_job.options(), [&](uint32_t pixel) {
-      return MeanOfSamples{m_frame.mean(pixel), samplesOf(pixel)};
+      const uint32_t samples = m_frame.sampleCount(pixel), later = samples - pilot[pixel].count;
+      const bool pilotCounts = m_job.options().pilotWeight > 0 || later == 0;
+      return MeanOfSamples{m_frame.mean(pixel), pilotCounts ? samples : later};
     });
   }
   const FrameStatistics frame = m_frame.statistics();

@@ -48,15 +48,22 @@ void fillPixels(RenderResult& result, const RenderOptions& options,
   }
 }
 
+void fillPixels(RenderResult& result, const SplatFilm& film) {
+  fillPixels(result, film.sums(), film.channels());
+}
+
 void fillPixels(RenderResult& result, std::span<const float> sums, int channels) {
+  uint32_t& fewest = result.stats.fewestSamples = 2;
   for (const float* pixel = sums.data(); pixel < sums.data() + sums.size(); pixel += channels) {
     const Rgb all(pixel[0], pixel[1], pixel[2]);
     const float weight = pixel[3];
+    if (weight == 0) fewest = 0;
     result.image.color.push_back(weight != 0 ? all / weight : Rgb(0, 0, 0));
     if (channels == 4) continue;
     const Rgb half(pixel[4], pixel[5], pixel[6]);
     const float halfWeight = pixel[7], otherWeight = weight - halfWeight;
     const bool known = halfWeight > 0 && otherWeight > 0;
+    if (!known) fewest = std::min(fewest, 1u);
     const Rgb difference = known ? half / halfWeight - (all - half) / otherWeight : Rgb(0, 0, 0);
     result.image.variance.push_back(difference * difference * (halfWeight * otherWeight / sqr(weight)));
   }

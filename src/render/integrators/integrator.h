@@ -41,10 +41,11 @@ struct MeanOfSamples {
 // The mean of all samples of some parts.
 MeanOfSamples meanOfParts(ArrayView<const WeightedSums> parts);
 
-// Sets the image's pixels, and their variance, by the sums of a film that splats (colorChannels). With W0 and W1
-// the sums of weights of the halves of the samples, and I0 and I1 their images, the variance of the mean is
-// estimated as (I0 - I1)^2 W0 W1 / (W0 + W1)^2, if the variance of an image falls with its weight.
+// Sets the image's pixels, and their variance, by the sums of a film that splats (colorChannels). With W0 and
+// W1 the sums of weights of the halves of the samples, and I0 and I1 their images, the variance of the mean
+// is estimated as (I0 - I1)^2 W0 W1 / (W0 + W1)^2: as if the variance of an image fell with its weight.
 void fillPixels(RenderResult& result, std::span<const float> sums, int channels);
+void fillPixels(RenderResult& result, const SplatFilm& film);
 // Sets the pixels of an image from the mean of each.
 void fillPixels(RenderResult& result, const RenderOptions& options,
                 const std::function<MeanOfSamples(uint32_t pixel)>& mean);

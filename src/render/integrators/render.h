@@ -19,9 +19,11 @@ struct RenderStats {
   uint64_t cellsBuilt = 0;  // in secondsBuild: those of all guides, of which the last has `cells`
   uint64_t bytesBuild = 0;  // held at most until the guide is built: pilot vertices and what is made of them
   uint64_t bytesMaps = 0, bytesLights = 0;
-  double pilotShare = 0;       // of the pilot in the weights of all samples
-  double spp = 0;              // samples per pixel really taken
-  uint32_t fewestSamples = 0;  // in the mean of any pixel: from 2 on there is a variance everywhere
+  double pilotShare = 0;  // of the pilot in the weights of all samples
+  double spp = 0;         // samples per pixel really taken
+  // In the mean of any pixel: from 2 on there is a variance everywhere. Of a film that splats it is not known
+  // whether there are more than that.
+  uint32_t fewestSamples = 0;
   // The time of a guided sample in that of a pilot sample, recording included; 0 if there was none of either.
   double guidedCost() const {
     const uint64_t guided = samples - pilotSamples;

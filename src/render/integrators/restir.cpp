@@ -34,7 +34,7 @@ class RestirIntegrator : public Integrator {
 
   void finish(RenderResult& result) override {
     for (const PixelSums& s : m_image) result.stats.samples += s.count;
-    if (m_film) return fillPixels(result, m_film->sums(), m_film->channels());
+    if (m_film) return fillPixels(result, *m_film);
     fillPixels(result, m_job.options(), [this](uint32_t pixel) {
       const WeightedSums part{&m_image[pixel], 1};
       return meanOfParts({&part, 1});

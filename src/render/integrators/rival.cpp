@@ -151,11 +151,7 @@ void RivalIntegrator::finish(RenderResult& result) {
     return std::all_of(image.begin(), image.end(), [](const PixelSums& s) { return s.count > 0; });
   });
   const Image& image = complete == m_iterations.rend() ? m_iterations.front() : *complete;
-  if (const auto& film = m_films[size_t(&image - m_iterations.data())]) {
-    for (const PixelSums& s : image)
-      result.stats.fewestSamples = std::min(result.stats.fewestSamples, s.count);
-    return fillPixels(result, film->sums(), film->channels());
-  }
+  if (const auto& film = m_films[size_t(&image - m_iterations.data())]) return fillPixels(result, *film);
   fillPixels(result, m_job.options(), [&](uint32_t pixel) {
     const WeightedSums part{&image[pixel], 1};
     return meanOfParts({&part, 1});
