@@ -307,7 +307,10 @@ void Frame::Data::resume() {
 void Frame::Data::endGuidedPass() {
   if (end == schedule.spreadAfter()) spreadSamples();
   const bool givesUp = guidingDoesNotPay();
-  if (!options.keepPixelMeans) pilot = later = {};
+  if (!options.keepPixelMeans) {
+    pilot = PixelSamples();
+    later = PixelSamples();
+  }
   if (givesUp)
     giveUpGuiding();
   else

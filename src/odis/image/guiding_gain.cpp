@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <utility>
 #include <vector>
 
 namespace odis::core {
@@ -99,6 +100,7 @@ struct Kinds {
 template <class Pixels>
 Kinds compareRow(const Pixels& unguided, const GuidedImage<Pixels>& samples, uint32_t y, double least) {
   Kinds result;
+  result.pixels.reserve(samples.width);
   const uint32_t blocks = (samples.width + kPixelBlock - 1) / kPixelBlock;
   for (uint32_t x = 0; x < samples.width; ++x) {
     const size_t i = size_t(y) * samples.width + x;
@@ -180,8 +182,12 @@ std::optional<GuidingGain> gainOf(const Tasks& tasks, const Pixels& unguided, co
 
   std::vector<Kinds> rows(samples.height);
   tasks.forEach(rows.size(), [&](size_t y) { rows[y] = compareRow(unguided, samples, uint32_t(y), least); });
+  // Memory: 32 bytes a pixel that has both, in rows or together.
   Kinds all;
-  for (const Kinds& row : rows) all.append(row);
+  size_t pixels = 0;
+  for (const Kinds& row : rows) pixels += row.pixels.size();
+  all.pixels.reserve(pixels);
+  for (Kinds& row : rows) all.append(std::exchange(row, {}));
   if (all.pixels.size() < kLeastPixels || !(all.rays[0] > 0)) return {};
   const auto blocksAlong = [](uint32_t pixels) { return (pixels + kPixelBlock - 1) / kPixelBlock; };
   const size_t blockCount = size_t(blocksAlong(width)) * blocksAlong(samples.height);

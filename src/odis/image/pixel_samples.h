@@ -68,7 +68,9 @@ class PixelSamples {
     return true;
   }
 
-  uint64_t bytes() const { return m_sums.size() * sizeof(PixelSums) + m_kept.size() * sizeof(KeptSample); }
+  uint64_t bytes() const {
+    return m_sums.capacity() * sizeof(PixelSums) + m_kept.capacity() * sizeof(KeptSample);
+  }
 
  private:
   std::vector<PixelSums> m_sums;   // [pixel]
