@@ -32,6 +32,9 @@ struct AnalyzeArguments {
 static int runAnalyze(AnalyzeArguments& a) {
   eval::AnalyzeSettings& settings = a.settings;
   settings.methods = parseMethods(a.methods, a.threads);
+  for (const eval::Method& method : settings.methods)
+    if (method.options.film == render::FilmKind::splat)
+      throw UsageError("--methods: --film splat: has no effect, single samples have no film");
   settings.load = a.part.loadOptions();
   if (!settings.load.crop) settings.load.pixels = a.pixels;
   Outputs outputs;

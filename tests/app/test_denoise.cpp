@@ -47,7 +47,7 @@ TEST_F(Denoising, SaysWhereItLookedForTheLibrary) {
 TEST_F(Denoising, ChangesNothingOfTheSamples) {
   ODIS_NEEDS_DENOISER();
   for (const std::string integrator : {"path", "odis", "restir"}) {
-    const std::string options = "render room.xml -q --spp 4 --integrator " + integrator;
+    const std::string options = "render room.xml -q --spp 4 --film pixels --integrator " + integrator;
     ASSERT_EQ(run(options + " -o plain.exr").code, 0);
     const Outcome outcome =
         run(options + " -o denoised.exr --denoise --png look.png --stats-json stats.json");
@@ -91,6 +91,22 @@ TEST_F(Denoising, OfAFileComesToTheSameBits) {
   ASSERT_EQ(run("denoise plain.exr -q -o plain-denoised.exr").code, 0);
   EXPECT_EQ(image("plain-denoised.exr").metadata.at("odis:denoiserAuxiliaries"),
             "albedo and normal, prefiltered");
+}
+
+// Neighbours share their noise on a film that splats, which is the default without --denoise only.
+TEST_F(Denoising, WarnsOfSplattedImages) {
+  ODIS_NEEDS_DENOISER();
+  ASSERT_EQ(run("render room.xml -q --denoise -o denoised.exr").code, 0);
+  EXPECT_EQ(image("denoised.exr").metadata.at("odis:film"), "pixels");
+  ASSERT_EQ(run("render room.xml -q -o splat.exr").code, 0);
+  ASSERT_EQ(run("render room.xml -q --film pixels -o pixels.exr").code, 0);
+  const Outcome splatted = run("denoise splat.exr -o a.exr"), apart = run("denoise pixels.exr -o b.exr");
+  EXPECT_EQ(splatted.code, 0);
+  EXPECT_NE(splatted.text.find("warning: splat.exr: was splatted"), std::string::npos) << splatted.text;
+  EXPECT_EQ(apart.text.find("splatted"), std::string::npos) << apart.text;
+  const Outcome both = run("render room.xml --denoise --film splat -o c.exr");
+  EXPECT_EQ(both.code, 0);
+  EXPECT_NE(both.text.find("warning: --film splat"), std::string::npos) << both.text;
 }
 
 TEST_F(Denoising, TakesLayersOfOtherFiles) {

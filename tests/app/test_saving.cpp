@@ -61,7 +61,8 @@ TEST_F(SavedRenderings, ATimeLimitLeavesAFileToGoOnWith) {
   const std::string resume = " -q -o other.exr --resume image.exr.odis --resolution 150x100";
   for (const char* other :
        {"--spp 25 --seed 4 --aov all", "--spp 24 --seed 5 --aov all", "--spp 24 --seed 4",
-        "--spp 24 --seed 4 --aov all --set pilot-spp=1", "--spp 24 --seed 4 --aov all --sampler independent"})
+        "--spp 24 --seed 4 --aov all --set pilot-spp=1", "--spp 24 --seed 4 --aov all --sampler independent",
+        "--spp 24 --seed 4 --aov all --film pixels"})
     expectFailure("render room.xml " + std::string(other) + resume, 2, "is of another rendering, found \"");
   write("room.xml", "<scene version=\"3.0.0\"><emitter type=\"constant\"/></scene>");
   expectFailure("render room.xml --spp 24 --seed 4 --aov all" + resume, 2, "found \"files of the scene");

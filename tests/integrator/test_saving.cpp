@@ -50,8 +50,9 @@ void expectSame(const RenderResult& a, const RenderResult& b) {
 }
 
 // 70 x 70 pixels: 25 tiles.
-RenderOptions everything(IntegratorKind integrator) {
+RenderOptions everything(IntegratorKind integrator, FilmKind film = FilmKind::splat) {
   RenderOptions options;
+  options.film = film;
   options.integrator = integrator;
   options.spp = 6;
   options.seed = 9;
@@ -67,12 +68,15 @@ class Saving : public ::testing::Test {
   std::string file() const { return m_folder.path("image.odis"); }
 
   test::TemporaryFolder m_folder;
-  std::unique_ptr<Scene> m_scene = test::loadScene(test::indirectRoom(70));
+  std::unique_ptr<Scene> m_scene = test::loadScene(test::filtered(test::indirectRoom(70), "gaussian"));
 };
 
 TEST_F(Saving, AnInterruptedRenderingGoesOnToTheSameBits) {
-  for (const IntegratorKind integrator : {IntegratorKind::path, IntegratorKind::odis}) {
-    RenderOptions options = everything(integrator);
+  for (const auto& [integrator, film] : {std::pair(IntegratorKind::path, FilmKind::splat),
+                                         {IntegratorKind::odis, FilmKind::splat},
+                                         {IntegratorKind::odis, FilmKind::pixels}}) {
+    RenderOptions options = everything(integrator, film);
+    options.samples = SampleSpread::adaptive;
     const RenderResult expected = test::renderScene(*m_scene, options);
     options.saving.file = file();
     options.saving.everySeconds = 1e9;

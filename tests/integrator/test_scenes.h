@@ -70,6 +70,12 @@ inline std::string indirectRoom(int size = 24) {
          "<bsdf type=\"plastic\"/></shape>";
 }
 
+// The text of a scene of these with another filter than a box, and more in its film.
+inline std::string filtered(std::string text, const std::string& filter, const std::string& more = "") {
+  const std::string box = "<rfilter type=\"box\"/>";
+  return text.replace(text.find(box), box.size(), more + "<rfilter type=\"" + filter + "\"/>");
+}
+
 inline render::RenderResult renderScene(const render::Scene& scene, const render::RenderOptions& options) {
   render::Progress quiet;
   return render::render(scene, options, quiet);

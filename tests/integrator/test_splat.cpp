@@ -8,12 +8,6 @@ namespace {
 
 const char* const kSplatFilters[] = {"tent", "gaussian", "mitchell", "catmullrom", "lanczos"};
 
-// The text of a scene with another filter, and more in its film.
-std::string filtered(std::string text, const std::string& filter, const std::string& more = "") {
-  const std::string box = "<rfilter type=\"box\"/>";
-  return text.replace(text.find(box), box.size(), more + "<rfilter type=\"" + filter + "\"/>");
-}
-
 RenderOptions splatting(IntegratorKind integrator, int spp) {
   RenderOptions options;
   options.film = FilmKind::splat;
@@ -28,7 +22,7 @@ TEST(Splat, ConstantImagesAreConstantUpToTheBorder) {
                           "<emitter type=\"constant\"><rgb name=\"radiance\" value=\"0.7\"/></emitter>";
   for (const char* filter : kSplatFilters)
     for (const IntegratorKind integrator : {IntegratorKind::path, IntegratorKind::odis}) {
-      const auto scene = test::loadScene(filtered(sky, filter));
+      const auto scene = test::loadScene(test::filtered(sky, filter));
       for (const Rgb& color : test::renderScene(*scene, splatting(integrator, 5)).image.color)
         for (int c = 0; c < 3; ++c) EXPECT_NEAR(color[c], 0.7f, 7e-7) << filter;
     }
@@ -39,7 +33,7 @@ class SplatRoom : public ::testing::TestWithParam<const char*> {};
 // Both films have the same expectation, up to what dividing by random sums of weights makes of few samples:
 // images have many.
 TEST_P(SplatRoom, HasTheExpectationOfIndependentPixels) {
-  const auto scene = test::loadScene(filtered(test::indirectRoom(16), GetParam()));
+  const auto scene = test::loadScene(test::filtered(test::indirectRoom(16), GetParam()));
   RenderOptions pixels = splatting(IntegratorKind::path, 256);
   pixels.film = FilmKind::pixels;
   const test::PixelStatistics expected = test::renderSeeds(*scene, pixels, 32, 1000);
@@ -53,7 +47,7 @@ TEST_P(SplatRoom, HasTheExpectationOfIndependentPixels) {
 INSTANTIATE_TEST_SUITE_P(Filters, SplatRoom, ::testing::Values("tent", "gaussian", "lanczos"));
 
 TEST(Splat, RivalsSplatAsWell) {
-  const auto scene = test::loadScene(filtered(test::indirectRoom(16), "tent"));
+  const auto scene = test::loadScene(test::filtered(test::indirectRoom(16), "tent"));
   const auto meanOf = [&](const RenderOptions& options) {
     double sum = 0;
     for (int seed = 0; seed < 4; ++seed) {
@@ -69,7 +63,7 @@ TEST(Splat, RivalsSplatAsWell) {
 }
 
 TEST(Splat, AnyNumberOfThreadsGivesTheSameBits) {
-  const auto scene = test::loadScene(filtered(test::indirectRoom(50), "gaussian"));
+  const auto scene = test::loadScene(test::filtered(test::indirectRoom(50), "gaussian"));
   for (const IntegratorKind integrator : {IntegratorKind::path, IntegratorKind::odis}) {
     RenderOptions options = splatting(integrator, 8);
     options.variance = true;
@@ -98,9 +92,9 @@ TEST(Splat, CropsTogetherAreTheWhole) {
       return "<integer name=\"crop_" + std::string(name) + "\" value=\"" + std::to_string(value) + "\"/>";
     };
     const auto scene =
-        test::loadScene(filtered(test::indirectRoom(50), "gaussian",
-                                 integer("offset_x", crop.x) + integer("offset_y", crop.y) +
-                                     integer("width", crop.width) + integer("height", crop.height)));
+        test::loadScene(test::filtered(test::indirectRoom(50), "gaussian",
+                                       integer("offset_x", crop.x) + integer("offset_y", crop.y) +
+                                           integer("width", crop.width) + integer("height", crop.height)));
     const RenderedImage part = test::renderScene(*scene, options).image;
     ASSERT_EQ(part.color.size(), crop.pixels());
     for (int y = 0; y < crop.height; ++y)
@@ -133,7 +127,7 @@ TEST(Splat, CropsOfGuidedImagesCountTheirOwnPixels) {
 // Halves of the samples tell of the variance; the estimate's mean over pixels and images is that between
 // images of other seeds. Independent numbers, as stratified ones are better than the estimate says.
 TEST(Splat, VarianceIsThatBetweenImages) {
-  const auto scene = test::loadScene(filtered(test::indirectRoom(24), "gaussian"));
+  const auto scene = test::loadScene(test::filtered(test::indirectRoom(24), "gaussian"));
   for (const IntegratorKind integrator : {IntegratorKind::path, IntegratorKind::odis}) {
     RenderOptions options = splatting(integrator, 16);
     options.sampler = SamplerKind::independent;
@@ -161,11 +155,11 @@ TEST(Splat, BordersAreSampledWhereTheFileSaysSo) {
                           "<rotate y=\"1\" angle=\"180\"/><translate z=\"1\"/></transform>"
                           "<emitter type=\"area\"><rgb name=\"radiance\" value=\"1\"/></emitter></shape>";
   const RenderOptions options = splatting(IntegratorKind::path, 64);
-  const auto inside = test::renderScene(*test::loadScene(filtered(sky, "gaussian")), options).image;
+  const auto inside = test::renderScene(*test::loadScene(test::filtered(sky, "gaussian")), options).image;
   const auto beyond =
-      test::renderScene(
-          *test::loadScene(filtered(sky, "gaussian", "<boolean name=\"sample_border\" value=\"true\"/>")),
-          options)
+      test::renderScene(*test::loadScene(test::filtered(sky, "gaussian",
+                                                        "<boolean name=\"sample_border\" value=\"true\"/>")),
+                        options)
           .image;
   // The lamp fills the film: its border is dark only if there are samples beyond.
   EXPECT_NEAR(inside.color[10].y, 1, 1e-3);
