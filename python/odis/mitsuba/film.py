@@ -75,9 +75,10 @@ class SplatFilm:
         rfilter, shown = film.rfilter(), film.crop_size()
         self.border = rfilter.border_size() if film.sample_border() else 0
         self.size = shown + 2 * self.border
-        self.has_alpha = has_alpha(film)
         # "Coalesced" accumulation visits pixels that the filter does not reach, and takes longer.
-        self.block = mi.ImageBlock(shown, [0, 0], 5 if self.has_alpha else 4, rfilter, border=False, coalesce=False)
+        block = lambda channels: mi.ImageBlock(shown, [0, 0], channels, rfilter, border=False, coalesce=False)
+        # Dr.Jit adds two or four numbers at once, and takes up to ten times as long for five.
+        self.colors, self.alpha = block(4), block(2) if has_alpha(film) else None
         self.first, self.counts, self.weights = None, None, None
         self.waiting = []  # samples whose weights are known only when the pass has ended
 
@@ -100,7 +101,10 @@ class SplatFilm:
             self._splat_waiting()
 
     def image(self, frame):
-        return self.block.tensor()
+        if self.alpha is None:
+            return self.colors.tensor()
+        colors, alpha = np.array(self.colors.tensor()), np.array(self.alpha.tensor())
+        return mi.TensorXf(np.concatenate([colors[..., :3], alpha[..., :1], colors[..., 3:]], axis=2))
 
     def _weights(self, frame):
         """Of the samples of the pass, which are the same for all of a pixel, by the numbers of the pixels."""
@@ -117,8 +121,9 @@ class SplatFilm:
             weight = dr.gather(mi.Float, self.weights, pixel)
             color = mi.Color3f(traced.x, traced.y, traced.z)
             color = dr.select(dr.all(dr.isfinite(color)), color * weight, 0)  # as the frame has it
-            valid = dr.reinterpret_array(mi.UInt32, traced.w) >= VALID
-            alpha = [dr.select(valid, weight, 0)] if self.has_alpha else []
             with dr.scoped_set_flag(dr.JitFlag.SymbolicLoops, False):  # unrolled, which is faster
-                self.block.put(place, [color.x, color.y, color.z, *alpha, weight])
-            dr.eval(self.block.tensor())
+                self.colors.put(place, [color.x, color.y, color.z, weight])
+                if self.alpha is not None:
+                    valid = dr.reinterpret_array(mi.UInt32, traced.w) >= VALID
+                    self.alpha.put(place, [dr.select(valid, weight, 0), mi.Float(0)])
+            dr.eval(self.colors.tensor(), self.alpha.tensor() if self.alpha is not None else None)
