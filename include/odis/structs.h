@@ -222,7 +222,9 @@ typedef struct OdisSampleRange {
 // What a path brought to its pixel. Pixels are counted row by row.
 typedef struct OdisFrameSample {
   uint32_t pixel ODIS_DEFAULT(0), sample ODIS_DEFAULT(0);
-  OdisFloat3 value;               // weighted by the reconstruction filter; what is not finite counts as black
+  // Its colour; where the mean of a pixel's samples is the image, weighted by the reconstruction filter. What
+  // is not finite counts as black.
+  OdisFloat3 value;
   uint32_t rays ODIS_DEFAULT(0);  // traced for it, camera ray and shadow rays included
 } OdisFrameSample;
 
