@@ -17,11 +17,12 @@ class Film : public odis::test::Odis {
     for (const char* filter : {"box", "gaussian"}) writeScene(std::string(filter) + ".xml", filter);
   }
   void writeScene(const std::string& name, const std::string& filter) const {
-    write(name, "<scene version=\"3.0.0\"><sensor type=\"perspective\"><film type=\"hdrfilm\"><integer "
-                "name=\"width\" value=\"40\"/><integer name=\"height\" value=\"30\"/><rfilter type=\"" +
-                    filter +
-                    "\"/></film></sensor><shape type=\"sphere\"><point name=\"center\" x=\"0\" y=\"0\" "
-                    "z=\"4\"/></shape><emitter type=\"constant\"/></scene>");
+    write(name,
+          "<scene version=\"3.0.0\"><sensor type=\"perspective\"><film type=\"hdrfilm\"><integer "
+          "name=\"width\" value=\"40\"/><integer name=\"height\" value=\"30\"/><rfilter type=\"" +
+              filter +
+              "\"/></film></sensor><shape type=\"sphere\"><point name=\"center\" x=\"0\" y=\"0\" "
+              "z=\"4\"/></shape><emitter type=\"constant\"/></scene>");
   }
   ExrFile image(const std::string& name) const { return readExr(file(name).string()); }
 };
@@ -49,10 +50,11 @@ TEST_F(Film, BoxesAreTheSameEitherWay) {
 }
 
 TEST_F(Film, WideFiltersAreDrawnFrom) {
-  write("wide.xml", "<scene version=\"3.0.0\"><sensor type=\"perspective\"><film type=\"hdrfilm\"><integer "
-                    "name=\"width\" value=\"40\"/><integer name=\"height\" value=\"30\"/><rfilter "
-                    "type=\"gaussian\"><float name=\"stddev\" value=\"5\"/></rfilter></film></sensor>"
-                    "<emitter type=\"constant\"/></scene>");
+  write("wide.xml",
+        "<scene version=\"3.0.0\"><sensor type=\"perspective\"><film type=\"hdrfilm\"><integer "
+        "name=\"width\" value=\"40\"/><integer name=\"height\" value=\"30\"/><rfilter "
+        "type=\"gaussian\"><float name=\"stddev\" value=\"5\"/></rfilter></film></sensor>"
+        "<emitter type=\"constant\"/></scene>");
   const Outcome outcome = run("render wide.xml -o a.exr");
   EXPECT_EQ(outcome.code, 0);
   EXPECT_NE(outcome.text.find("note: --film splat: the filter reaches over 20 pixels, more than 16"),

@@ -48,7 +48,7 @@ void addAll(SplatFilm& film, const SampledTiles& tiles, const std::vector<Sample
     for (const Sample& s : samples) {
       const Vec2i at = s.pixel - tiles.corner(tile);
       if (at.x < 0 || at.y < 0 || at.x >= int(kTileSize) || at.y >= int(kTileSize)) continue;
-      places.push_back({s.place.offset, s.place.weight, uint8_t(at.x), uint8_t(at.y)});
+      places.push_back({s.place.offset, s.place.weight, uint16_t(at.x), uint16_t(at.y)});
       channels.insert(channels.end(), s.channels.begin(), s.channels.end());
     }
     if (!places.empty()) film.add(tile, places, channels);

@@ -20,10 +20,10 @@ namespace odis::render {
 struct SplatPlace {
   Vec2 offset;  // from the centre of its pixel, -0.5 to 0.5
   float weight = 1;
-  uint8_t x = 0, y = 0;  // of its pixel in the tile
+  uint16_t x = 0, y = 0;  // of its pixel in the tile
 };
 
-// What is added up of a sample, for each pixel that it reaches.
+// How many numbers are added up of a sample, for each pixel that it reaches.
 struct SplatChannels {
   int count = 4;
   // The first ones are multiplied by the filter, the others by its absolute value: means with the latter stay
@@ -34,7 +34,7 @@ struct SplatChannels {
 // Sums are kept tile by tile, each with a border that the filter reaches over, and joined in the order of the
 // tiles when they are asked for: they are the same for any number of threads and for crops. Memory: 4 bytes a
 // channel and pixel, times ((16 + 2 reach) / 16)^2, which is 1.27 for a tent of radius 1 and 1.56 for the
-// default gaussian; samples that are kept take 20 bytes and 4 a channel.
+// default gaussian; samples that are kept take 16 bytes and 4 a channel.
 class SplatFilm {
  public:
   SplatFilm(const FilmSettings& film, const SampledTiles& tiles, const SplatChannels& channels);

@@ -64,7 +64,7 @@ struct TileResult {
 // Notes what a film that splats adds of a path.
 void collectSplat(const Splats& films, const Vec2i& inTile, const Path& path, float weight, const Rgb& value,
                   TileResult& result) {
-  result.splats.push_back({path.place, weight, uint8_t(inTile.x), uint8_t(inTile.y)});
+  result.splats.push_back({path.place, weight, uint16_t(inTile.x), uint16_t(inTile.y)});
   appendColorChannels(value, path.identity.sample, films.colors->channels(), result.colors);
   if (films.features)
     appendFeatureChannels(path.first, path.visible ? path.visibleWeight * path.identity.sampleWeight : 0,

@@ -63,7 +63,7 @@ class ReusedFrame {
     std::vector<float> colors;
     m_tiles.forEachPixel(tile, [&](uint32_t pixel) {
       const Vec2i inTile = m_tiles.pixelAt(pixel) - m_tiles.corner(tile);
-      places.push_back({m_pixels[pixel].place, 1, uint8_t(inTile.x), uint8_t(inTile.y)});
+      places.push_back({m_pixels[pixel].place, 1, uint16_t(inTile.x), uint16_t(inTile.y)});
       appendColorChannels(values[pixel], m_sample, film.channels(), colors);
     });
     film.add(tile, places, colors);
