@@ -90,10 +90,11 @@ Guide Guide::load(const Archive& file) {
   const size_t columns = data.lightGroups + 1;
   data.lightTables = file.get<float>("guide.lightTables", data.lightGroups > 0 ? keys.size() * columns : 0);
   for (size_t c = 0; c < keys.size(); ++c) {
-    file.require(isSound(data.decisions[c]), "guide.decisions: are damaged");
+    const bool hasTable = data.decisions[c].learnedLightFraction > 0;
+    file.require(isSound(data.decisions[c]) && (data.lightGroups > 0 || !hasTable),
+                 "guide.decisions: are damaged");
     if (data.lightGroups > 0)
-      file.require(isSound(std::span<const float>(&data.lightTables[c * columns], columns),
-                           data.decisions[c].learnedLightFraction > 0),
+      file.require(isSound(std::span<const float>(&data.lightTables[c * columns], columns), hasTable),
                    "guide.lightTables: are damaged");
   }
   if (file.contains("guide.cached")) {

@@ -210,12 +210,30 @@ TEST(ApiFiles, ARimThatNoGuideHasIsRefused) {
   for (const float value : {0.0f, -1.0f, 1e-40f, 1e38f, INFINITY, NAN}) EXPECT_FALSE(isRead(value)) << value;
 }
 
+// A host would look for the table that a cell promises.
+TEST(ApiFiles, ACellThatPromisesATableOfLightsWhereThereIsNoneIsRefused) {
+  const TemporaryFolder folder;
+  const std::string path = folder.path("a.guide");
+  GuideBuilder builder;
+  builder.add(apiVertices());
+  builder.build(apiVertices()).save(path);
+  std::string bytes = readAll(path);
+  const std::string name = "guide.decisions";
+  const float promised = 0.5f;
+  const size_t first = bytes.find(name) + name.size() + sizeof(uint32_t) + sizeof(uint64_t);
+  std::memcpy(&bytes[first + offsetof(CellDecisions, learnedLightFraction)], &promised, sizeof promised);
+  writeWithChecksum(path, bytes);
+  EXPECT_EQ(odisLoadGuide(Context::shared().get(), path.c_str()), nullptr);
+  std::string message;
+  EXPECT_EQ(takeError(&message), ODIS_ERROR_FILE);
+  EXPECT_NE(message.find("guide.decisions: are damaged"), std::string::npos) << message;
+}
+
 // Bytes that were changed, with a checksum that fits them: what is read either works or is refused.
-TEST(ApiFiles, DamageThatTheChecksumDoesNotShowIsHarmless) {
+void expectHarmlessDamage(const FrameOptions& options) {
   const TemporaryFolder folder;
   const std::string path = folder.path("a.frame");
   const ToyRoom room;
-  FrameOptions options = toyOptions(20, 20, 8);
   const ToyHost host(room, options.width, options.height);
   Frame frame(options);
   const FramePass* pass = frame.beginPass();
@@ -244,6 +262,13 @@ TEST(ApiFiles, DamageThatTheChecksumDoesNotShowIsHarmless) {
   }
   EXPECT_GT(refused, 15);
   EXPECT_LT(refused, 120);
+}
+
+TEST(ApiFiles, DamageThatTheChecksumDoesNotShowIsHarmless) {
+  FrameOptions options = toyOptions(20, 20, 8);
+  expectHarmlessDamage(options);
+  options.keepPixelMeans = false;
+  expectHarmlessDamage(options);
 }
 
 }  // namespace
