@@ -109,15 +109,19 @@ Frame::Data::Data(const FrameOptions& o, std::shared_ptr<const Tasks> shared,
 SampleRange Frame::Data::samples(uint32_t pixel) const {
   switch (next) {
     case ODIS_PASS_PILOT:
-      return {0, schedule.pilotCount(pixel), schedule.sampleWeight(pixel, true, options.pilotWeight)};
+      return {0, schedule.pilotCount(pixel)};
     case ODIS_PASS_ORACLE:
-      return {oraclePasses, 1, 0};
+      return {oraclePasses, 1};
     case ODIS_PASS_GUIDED:
       break;
   }
-  SampleRange range = schedule.remaining(pixel, done, end);
-  range.weight = pass.weightsLater ? 0 : schedule.sampleWeight(pixel, false, options.pilotWeight);
-  return range;
+  return schedule.remaining(pixel, done, end);
+}
+
+// What each sample of a pixel weighs that the pass asks for.
+float Frame::Data::weightInPass(uint32_t pixel) const {
+  if (!pass.partOfImage || pass.weightsLater) return 0;
+  return schedule.sampleWeight(pixel, next == ODIS_PASS_PILOT, options.pilotWeight);
 }
 
 void Frame::Data::refusePixel(uint32_t pixel, const char* function) const {
@@ -354,7 +358,10 @@ bool Frame::isComplete() const {
 SampleRange Frame::samples(uint32_t pixel) const {
   requireOrder(m_data->inPass, "odisGetSamples: expected a pass under way");
   m_data->requirePixel(pixel, "odisGetSamples");
-  return m_data->tiles.isDone(pixel) ? SampleRange() : m_data->samples(pixel);
+  if (m_data->tiles.isDone(pixel)) return {};
+  SampleRange range = m_data->samples(pixel);
+  range.weight = m_data->weightInPass(pixel);
+  return range;
 }
 
 bool Frame::wantsVertices(uint32_t pixel) const {

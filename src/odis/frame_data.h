@@ -68,7 +68,8 @@ struct Frame::Data {
   void takeStock();
 
   bool learns() const { return done < schedule.lastRefinement(); }
-  SampleRange samples(uint32_t pixel) const;
+  SampleRange samples(uint32_t pixel) const;  // without their weight
+  float weightInPass(uint32_t pixel) const;
   void requirePixel(uint32_t pixel, const char* function) const {
     if (pixel >= pixelCount) refusePixel(pixel, function);
   }

@@ -83,7 +83,7 @@ TEST(Splat, AnyNumberOfThreadsGivesTheSameBits) {
 }
 
 TEST(Splat, CropsTogetherAreTheWhole) {
-  const std::string text = filtered(test::indirectRoom(50), "gaussian");
+  const std::string text = test::filtered(test::indirectRoom(50), "gaussian");
   RenderOptions options = splatting(IntegratorKind::path, 4);
   options.features = true;
   const RenderedImage whole = test::renderScene(*test::loadScene(text), options).image;
@@ -108,10 +108,10 @@ TEST(Splat, CropsTogetherAreTheWhole) {
 
 // Crops of a guided image have guides of their own, and show the same.
 TEST(Splat, CropsOfGuidedImagesCountTheirOwnPixels) {
-  const auto scene = test::loadScene(
-      filtered(test::indirectRoom(40), "gaussian",
-               "<integer name=\"crop_offset_x\" value=\"7\"/><integer name=\"crop_offset_y\" value=\"20\"/>"
-               "<integer name=\"crop_width\" value=\"12\"/><integer name=\"crop_height\" value=\"9\"/>"));
+  const auto scene = test::loadScene(test::filtered(
+      test::indirectRoom(40), "gaussian",
+      "<integer name=\"crop_offset_x\" value=\"7\"/><integer name=\"crop_offset_y\" value=\"20\"/>"
+      "<integer name=\"crop_width\" value=\"12\"/><integer name=\"crop_height\" value=\"9\"/>"));
   RenderOptions options = splatting(IntegratorKind::odis, 8);
   options.features = options.guideFeatures = options.records = true;
   const RenderResult result = test::renderScene(*scene, options);

@@ -82,13 +82,17 @@ uint64_t Schedule::remainingSamples() const {
 }
 
 SampleRange Schedule::remaining(uint32_t pixel, uint32_t begin, uint32_t end) const {
+  if (m_counts.empty()) {
+    const uint32_t pilot = pilotCount(pixel), first = std::min(pilot + begin, m_spp);
+    return {first, std::min(m_spp - first, end - begin)};
+  }
   const uint32_t first = doneIn(pixel, begin);
   return {pilotCount(pixel) + first, doneIn(pixel, end) - first};
 }
 
 uint32_t Schedule::doneIn(uint32_t pixel, uint32_t done) const {
   const uint32_t all = sampleCount(pixel) - pilotCount(pixel), alike = std::min(m_decided, all);
-  if (m_counts.empty() || done <= m_decided || done >= m_mostRemaining) return std::min(done, all);
+  if (done <= m_decided || done >= m_mostRemaining) return std::min(done, all);
   return alike + uint32_t(uint64_t(all - alike) * (done - m_decided) / (m_mostRemaining - m_decided));
 }
 
@@ -139,7 +143,7 @@ float Schedule::remainingRatio(uint32_t pixel) const {
 
 float Schedule::sampleWeight(uint32_t pixel, bool ofPilot, double pilotWeight) const {
   const uint32_t pilot = pilotCount(pixel), others = m_spp - pilot;
-  if (others == 0) return 1;
+  if (others == 0 || (pilot == 0 && m_counts.empty())) return 1;
   const double all = pilotWeight * pilot + others;
   return float(m_spp / all * (ofPilot ? pilotWeight : double(others) / (sampleCount(pixel) - pilot)));
 }
