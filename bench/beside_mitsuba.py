@@ -15,10 +15,11 @@ FLIP        as docs/comparing.md has it
 blurred     error after image and reference were both blurred by a gaussian with a standard deviation of two pixels:
             what is left of the noise for an eye that stands back
 Sobol'      the same with `--sampler sobol` on our side; all other columns are with independent samples
+reference   the reference's own error, which is in every error and draws ratios towards 1 where it is large
 
 Errors are those of `odis metrics`, to references by Mitsuba's `path` with the same filter and other seeds. They are
-made where DIR (--references) has none that fits, and are part of every error. Scenes that odis.mitsuba.scene_files
-does not load get `-`, and the reason on stderr.
+made where DIR (--references) has none that fits. Scenes that odis.mitsuba.scene_files does not load get `-`, and the
+reason on stderr. Untrimmed errors, and blurred ones where single samples are very bright, need many seeds.
 
 --speed compares samples a second of `path` alone, as medians over rounds, and needs no references.
 """
@@ -36,7 +37,7 @@ import mitsuba as mi
 import numpy as np
 from in_mitsuba import SETTINGS, name_of
 from in_mitsuba import render as render_timed
-from mitsuba_references import reference_of
+from mitsuba_references import how_made, reference_of
 from odis.mitsuba.scene_files import load_file
 
 METHODS = {"path": ["--integrator", "path"], "odis": [], "cached": ["--cached"]}
@@ -47,7 +48,8 @@ COLUMNS = {"time": ("time", "independent"), "error": ("error", "independent"),
            "error × time": ("error × time", "independent"), "untrimmed": ("untrimmed", "independent"),
            "FLIP": ("FLIP", "independent"), "blurred": ("blurred", "independent"),
            "Sobol': error": ("error", "sobol"), "Sobol': error × time": ("error × time", "sobol"),
-           "Sobol': FLIP": ("FLIP", "sobol"), "Sobol': blurred": ("blurred", "sobol")}
+           "Sobol': FLIP": ("FLIP", "sobol"), "Sobol': blurred": ("blurred", "sobol"),
+           "reference": ("reference", "")}
 
 
 class Reference:
@@ -112,7 +114,8 @@ def measure_odis_image(path, options, spp, seed, reference, args):
 
 
 def measure_scene(path, args):
-    """For each number of samples and each method, `mitsuba` among them, a list with what was measured of each seed."""
+    """For each number of samples and each method, `mitsuba` among them, a list with what was measured of each seed;
+    and how the reference was made."""
     scene = load_file(path, pixels=args.pixels, sampler="independent")
     file = reference_of(scene, path, args)
     if args.only_references:
@@ -120,6 +123,7 @@ def measure_scene(path, args):
     methods = {f"{method} {sampler}": [*options, "--sampler", sampler]
                for method, options in METHODS.items() for sampler in SAMPLERS}
     measured = {str(spp): {name: [] for name in ("mitsuba", *methods)} for spp in args.spp}
+    measured["reference"] = how_made(file)
     with tempfile.TemporaryDirectory() as folder:
         reference = Reference(file, folder)
         for spp in args.spp:
@@ -130,9 +134,12 @@ def measure_scene(path, args):
     return measured
 
 
-def ratios_of(measured, method):
-    """A scene's row of a table: for each column the ratio to Mitsuba of the means over seeds."""
+def ratios_of(measured, own_error, method):
+    """A scene's row of a table: for each column the ratio to Mitsuba of the means over seeds; own_error is that of
+    the reference."""
     def ratio(sampler, key):
+        if key == "reference":
+            return own_error / np.mean([seed["error"] for seed in measured["mitsuba"]])
         if key == "error × time":
             return ratio(sampler, "error") * ratio(sampler, "time")
         ours, theirs = (np.mean([seed[key] for seed in measured[name]]) for name in (f"{method} {sampler}", "mitsuba"))
@@ -146,7 +153,8 @@ def print_row(name, cells):
 
 def rows_of(results, spp, method):
     """Scenes that were measured, with their rows."""
-    return {name: ratios_of(measured[str(spp)], method) for name, measured in results.items() if measured}
+    return {name: ratios_of(measured[str(spp)], measured["reference"]["own error"], method)
+            for name, measured in results.items() if measured}
 
 
 def geometric_mean(rows):

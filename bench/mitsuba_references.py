@@ -21,7 +21,7 @@ def reference_of(scene, path, args):
     """The name of the EXR file with the reference of a scene in args.references, which is made where none fits."""
     file = os.path.join(args.references, f"{name_of(path)}.exr")
     wanted = _conditions(scene, path)
-    made = _how_made(file)
+    made = how_made(file)
     if made is None or made["spp"] < args.reference_spp or any(made.get(key) != wanted[key] for key in wanted):
         begin = time.perf_counter()
         image, made = _render(scene, args.reference_spp)
@@ -41,7 +41,8 @@ def _conditions(scene, path):
             **SETTINGS}
 
 
-def _how_made(file):
+def how_made(file):
+    """What the attribute says; None where there is no such file or attribute."""
     if not os.path.exists(file):
         return None
     metadata = mi.Bitmap(file).metadata()
