@@ -161,10 +161,10 @@ int runDenoise(const DenoiseArguments& a) {
   const render::Denoiser denoiser(a.threads);
   if (const auto film = image.metadata.find("odis:film");
       film != image.metadata.end() && film->second == "splat" && !a.quiet)
-    sayWarning(
-        fmt::format("{}: was splatted: neighbouring pixels share their noise, which the denoiser takes for "
-                    "detail; an image of `odis render --film pixels` has a tenth of the error afterwards",
-                    a.image));
+    sayWarning(fmt::format(
+        "{}: was splatted: neighbouring pixels share their noise, which the denoiser takes for "
+        "detail; images of `odis render --film pixels` have about a tenth of the error afterwards",
+        a.image));
   if (images.albedo.empty() && a.auxiliaries != "none" && !a.quiet)
     sayWarning(fmt::format("{}: found no albedo: denoised by its colours alone{}", a.image,
                            images.normal.empty() ? "" : ", without the normals"));

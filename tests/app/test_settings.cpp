@@ -271,7 +271,7 @@ TEST_F(Odis, RenderHasFewOptions) {
                (line[first + 1] == '-' || std::isalpha(static_cast<unsigned char>(line[first + 1])));
   }
   EXPECT_GT(options, 10);
-  EXPECT_LE(options, 32) << help.text;
+  EXPECT_LE(options, 33) << help.text;
 }
 
 }  // namespace

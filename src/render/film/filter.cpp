@@ -20,7 +20,7 @@ void require(float value, const NumberRange& range, const std::string& what) {
 // Constant within the radius. Offsets lie in [-radius, radius).
 class BoxFilter final : public Filter {
  public:
-  explicit BoxFilter(float radius) : m_radius(radius) {
+  explicit BoxFilter(float radius) : Filter(radius), m_radius(radius) {
     require(radius, kFilterRadius, "the radius of a box filter");
   }
   FilterSample sample(const Vec2& u) const override {
@@ -53,7 +53,7 @@ class BoxFilter final : public Filter {
 // Falls linearly to zero at the radius.
 class TentFilter final : public Filter {
  public:
-  explicit TentFilter(float radius) : m_radius(radius) {
+  explicit TentFilter(float radius) : Filter(radius), m_radius(radius) {
     require(radius, kFilterRadius, "the radius of a tent filter");
   }
   FilterSample sample(const Vec2& u) const override { return {{invert(u.x), invert(u.y)}, 1.0f}; }
@@ -98,7 +98,8 @@ class TentFilter final : public Filter {
 template <class Profile>
 class TabulatedFilter final : public Filter {
  public:
-  TabulatedFilter(Profile profile, std::string name) : m_profile(profile), m_name(std::move(name)) {
+  TabulatedFilter(Profile profile, std::string name)
+      : Filter(profile.radius), m_profile(profile), m_name(std::move(name)) {
     for (int i = 0; i <= kCells; ++i) m_density[i] = std::abs(m_profile(float(i) * cellWidth()));
     m_cdf[0] = 0;
     double sum = 0;

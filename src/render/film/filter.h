@@ -57,7 +57,7 @@ class Filter {
   virtual std::string name() const = 0;
 
   // The filter reaches over the border of this many pixels, counted from the border.
-  int reach() const { return int(std::ceil(radius() - 0.5f)); }
+  int reach() const { return m_reach; }
   // What lies on a film that has so many pixels before this one and so many after it.
   FilterPart part(int before, int after) const {
     const Side a = side(before), b = side(after);
@@ -66,6 +66,9 @@ class Filter {
   }
 
  protected:
+  // Of a radius that may turn out to be none.
+  explicit Filter(float radius) : m_reach(radius > 0 && radius < 1e6f ? int(std::ceil(radius - 0.5f)) : 0) {}
+
   // From the pixel's centre to the border behind so many pixels, on one axis and to one side; 0.5 each where
   // the border is beyond the radius.
   struct Side {
@@ -73,6 +76,9 @@ class Filter {
     double integral;  // of the normalised filter
   };
   virtual Side side(int pixels) const = 0;
+
+ private:
+  int m_reach;
 };
 
 // In pixels: narrower filters have no place in single precision, wider ones blur everything.

@@ -24,18 +24,26 @@ struct FilterAround {
 };
 
 // Adds a sample of four channels to the pixels around it, rows of which lie `stride` numbers apart.
-ODIS_WIDE void addColors(const FilterAround& filter, const float* value, float weight, size_t stride,
-                         double* to) {
+inline __attribute__((always_inline)) void addColorsTo(const FilterAround& filter, int taps,
+                                                       const float* value, float weight, size_t stride,
+                                                       double* to) {
   const float scaled[kColorChannels] = {weight * value[0], weight * value[1], weight * value[2],
                                         weight * value[3]};
   alignas(32) double row[kColorChannels * kMostTaps];
-  for (int k = 0; k < filter.taps; ++k)
+  for (int k = 0; k < taps; ++k)
     for (int c = 0; c < kColorChannels; ++c)
       row[kColorChannels * k + c] = double(filter.x[size_t(k)]) * double(scaled[c]);
-  for (int j = 0; j < filter.taps; ++j, to += stride) {
+  for (int j = 0; j < taps; ++j, to += stride) {
     const double scale = filter.y[size_t(j)];
-    for (int i = 0; i < kColorChannels * filter.taps; ++i) to[i] += scale * row[i];
+    for (int i = 0; i < kColorChannels * taps; ++i) to[i] += scale * row[i];
   }
+}
+// Loops of known length become straight code: those of a tent and of the default gaussian.
+ODIS_WIDE void addColors(const FilterAround& filter, const float* value, float weight, size_t stride,
+                         double* to) {
+  if (filter.taps == 3) return addColorsTo(filter, 3, value, weight, stride, to);
+  if (filter.taps == 5) return addColorsTo(filter, 5, value, weight, stride, to);
+  addColorsTo(filter, filter.taps, value, weight, stride, to);
 }
 
 // The same of any channels, the first of which are multiplied by the filter, others by its absolute value.

@@ -139,7 +139,8 @@ void drawCameraNumbers(const Scene& scene, const SamplerBlock& samplers, CameraS
 }
 
 // The path of a sample of a pixel, which lies at `at` on the film; addCameraRays() gives it its ray.
-Path pathWithoutRay(const Pass& pass, uint32_t pixel, Vec2i at, uint32_t sample) {
+inline __attribute__((always_inline)) Path pathWithoutRay(const Pass& pass, uint32_t pixel, Vec2i at,
+                                                          uint32_t sample) {
   const Scene& scene = *pass.path.scene;
   const uint32_t place = samplerPixel(scene.film(), pass.film, at);
   Path path({Vec3(0, 0, 0), Vec3(0, 0, 1)}, {pass.sampler, pass.seed, place, sample, pass.redrawn});
