@@ -87,7 +87,8 @@ float entropy(const uint16_t* texels) {
 void writeFeatures(const FeatureSums& s, RenderedImage& image) {
   const auto unit = [](const Vec3& v) { return lengthSquared(v) > 0 ? normalize(v) : Vec3(0, 0, 0); };
   const float scale = s.hits > 0 ? 1.0f / s.hits : 0.0f;
-  const float coverage = s.samples > 0 ? s.hits / s.samples : 0.0f;
+  // Filters with negative lobes would make more than all of it.
+  const float coverage = s.samples > 0 ? std::min(s.hits / s.samples, 1.0f) : 0.0f;
   image.albedo.push_back(s.albedo * (scale * coverage));
   image.normal.push_back(unit(s.normal) * coverage);
   image.geometricNormal.push_back(unit(s.geometricNormal));
