@@ -126,17 +126,18 @@ void FrameIntegrator::run(const FramePass& framePass) {
   if (m_guideIsNew) stats.cellsBuilt += framePass.guide->cellCount;
   trace(framePass);
   const Stopwatch building;
-  const bool hasKept = framePass.weightsLater;
-  m_frame.endPass(m_job.interrupted());
-  if (hasKept) addKept();
+  const bool hasKept = framePass.weightsLater, interrupted = m_job.interrupted();
+  m_frame.endPass(interrupted);
+  if (hasKept) addKept(interrupted);
   m_guideIsNew = kind != ODIS_PASS_GUIDED || framePass.wantsVertices;
   if (m_guideIsNew) stats.secondsBuild += building.seconds();
 }
 
-// Adds the samples of a pass that has settled what they weigh.
-void FrameIntegrator::addKept() {
-  const auto weight = [this](uint32_t pixel) {
-    return m_frame.sampleWeight(pixel, m_frame.sampleCount(pixel) - 1);
+// Adds the samples of a pass that has settled what they weigh. A frame without means counts samples of passes
+// that were not interrupted: the last of those, or else the next one, is of this pass.
+void FrameIntegrator::addKept(bool interrupted) {
+  const auto weight = [this, interrupted](uint32_t pixel) {
+    return m_frame.sampleWeight(pixel, m_frame.sampleCount(pixel) - (interrupted ? 0 : 1));
   };
   if (m_film) m_film->addKept(weight);
   if (m_job.featureFilm) m_job.featureFilm->addKept(weight);

@@ -24,7 +24,7 @@ class FrameIntegrator : public Integrator {
  private:
   void trace(const FramePass& framePass);
   void showPicture();
-  void addKept();
+  void addKept(bool interrupted);
   void run(const FramePass& framePass);
   Pass passOf(const FramePass& framePass);
   void beginStage(const FramePass& framePass);
