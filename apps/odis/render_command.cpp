@@ -158,7 +158,7 @@ static void describeRun(const RenderArguments& a, const Scene& scene, const Rend
   if (options.integrator == IntegratorKind::odis) stats.costs = options.costs;
   stats.scene = a.scene;
   stats.integrator = a.method.integrator;
-  stats.film = filmKindFor(*scene.film().filter, options.film) == FilmKind::splat ? "splat" : "pixels";
+  stats.film = filmName(filmKindFor(*scene.film().filter, options.film));
   stats.commandLine = a.commandLine;
 }
 

@@ -57,7 +57,7 @@ SavingOptions savingOf(const RenderArguments& a, const RenderOptions& options, c
   line("crop", fmt::format("{},{},{},{}", film.crop.x, film.crop.y, film.crop.width, film.crop.height));
   line("--integrator", a.method.integrator);
   line("--sampler", a.method.sampler);
-  line("--film", options.film == FilmKind::splat ? "splat" : "pixels");
+  line("--film", filmName(options.film));
   line("--cached", a.method.cached ? "yes" : "no");
   line("--set", fmt::format("{}", fmt::join(a.method.settings, " ")));
   line("--spp", std::to_string(options.spp));

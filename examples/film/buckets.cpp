@@ -2,8 +2,6 @@
 // at once, and forgotten, but for those of the pass whose weights are settled by its end.
 #include "film.h"
 
-#include <odis/tiles.h>
-
 constexpr uint32_t kBucketTiles = 4;  // tiles across and down
 
 struct Bucket {
@@ -39,24 +37,14 @@ int main(int count, char** arguments) try {
   std::vector<Bucket> buckets = makeBuckets(tiles, settings);
   while (const odis::FramePass* pass = frame.beginPass()) {
     parallelFor(uint32_t(buckets.size()), settings.threads, [&](uint32_t index) {
-      thread_local odis::PathRecorder recorder;
       Bucket& bucket = buckets[index];
-      for (const uint32_t tile : bucket.tiles) {
-        std::vector<odis::FrameSample> forFrame;
-        tiles.forEachPixel(tile, [&](uint32_t pixel) {
-          odis::PathRecorder* const records = frame.wantsVertices(pixel) ? &recorder : nullptr;
-          const odis::SampleRange range = frame.samples(pixel);
-          for (uint32_t i = range.first; i < range.first + range.count; ++i) {
-            const Traced s = trace(scene, settings, *pass, frame.pixelValues(), pixel, i, records);
-            forFrame.push_back(s.forFrame());
-            if (pass->weightsLater)
-              bucket.kept.push_back(s);
-            else
-              bucket.film.splat(s, range.weight);
-          }
-        });
-        frame.add(forFrame, recorder.finish());  // a whole tile: nothing has to wait
-      }
+      for (const uint32_t tile : bucket.tiles)
+        for (const Traced& s : traceTile(scene, settings, frame, *pass, tiles, tile)) {
+          if (pass->weightsLater)
+            bucket.kept.push_back(s);
+          else
+            bucket.film.splat(s, s.weight);
+        }
     });
     frame.endPass();
     parallelFor(uint32_t(buckets.size()), settings.threads, [&](uint32_t index) {

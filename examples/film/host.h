@@ -10,9 +10,12 @@
 #include <functional>
 #include <string>
 #include <thread>
+#include <vector>
 
+#include <odis/tiles.h>
 #include <odis/odis.hpp>
 
+#include "../tiny/numbers.h"
 #include "../tiny/scene.h"
 
 struct Settings {
@@ -69,7 +72,7 @@ inline odis::FrameOptions frameOptions(const Settings& settings, const Scene& sc
   return options;
 }
 
-// Calls body(i) for each i below count, on so many threads.
+// Calls body(i) for each i below count, on this many threads.
 inline void parallelFor(uint32_t count, uint32_t threads, const std::function<void(uint32_t)>& body) {
   std::atomic<uint32_t> next{0};
   std::vector<std::thread> workers;
@@ -81,22 +84,6 @@ inline void parallelFor(uint32_t count, uint32_t threads, const std::function<vo
 }
 
 // ---- paths ----
-
-// Independent random numbers in [0, 1) for one sample (SplitMix64).
-class Random {
- public:
-  Random(uint64_t seed, uint32_t pixel, uint32_t sample)
-      : m_state(mix(mix(seed * 0x9e3779b97f4a7c15ull + pixel) + sample)) {}
-  float next() { return float(mix(m_state += 0x9e3779b97f4a7c15ull) >> 40) * 0x1p-24f; }
-
- private:
-  static uint64_t mix(uint64_t x) {
-    x = (x ^ (x >> 30)) * 0xbf58476d1ce4e5b9ull;
-    x = (x ^ (x >> 27)) * 0x94d049bb133111ebull;
-    return x ^ (x >> 31);
-  }
-  uint64_t m_state;
-};
 
 inline constexpr size_t kMostLights = 2;
 
@@ -111,10 +98,6 @@ struct Traced {
 
   odis::FrameSample forFrame() const { return {pixel, sample, color, rays}; }
 };
-
-inline float powerHeuristic(float pdf, float other) {
-  return pdf > 0 ? 1 / (1 + other / pdf * (other / pdf)) : 0;
-}
 
 // Traces a path of a pass; `recorder` is null where its vertices are not wanted.
 inline Traced trace(const Scene& scene, const Settings& settings, const odis::FramePass& pass,
@@ -211,4 +194,25 @@ inline Traced trace(const Scene& scene, const Settings& settings, const odis::Fr
     if (maxComponent(throughput) == 0) break;
   }
   return traced;
+}
+
+// Traces the samples of a pass that a tile has, and hands them to the frame with their vertices: of a whole
+// tile nothing has to wait.
+inline std::vector<Traced> traceTile(const Scene& scene, const Settings& settings, odis::Frame& frame,
+                                     const odis::FramePass& pass, const odis::TileGrid& tiles,
+                                     uint32_t tile) {
+  thread_local odis::PathRecorder recorder;
+  std::vector<Traced> samples;
+  std::vector<odis::FrameSample> forFrame;
+  tiles.forEachPixel(tile, [&](uint32_t pixel) {
+    odis::PathRecorder* const records = frame.wantsVertices(pixel) ? &recorder : nullptr;
+    const odis::SampleRange range = frame.samples(pixel);
+    for (uint32_t i = range.first; i < range.first + range.count; ++i) {
+      samples.push_back(trace(scene, settings, pass, frame.pixelValues(), pixel, i, records));
+      samples.back().weight = range.weight;
+      forFrame.push_back(samples.back().forFrame());
+    }
+  });
+  frame.add(forFrame, recorder.finish());
+  return samples;
 }

@@ -3,8 +3,6 @@
 // goes on from.
 #include "film.h"
 
-#include <odis/tiles.h>
-
 // A frame that was saved, with its film, or a new one.
 odis::Frame openFrame(const Settings& settings, const odis::FrameOptions& options, Film& film) {
   std::FILE* file = settings.save.empty() ? nullptr : std::fopen(settings.save.c_str(), "rb");
@@ -29,18 +27,7 @@ int main(int count, char** arguments) try {
     if (!pass) break;
     std::vector<std::vector<Traced>> samples(tiles.tileCount());
     parallelFor(tiles.tileCount(), settings.threads, [&](uint32_t tile) {
-      thread_local odis::PathRecorder recorder;
-      std::vector<odis::FrameSample> forFrame;
-      tiles.forEachPixel(tile, [&](uint32_t pixel) {
-        odis::PathRecorder* const records = frame.wantsVertices(pixel) ? &recorder : nullptr;
-        const odis::SampleRange range = frame.samples(pixel);
-        for (uint32_t i = range.first; i < range.first + range.count; ++i) {
-          samples[tile].push_back(trace(scene, settings, *pass, frame.pixelValues(), pixel, i, records));
-          samples[tile].back().weight = range.weight;
-          forFrame.push_back(samples[tile].back().forFrame());
-        }
-      });
-      frame.add(forFrame, recorder.finish());
+      samples[tile] = traceTile(scene, settings, frame, *pass, tiles, tile);
     });
     // The library learns on a thread of its own while this one makes the image.
     frame.startEndPass();

@@ -2,8 +2,6 @@
 // splats them when it has ended. All weights are known by then.
 #include "film.h"
 
-#include <odis/tiles.h>
-
 int main(int count, char** arguments) try {
   const Settings settings = parseSettings(count, arguments);
   const Scene scene = makeScene(settings.scene);
@@ -14,17 +12,7 @@ int main(int count, char** arguments) try {
   while (const odis::FramePass* pass = frame.beginPass()) {
     std::vector<std::vector<Traced>> samples(tiles.tileCount());
     parallelFor(tiles.tileCount(), settings.threads, [&](uint32_t tile) {
-      thread_local odis::PathRecorder recorder;
-      std::vector<odis::FrameSample> forFrame;
-      tiles.forEachPixel(tile, [&](uint32_t pixel) {
-        odis::PathRecorder* const records = frame.wantsVertices(pixel) ? &recorder : nullptr;
-        const odis::SampleRange range = frame.samples(pixel);
-        for (uint32_t i = range.first; i < range.first + range.count; ++i) {
-          samples[tile].push_back(trace(scene, settings, *pass, frame.pixelValues(), pixel, i, records));
-          forFrame.push_back(samples[tile].back().forFrame());
-        }
-      });
-      frame.add(forFrame, recorder.finish());
+      samples[tile] = traceTile(scene, settings, frame, *pass, tiles, tile);
     });
     frame.endPass();
     // One tile after another, so that the image has the same bits for any number of threads.

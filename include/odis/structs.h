@@ -214,7 +214,7 @@ typedef enum OdisPassKind {
 // The samples [first, first + count) of a pixel.
 typedef struct OdisSampleRange {
   uint32_t first ODIS_DEFAULT(0), count ODIS_DEFAULT(0);
-  // Of each of them in the image (odisGetSampleWeight); 0 where it is not known yet
+  // The weight of each of them in the image (odisGetSampleWeight); 0 where it is not known yet
   // (OdisFramePass.weightsLater) and in passes that are no part of the image.
   float weight ODIS_DEFAULT(1);
 } OdisSampleRange;

@@ -81,7 +81,7 @@ guided_cost: float >= 0 (1): what a ray of a guided path takes, relative to one 
     and refines in any case
 built_cell_cost, recorded_ray_cost: float >= 0 (70, 0.15): what it takes to build a cell of the guide, and to
     record what one ray brings, in the time that a ray takes: whether refining pays
-tile_offset_x, tile_offset_y: int in [0, 15] (0): tiles of 16 x 16 pixels begin so many pixels before the
+tile_offset_x, tile_offset_y: int in [0, 15] (0): tiles of 16 x 16 pixels begin this many pixels before the
     image's first column and row: 5 and 0 for a crop that begins at column 37 and row 16, so that its tiles
     are those of the whole image
 guide: GuideOptions

@@ -16,7 +16,7 @@ RenderOptions splatting(IntegratorKind integrator, int spp) {
   return options;
 }
 
-// The furnace's radiance is 2 everywhere, for every path.
+// The sky has the same radiance in all directions.
 TEST(Splat, ConstantImagesAreConstantUpToTheBorder) {
   const std::string sky = test::sensor("origin=\"0,0,0\" target=\"1,0,0\" up=\"0,1,0\"", 60, 37, 21) +
                           "<emitter type=\"constant\"><rgb name=\"radiance\" value=\"0.7\"/></emitter>";

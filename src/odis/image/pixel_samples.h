@@ -60,7 +60,7 @@ class PixelSamples {
   // What is kept: one of these at most has elements, [pixel] or [pixel][sample].
   const std::vector<PixelSums>& sums() const { return m_sums; }
   const std::vector<KeptSample>& kept() const { return m_kept; }
-  // Puts elements of a saved frame in the place of what is kept; returns whether they are as many.
+  // Replaces what is kept by that of a saved frame. Returns false, and changes nothing, if sizes differ.
   bool restore(std::vector<PixelSums> sums, std::vector<KeptSample> kept) {
     if (sums.size() != m_sums.size() || kept.size() != m_kept.size()) return false;
     m_sums = std::move(sums);

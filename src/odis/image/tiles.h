@@ -28,8 +28,8 @@ class TileCollector {
   // The samples of a pixel that are due in the pass.
   using Due = std::function<SampleRange(uint32_t pixel)>;
 
-  // Of an image of this size and with these tiles. The tiles of a large call are shared out as `tasks`; null:
-  // they are taken one after another.
+  // Collects for an image of this size with these tiles. The tiles of a large call are shared out as `tasks`;
+  // null: they are taken one after another.
   explicit TileCollector(const OdisFrameOptions& image, std::shared_ptr<const Tasks> tasks = nullptr);
   uint32_t tileCount() const { return m_grid.tileCount(); }
 

@@ -23,15 +23,15 @@ struct FilmSettings {
   bool sampleBorder = false;
 };
 
-// Which pixels a sample counts in.
+// Samples count in one pixel or in several.
 enum class FilmKind {
   pixels,  // in one: its place around it is drawn from the filter, so that pixels' noise is independent
   splat,   // in all that the filter reaches from its place, which is uniform in its pixel: less noise
 };
 
-// Filters that reach over more pixels than this are not splatted: hundreds of pixels would change with every
-// sample.
-inline constexpr int kMostSplatReach = 16;
+inline const char* filmName(FilmKind kind) {
+  return kind == FilmKind::splat ? "splat" : "pixels";
+}
 
 // The kind of film that a filter is used with where this one is asked for. Samples of a box of one pixel
 // count in one pixel either way.

@@ -4,6 +4,7 @@
 #include <odis/instruction_sets.h>
 
 #include <array>
+#include <cassert>
 #include <stdexcept>
 #include <utility>
 #include <vector>
@@ -115,7 +116,7 @@ class TabulatedFilter final : public Filter {
       integral += integrate(std::max(float(i) - 0.5f, 0.0f), float(i) + 0.5f);
       m_sides.push_back({0.5 * cdf(float(i) + 0.5f), integral});
     }
-    if (reach() <= kMostTabulatedReach) tabulateTaps();
+    if (reach() <= kMostSplatReach) tabulateTaps();
   }
 
   FilterSample sample(const Vec2& u) const override {
@@ -126,11 +127,8 @@ class TabulatedFilter final : public Filter {
   float value(const Vec2& offset) const override { return profileAt(offset.x) * profileAt(offset.y); }
   // Interpolated between 257 offsets, by which a value is off by less than a part in 100,000 of the largest.
   void taps(float offset, float* values) const override {
+    assert(!m_taps.empty());
     const int count = 2 * reach() + 1;
-    if (m_taps.empty()) {
-      for (int i = 0; i < count; ++i) values[i] = profileAt(float(i - reach()) - offset);
-      return;
-    }
     const float place = (offset + 0.5f) * kTapCells;
     const int cell = std::clamp(int(place), 0, kTapCells - 1);
     const float t = place - float(cell);
@@ -143,7 +141,6 @@ class TabulatedFilter final : public Filter {
  private:
   static constexpr int kCells = 512;
   static constexpr int kTapCells = 256;
-  static constexpr int kMostTabulatedReach = 16;  // beyond it tables are larger than a cache
 
   void tabulateTaps() {
     for (int cell = 0; cell <= kTapCells; ++cell)
@@ -191,7 +188,7 @@ class TabulatedFilter final : public Filter {
   std::array<float, kCells + 1> m_density;  // of |x| over [0, radius]
   std::array<float, kCells + 1> m_cdf;
   std::vector<Side> m_sides;  // behind 0, 1, ... pixels, up to the radius
-  std::vector<float> m_taps;  // [offset][pixel]: the profile, as taps() has it
+  std::vector<float> m_taps;  // [offset][pixel]: the profile, as taps() has it; empty: reaches too far
 };
 
 // exp(-x^2 / (2 stddev^2)) less its value at the radius of four standard deviations, so that it ends at zero.

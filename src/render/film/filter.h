@@ -40,6 +40,10 @@ struct FilterPart {
   float number(float u) const { return std::min(first + u * width, kOneMinusEpsilon); }
 };
 
+// Filters that reach over more pixels than this are not splatted: hundreds of pixels would change with every
+// sample.
+inline constexpr int kMostSplatReach = 16;
+
 class Filter {
  public:
   virtual ~Filter() = default;
@@ -51,7 +55,8 @@ class Filter {
   // The normalised filter (its integral is 1) at an offset from the pixel's centre.
   virtual float value(const Vec2& offset) const = 0;
   // One axis of it, not normalised, at the centres of the pixels from reach() before a sample's own pixel to
-  // reach() after it: the sample lies at `offset` from its pixel's centre, -0.5 to 0.5.
+  // reach() after it: the sample lies at `offset` from its pixel's centre, -0.5 to 0.5. For filters that are
+  // splatted: reach() is at most kMostSplatReach.
   virtual void taps(float offset, float* values) const = 0;
   virtual float radius() const = 0;  // in pixels
   virtual std::string name() const = 0;

@@ -148,7 +148,7 @@ std::vector<float> SplatFilm::sums() const {
   std::vector<float> result(m_crop.pixels() * channels, 0.0f);
   for (uint32_t tile = 0; tile < m_tiles.count(); ++tile) {
     if (m_blocks[tile].empty()) continue;
-    // Of the block and of the crop, in pixels of the crop.
+    // Where the block begins, in pixels of the crop.
     const int left = m_tiles.corner(tile).x - m_reach - m_crop.x,
               top = m_tiles.corner(tile).y - m_reach - m_crop.y;
     const int x0 = std::max(left, 0), x1 = std::min(left + m_side, m_crop.width);
@@ -160,14 +160,6 @@ std::vector<float> SplatFilm::sums() const {
     }
   }
   return result;
-}
-
-uint64_t SplatFilm::bytes() const {
-  uint64_t bytes = 0;
-  for (const std::vector<float>& block : m_blocks) bytes += block.size() * sizeof(float);
-  for (const Kept& kept : m_kept)
-    bytes += kept.places.size() * sizeof(SplatPlace) + kept.values.size() * sizeof(float);
-  return bytes;
 }
 
 void SplatFilm::save(std::vector<uint8_t>& bytes) const {

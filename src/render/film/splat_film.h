@@ -49,7 +49,6 @@ class SplatFilm {
 
   // [pixel of the crop][channel]
   std::vector<float> sums() const;
-  uint64_t bytes() const;
 
   // Appends all that there is.
   void save(std::vector<uint8_t>& bytes) const;
