@@ -4,18 +4,18 @@
 #include <thread>
 
 #include "learn/torch/processes.h"
+#include "odis/models/lights.h"
+#include "odis/models/second_moments.h"
 
 namespace odis::learn {
 
 namespace {
 
 constexpr int64_t kTexels = kMapTexels;
-// Every map has so much of the uniform distribution in it (GuideOptions::floor), and the share of the
-// BSDF's draws that the variance is computed for.
-constexpr double kFloor = 0.03, kAlpha = 0.4;
-// Width of the lights' layers, and the share of choices that follows the network (odis/models/lights.cpp).
+// The BSDF sampling fraction that the variance is computed for.
+constexpr double kBsdfFraction = core::kBsdfFractions[3];
+// Width of the lights' layers.
 constexpr int64_t kPairWidth = 16;
-constexpr double kLearnedShare = 0.9;
 
 // A layer in a precision of its own, its result in that of the losses: what autocast does, the same in
 // every libtorch.
@@ -100,16 +100,16 @@ struct Rows {
 // alone.
 torch::Tensor secondMoment(const torch::Tensor& map, const Rows& rows) {
   torch::Tensor radiance = map * rows.inverseCosine;
-  radiance = (1 - kFloor) * radiance / radiance.sum(-1, true) + kFloor / double(kTexels);
+  radiance = (1 - kMapFloor) * radiance / radiance.sum(-1, true) + kMapFloor / double(kTexels);
   torch::Tensor drawn = radiance * rows.diffuse;
   drawn = drawn / drawn.sum(-1, true);
-  return (rows.square / (kAlpha + (1 - kAlpha) * drawn / rows.diffuse)).sum(-1);
+  return (rows.square / (kBsdfFraction + (1 - kBsdfFraction) * drawn / rows.diffuse)).sum(-1);
 }
 
 torch::Tensor lossOf(Loss loss, const torch::Tensor& map, const Rows& rows) {
   switch (loss) {
     case Loss::crossEntropy:
-      return -(rows.mass * torch::log((1 - kFloor) * map + kFloor / double(kTexels))).sum(-1).mean();
+      return -(rows.mass * torch::log((1 - kMapFloor) * map + kMapFloor / double(kTexels))).sum(-1).mean();
     case Loss::logVariance:
       return torch::log(secondMoment(map, rows).clamp_min(1e-3)).mean();
     case Loss::l1:
@@ -171,8 +171,8 @@ class TorchLearner : public Learner {
 
   double step(const LightBatch& batch, double learningRate) override {
     const LightRows rows(batch, m_device);
-    const torch::Tensor mixture =
-        kLearnedShare * m_modules.lights(rows.pairs, rows.formula) + (1 - kLearnedShare) * rows.probability;
+    const torch::Tensor mixture = core::kLearnedFraction * m_modules.lights(rows.pairs, rows.formula) +
+                                  (1 - core::kLearnedFraction) * rows.probability;
     const torch::Tensor moment = (rows.rms.square() / mixture.clamp_min(1e-9)).sum(-1);
     return m_together.descend(*m_modules.lights, *m_lightAdam, torch::log(moment).mean(), learningRate);
   }

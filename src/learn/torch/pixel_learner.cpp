@@ -10,8 +10,8 @@ namespace {
 
 constexpr int64_t kSide = kMapSize, kPixelTexels = kMapTexels, kChannels = core::kPixelChannels,
                   kScalars = core::kPixelScalars;
-// The floor that every map is given, and what is added to shares over an even map before their logarithm.
-constexpr double kPixelFloor = 0.03, kLogOffset = 0.05;
+// What is added to shares over an even map before their logarithm.
+constexpr double kLogOffset = 0.05;
 // Slope of the discriminator's rectifiers for negative values.
 constexpr double kLeak = 0.2;
 
@@ -146,7 +146,7 @@ struct PixelRows {
 };
 
 torch::Tensor withFloor(const torch::Tensor& shares) {
-  return (1 - kPixelFloor) * shares + kPixelFloor / double(kPixelTexels);
+  return (1 - kMapFloor) * shares + kMapFloor / double(kPixelTexels);
 }
 
 // The logarithm of the second moment of a sample of a diffuse surface's mixture of half BSDF, half map.

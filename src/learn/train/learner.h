@@ -9,9 +9,13 @@
 #include "learn/train/config.h"
 #include "learn/train/example_pool.h"
 #include "learn/train/pixel_examples.h"
+#include "odis/guide.h"
 #include "odis/weights/weights.h"
 
 namespace odis::learn {
+
+// The share of the uniform distribution in every map, as guides have it.
+inline const double kMapFloor = core::GuideOptions().floor;
 
 // A training that cannot go on: no such device, processes that don't find each other.
 class TrainError : public std::runtime_error {

@@ -4,6 +4,7 @@
 
 #include "learn/inspect/map_drawing.h"
 #include "learn/train/task.h"
+#include "odis/models/second_moments.h"
 #include "odis/pixels/pixel_weights.h"
 #include "render/image/write.h"
 
@@ -15,8 +16,6 @@ constexpr size_t kPixelsStandardizedBy = 4096;  // examples
 // Held-out targets that maps are drawn of, evenly spread over all.
 constexpr size_t kDrawn = 12;
 constexpr int kMapPixels = 96, kGap = 8, kTitle = 18;
-// The floor of maps (GuideOptions::floor).
-constexpr float kFloor = 0.03f;
 
 // Sums over held-out targets.
 struct Judged {
@@ -24,7 +23,7 @@ struct Judged {
   double moment = 0, momentWithCosine = 0;  // of logarithms
 };
 
-// How a map does at a diffuse vertex, half of whose directions come from the BSDF.
+// How a map does at a diffuse vertex where no vertex told the BSDF sampling fraction.
 class Judge {
  public:
   Judge(const PixelBatch& batch, size_t row)
@@ -41,14 +40,14 @@ class Judge {
     double sum = 0, moment = 0, unguided = 0;
     std::array<double, kMapTexels> map;
     for (size_t t = 0; t < kMapTexels; ++t) {
-      map[t] = (1 - kFloor) * shares[t] + kFloor / kMapTexels;
+      map[t] = (1 - kMapFloor) * shares[t] + kMapFloor / kMapTexels;
       if (timesCosine) map[t] *= m_cosine[t];
       sum += map[t];
     }
     for (size_t t = 0; t < kMapTexels; ++t) {
       const double diffuse = m_cosine[t] / m_cosines, weight = m_square[t] * m_cosine[t] * m_cosine[t];
       if (!(weight > 0)) continue;
-      moment += weight / (0.5 * diffuse + 0.5 * map[t] / sum);
+      moment += weight / (kBsdfFraction * diffuse + (1 - kBsdfFraction) * map[t] / sum);
       unguided += weight / diffuse;
     }
     return unguided > 0 ? std::log(moment / unguided) : 0;
@@ -56,12 +55,13 @@ class Judge {
 
   void add(const float* shares, Judged& to) const {
     for (size_t t = 0; t < kMapTexels; ++t)
-      to.crossEntropy -= m_mass[t] * std::log((1 - kFloor) * shares[t] + kFloor / kMapTexels);
+      to.crossEntropy -= m_mass[t] * std::log((1 - kMapFloor) * shares[t] + kMapFloor / kMapTexels);
     to.moment += logMoment(shares, false);
     to.momentWithCosine += logMoment(shares, true);
   }
 
  private:
+  static constexpr double kBsdfFraction = core::kFallbackBsdfFraction;
   const float *m_mass, *m_square;
   std::array<double, kMapTexels> m_cosine;
   double m_cosines = 0;

@@ -12,9 +12,8 @@ namespace {
 
 // Weight of the coarser level beside a cell's own samples, in samples.
 constexpr double kLightPriorSamples = 30;
-// The fraction of the choices that follows what was learned where a cell has seen enough, and the number of
-// samples that makes the formula half as reliable.
-constexpr double kLearnedFraction = 0.9, kHalfEnough = 20;
+// The number of samples that makes the formula half as reliable.
+constexpr double kHalfEnough = 20;
 // Bounds of a ratio for the parts of a light: the second moment of the best choice among them over that of
 // an even one. Below the first bound the best choice is taken; above the second the even one, which keeps
 // samples stratified over the whole light, together with the pilot's.

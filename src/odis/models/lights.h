@@ -11,6 +11,9 @@ namespace odis::core {
 
 using LightParts = OdisLightParts;
 
+// The learned-light fraction where a cell has seen enough.
+inline constexpr double kLearnedFraction = 0.9;
+
 // For each group of lights the mean, over the cell's vertices, of the squared next-event estimate from that
 // group alone, visibility included.
 using LightSquares = std::array<double, kMaxLightGroups>;
