@@ -238,7 +238,7 @@ ODIS_API void odisReleaseGuideBuilder(OdisGuideBuilder builder);
 ODIS_API bool odisAddVertices(OdisGuideBuilder builder, const OdisPathVertices* vertices);
 // Builds maps from all that was added, and BSDF sampling fractions from vertices that should be (a part of)
 // the same, without those of guided paths. `pixelValues`, indexed by OdisPathVertex.pixel, are what the
-// vertices' contributions are divided by; NULL: they are divided by the mean of all paths.
+// vertices' contributions are divided by; NULL: by those of an even image with the mean of all paths.
 ODIS_API OdisGuide odisBuildGuide(OdisGuideBuilder builder, const OdisPathVertices* vertices,
                                   const float* pixelValues, size_t pixelCount);
 // Builds all but BSDF sampling fractions anew, from all that was added by now. Those are taken from

@@ -71,22 +71,26 @@ inline PixelMean weightedMean(ArrayView<const WeightedSums> parts) {
   return result;
 }
 
-// Estimates each pixel's luminance, which contributions are measured by: the mean over a block of 8 x 8
-// pixels, with a little of the image's mean so that nothing is divided by almost nothing. `width` is that
-// of the image in pixels; the result has an entry for each pixel. `image` has image.size() pixels, and
-// image[pixel] are the sums over its samples.
+// A pixel's value, which contributions are measured by, from the mean luminance of the block of pixels that
+// it lies in: with a little of the image's mean, so that nothing is divided by almost nothing.
+inline constexpr uint32_t kPixelValueBlock = 8;  // pixels, either side
+inline double pixelValue(double meanOfBlock, double meanOfImage) {
+  return std::max(meanOfBlock + 0.1 * meanOfImage, 1e-20);
+}
+
+// Estimates the value of each pixel. `width` is that of the image in pixels; the result has an entry for each
+// pixel. `image` has image.size() pixels, and image[pixel] are the sums over its samples.
 template <class Image>
 std::vector<float> estimatePixelValuesOf(const Image& image, uint32_t width) {
-  constexpr uint32_t kValueBlock = 8;
   const uint32_t height = width > 0 ? uint32_t(image.size() / width) : 0;
-  const size_t blocksX = (width + kValueBlock - 1) / kValueBlock,
-               blocksY = (height + kValueBlock - 1) / kValueBlock;
+  const size_t blocksX = (width + kPixelValueBlock - 1) / kPixelValueBlock,
+               blocksY = (height + kPixelValueBlock - 1) / kPixelValueBlock;
   std::vector<double> sum(blocksX * blocksY, 0.0), count(sum.size(), 0.0);
   double total = 0, samples = 0;
   const auto forEachPixel = [&](const auto& visit) {
     for (uint32_t y = 0; y < height; ++y)
       for (uint32_t x = 0; x < width; ++x)
-        visit(size_t(y) * width + x, y / kValueBlock * blocksX + x / kValueBlock);
+        visit(size_t(y) * width + x, y / kPixelValueBlock * blocksX + x / kPixelValueBlock);
   };
   forEachPixel([&](size_t pixel, size_t block) {
     const PixelSums& sums = image[pixel];
@@ -99,8 +103,7 @@ std::vector<float> estimatePixelValuesOf(const Image& image, uint32_t width) {
   const double mean = samples > 0 ? total / samples : 1;
   std::vector<float> result(image.size());
   forEachPixel([&](size_t pixel, size_t block) {
-    const double value = count[block] > 0 ? sum[block] / count[block] : mean;
-    result[pixel] = float(std::max(value + 0.1 * mean, 1e-20));
+    result[pixel] = float(pixelValue(count[block] > 0 ? sum[block] / count[block] : mean, mean));
   });
   return result;
 }

@@ -24,7 +24,7 @@ is built, not here.)")
 
 vertices: PathVertices, or a dict of its fields; (a part of) what was added, without those of guided paths.
 pixel_values: float32 of shape (pixels,), indexed by the vertices' `pixel`: luminances that their
-    contributions are divided by. None: by the mean of all paths.)")
+    contributions are divided by. None: by those of an even image with the mean of all paths.)")
       .def("rebuild", &Builder::rebuild, "previous"_a,
            R"(Builds a guide from all that was added by now, with the BSDF sampling fractions of `previous`.
 

@@ -114,7 +114,7 @@ class GuideBuilder {
   void setBounds(const Float3& lower, const Float3& upper);
   // Builds maps from all that was added, and BSDF sampling fractions from vertices that should be (a part
   // of) the same, without those of guided paths. `pixelValues`, indexed by PathVertex::pixel, are what the
-  // vertices' contributions are divided by; without any, by the mean of paths. Throws std::out_of_range
+  // vertices' contributions are divided by; without any, by those of an even image. Throws std::out_of_range
   // where a vertex has a pixel beyond them.
   Guide build(VertexParts parts, ArrayView<const float> pixelValues = {}) const;
   Guide build(ArrayView<const PathVertex> vertices, ArrayView<const float> pixelValues = {}) const {

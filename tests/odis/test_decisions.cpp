@@ -1,5 +1,6 @@
 // What cells decide: roulette, lights, the BSDF sampling fraction.
 #include <gtest/gtest.h>
+#include <odis/pixel_sums.h>
 #include "odis/guide.h"
 
 #include <random>
@@ -233,6 +234,20 @@ TEST(BsdfFraction, WhatIsNoNumberCountsAsTheLimit) {
   v.light = NAN;
   addVertex(sums, fractionSampleOf(v, true), 1, 0);
   for (const double moment : sums.secondMoment) EXPECT_TRUE(std::isfinite(moment));
+}
+
+// Without pixel values contributions are measured by those of an even image.
+TEST(BsdfFraction, AnEvenImageHasTheValuesOfNone) {
+  std::vector<PathVertex> vertices = floorUnderPatch(kBright, 20000, 1);
+  for (PathVertex& v : vertices) v.indirect = v.indirect > 1 ? 6 : 1;
+  GuideBuilder builder;
+  builder.add(vertices);
+  PixelSums image;
+  for (const PathVertex& v : vertices) addSample(image, {v.indirect, v.indirect, v.indirect}, 1);
+  const float given = builder.build(vertices, estimatePixelValues({&image, 1}, 1)).predictedVarianceRatio();
+  EXPECT_NEAR(builder.build(vertices).predictedVarianceRatio(), given, 1e-5);
+  const float ofMean[] = {float(image.sum[0] / image.count)};
+  EXPECT_GT(std::abs(builder.build(vertices, {ofMean, 1}).predictedVarianceRatio() - given), 1e-3);
 }
 
 TEST(BsdfFraction, PrefersTheMapWhereItMatchesTheLight) {

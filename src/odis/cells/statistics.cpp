@@ -204,8 +204,7 @@ void CellStore::add(std::span<BatchSamples* const> batches, int cellsPerDiagonal
   for (BatchCells& batch : cells)
     for (uint32_t& cell : batch.cells) cell = std::min(cell, uint32_t(m_cells.size()));
 
-  // Values are clamped to a multiple of the mean over the next coarser cell, so that no single path rules a
-  // map.
+  // Values are clamped by those of the next coarser cell.
   std::vector<double> parentSum(m_cells.size(), 0.0), parentCount(m_cells.size(), 0.0);
   for (size_t b = 0; b < batches.size(); ++b)
     for (size_t i = 0; i < cells[b].cells.size(); ++i) {
@@ -224,7 +223,7 @@ void CellStore::add(std::span<BatchSamples* const> batches, int cellsPerDiagonal
   forEachCell(*m_tasks, m_cells.size(), [&](size_t parent) {
     if (m_links[parent].level != 1) return;
     LightField* field = m_looksAround ? &m_fields[m_fieldOf[parent]] : nullptr;
-    const float limit = m_clamp * float(parentSum[parent] / parentCount[parent]);
+    const float limit = largestValue(parentCount[parent], parentSum[parent]);
     for (const uint32_t c : childrenOf(parent))
       if (!order.of(c).empty())
         accumulate(m_cells[c], field, m_grid.middle(m_links[parent].key), limit, order.of(c));

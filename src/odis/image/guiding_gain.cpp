@@ -20,10 +20,6 @@ constexpr size_t kLeastPixels = 2048;
 constexpr double kLeftOut = 0.001;
 // Standard errors that leave one chance in a hundred of being wrong.
 constexpr double kCertainErrors = 2.326;
-// Pixels' values are means over blocks of this side; a share of the image's mean is added, so that nothing is
-// divided by almost nothing.
-constexpr uint32_t kPixelBlock = 8;
-constexpr double kLeastPixelValue = 0.1;
 
 using Color = std::array<double, 3>;
 
@@ -96,25 +92,26 @@ struct Kinds {
   double raysPerSample(int kind) const { return rays[kind] / counts[kind]; }
 };
 
-// Compares the samples of a row of the image. `least` is added to the pixels' values.
+// Compares the samples of a row of the image, whose mean luminance is `mean`.
 template <class Pixels>
-Kinds compareRow(const Pixels& unguided, const GuidedImage<Pixels>& samples, uint32_t y, double least) {
+Kinds compareRow(const Pixels& unguided, const GuidedImage<Pixels>& samples, uint32_t y, double mean) {
   Kinds result;
   result.pixels.reserve(samples.width);
-  const uint32_t blocks = (samples.width + kPixelBlock - 1) / kPixelBlock;
+  const uint32_t blocks = (samples.width + kPixelValueBlock - 1) / kPixelValueBlock;
   for (uint32_t x = 0; x < samples.width; ++x) {
     const size_t i = size_t(y) * samples.width + x;
     const PixelSums &ofUnguided = unguided[i], &ofGuided = samples.pixels[i];
     const PixelSums* kinds[] = {&ofUnguided, &ofGuided};
     if (kinds[0]->count == 0 || kinds[1]->count == 0) continue;
     auto [near, nearCount] = samples.around(x - std::min(x, 1u), y - std::min(y, 1u), x + 2, y + 2, i);
-    const uint32_t blockX = x / kPixelBlock * kPixelBlock, blockY = y / kPixelBlock * kPixelBlock;
+    const uint32_t blockX = x / kPixelValueBlock * kPixelValueBlock,
+                   blockY = y / kPixelValueBlock * kPixelValueBlock;
     const auto [block, blockCount] =
-        samples.around(blockX, blockY, blockX + kPixelBlock, blockY + kPixelBlock, i);
+        samples.around(blockX, blockY, blockX + kPixelValueBlock, blockY + kPixelValueBlock, i);
     if (nearCount == 0 || blockCount == 0) continue;
     for (double& channel : near) channel /= double(nearCount);
-    const double value = std::max(grayOf(block) / double(blockCount), 0.0) + least;
-    PixelDistances pixel{y / kPixelBlock * blocks + x / kPixelBlock, {}, 0};
+    const double value = pixelValue(std::max(grayOf(block) / double(blockCount), 0.0), mean);
+    PixelDistances pixel{y / kPixelValueBlock * blocks + x / kPixelValueBlock, {}, 0};
     for (int k = 0; k < 2; ++k) {
       pixel.squares[k] = meanSquare(*kinds[k], near) / (value * value);
       result.rays[k] += kinds[k]->rays;
@@ -177,11 +174,11 @@ std::optional<GuidingGain> gainOf(const Tasks& tasks, const Pixels& unguided, co
     addTo(sum, pixel);
     count += pixel.count;
   }
-  const double least = kLeastPixelValue * grayOf(sum) / double(std::max<uint64_t>(count, 1));
-  if (!(least > 0)) return {};
+  const double mean = grayOf(sum) / double(std::max<uint64_t>(count, 1));
+  if (!(mean > 0)) return {};
 
   std::vector<Kinds> rows(samples.height);
-  tasks.forEach(rows.size(), [&](size_t y) { rows[y] = compareRow(unguided, samples, uint32_t(y), least); });
+  tasks.forEach(rows.size(), [&](size_t y) { rows[y] = compareRow(unguided, samples, uint32_t(y), mean); });
   // Memory: 32 bytes a pixel that has both, in rows or together.
   Kinds all;
   size_t pixels = 0;
@@ -189,7 +186,7 @@ std::optional<GuidingGain> gainOf(const Tasks& tasks, const Pixels& unguided, co
   all.pixels.reserve(pixels);
   for (Kinds& row : rows) all.append(std::exchange(row, {}));
   if (all.pixels.size() < kLeastPixels || !(all.rays[0] > 0)) return {};
-  const auto blocksAlong = [](uint32_t pixels) { return (pixels + kPixelBlock - 1) / kPixelBlock; };
+  const auto blocksAlong = [](uint32_t pixels) { return (pixels + kPixelValueBlock - 1) / kPixelValueBlock; };
   const size_t blockCount = size_t(blocksAlong(width)) * blocksAlong(samples.height);
   const std::optional<GuidingGain> gain = ratioOf(variancesOfBlocks(all, blockCount));
   if (!gain) return {};

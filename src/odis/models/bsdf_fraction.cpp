@@ -7,6 +7,7 @@
 
 #include "odis/cells/batches.h"
 #include "odis/mixture.h"
+#include "odis/pixel_sums.h"
 
 namespace odis::core {
 
@@ -19,8 +20,8 @@ float contributionOf(const FractionSample& v) {
   return v.indirect + emission + light;
 }
 
-// What vertices' contributions are multiplied by: one over their pixel's value or, where pixels have none,
-// over the mean of all chosen paths.
+// What vertices' contributions are multiplied by: one over their pixel's value or, where none are given, over
+// that of the pixels of an even image, whose mean is that of all chosen paths.
 class PixelScale {
  public:
   explicit PixelScale(const FractionInputs& inputs) : m_values(inputs.pixelValues) {
@@ -34,10 +35,10 @@ class PixelScale {
         sum += contribution;
         ++count;
       }
-    if (sum > 0) m_perMean = float(count / sum);
+    if (sum > 0) m_inverse = float(1 / pixelValue(sum / count, sum / count));
   }
   float operator()(const FractionSample& v) const {
-    return m_values.empty() ? m_perMean : 1 / m_values[v.pixel];
+    return m_values.empty() ? m_inverse : 1 / m_values[v.pixel];
   }
   // Throws where a vertex has no pixel value.
   void check(const FractionSample& v) const {
@@ -49,7 +50,7 @@ class PixelScale {
 
  private:
   ArrayView<const float> m_values;
-  float m_perMean = 1;
+  float m_inverse = 1;
 };
 
 // The chosen vertices of a batch, their cells, and their part in what the whole image varies by.
@@ -158,7 +159,7 @@ AllMoments predictMoments(const SortedVertices& sorted, const FractionInputs& in
   forEachCell(inputs.store.tasks(), cells.size(), [&](size_t c) {
     if (sorted.order.of(c).empty()) return;
     const CellStatistics& parent = cells[cells[c].parent];
-    const float limit = parent.count > 0 ? inputs.store.clamp() * float(parent.sum / parent.count) : 0;
+    const float limit = inputs.store.largestValue(parent.count, parent.sum);
     SecondMoments* next = &moments.vertices[sorted.order.begin[c]];
     forEachItem(sorted.order.of(c), [&](const FractionSample& v) {
       *next++ = addJudged(moments.cells[c], v, scale(v), uint32_t(c), limit, inputs);

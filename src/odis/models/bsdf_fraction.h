@@ -18,7 +18,7 @@ struct GuidingPrediction {
 
 // What the choice is made from: of the samples in `parts`, which are (some) of the vertices that the maps
 // were made from, those that `stride` leaves (fractionStride). Their contributions are divided by
-// `pixelValues`; without any, by their mean.
+// `pixelValues`; without any, by those of an even image.
 struct FractionInputs {
   const CellStore& store;
   std::span<const CellStatistics> cells;
