@@ -32,7 +32,7 @@ inline constexpr uint32_t kMaxLightGroups = ODIS_MAX_LIGHT_GROUPS;
 
 // The cell of the pixel's own map, for the first vertices of paths; kNoCell where there is none.
 ODIS_HOST_DEVICE inline uint32_t pixelCell(const GuideView& view, const Place& place) {
-  return place.first && place.pixel < view.pixelCount ? view.pixelCells[place.pixel] : kNoCell;
+  return place.first && place.pixel < view.pixels.count ? view.pixels.cells[place.pixel] : kNoCell;
 }
 
 // The finest cell that there is of those around a key of the finest level, whose cellHash() is given; kNoCell
@@ -83,7 +83,7 @@ inline void findCells(const GuideView& view, const Place* places, size_t count, 
     }
     findAround(view, keys, hashes, size, cells + begin);
   }
-  if (!view.pixelCells) return;
+  if (!view.pixels.cells) return;
   for (size_t i = 0; i < count; ++i) {
     const uint32_t own = pixelCell(view, places[i]);
     cells[i] = own == kNoCell ? cells[i] : own;

@@ -94,6 +94,13 @@ typedef struct OdisGuideRules {
   float cachedError ODIS_DEFAULT(0), leastCachedFootprint ODIS_DEFAULT(5);
 } OdisGuideRules;
 
+// Maps at pixels, by the paper's method (docs/paper.md): the cell that holds a pixel's own map, or
+// ODIS_NO_CELL. These cells come after those of the grid, and no key leads to them. Other guides have none.
+typedef struct OdisPixelCells {
+  const uint32_t* cells ODIS_DEFAULT(NULL);  // [pixel]
+  uint32_t count ODIS_DEFAULT(0);            // number of pixels
+} OdisPixelCells;
+
 // Arrays that a guide does not have are NULL.
 typedef struct OdisGuideView {
   size_t size ODIS_DEFAULT(sizeof(OdisGuideView));
@@ -110,15 +117,12 @@ typedef struct OdisGuideView {
       ODIS_DEFAULT(NULL);  // [cell][lightGroups + 1]: cumulative probabilities from 0 to 1
   OdisGuideRules rules;
   const OdisCachedRadiance* cached ODIS_DEFAULT(NULL);  // [cell][half]; NULL without cachedError
-  // [pixel]: the cell that holds the pixel's own map (OdisGuideOptions.pixelMaps), or ODIS_NO_CELL; NULL
-  // without such maps. These cells come after those of the grid, and no key leads to them.
-  const uint32_t* pixelCells ODIS_DEFAULT(NULL);
-  uint32_t pixelCount ODIS_DEFAULT(0);
   // OdisGuideOptions.maxDepth, and what cached radiance is multiplied by where a path may be scattered so
   // many times, here included: [count], 1 beyond, 0 where no path may end. NULL without a limit.
   uint32_t maxDepth ODIS_DEFAULT(0);
   const float* cachedShares ODIS_DEFAULT(NULL);
   uint32_t cachedShareCount ODIS_DEFAULT(0);
+  OdisPixelCells pixels;
 } OdisGuideView;
 
 // What a frame asks the host to trace.
@@ -131,8 +135,7 @@ typedef struct OdisFramePass {
   // samples each pixel will have: a host with a film of its own keeps them until then.
   bool weightsLater ODIS_DEFAULT(false);
   // The seed of the random numbers. Passes that are no part of the image have another one, and in frames of
-  // fewer than 16384 pixels, and with maps at pixels, each guide has one of its own
-  // (docs/unbiasedness.md#sobol-points).
+  // fewer than 16384 pixels each guide has one of its own (docs/unbiasedness.md#sobol-points).
   uint64_t seed ODIS_DEFAULT(0);
   // Number of samples of all passes of this kind and all pixels, for progress; about, until the frame has
   // settled how many samples each pixel gets.

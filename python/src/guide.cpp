@@ -80,8 +80,8 @@ void bindMaps(nb::class_<Guide>& guide) {
       .def_prop_ro(
           "pixel_cells",
           [](Self self) {
-            const GuideView view = self.p->view();
-            return shown<NumpyArray<const uint32_t, -1>>(self, view.pixelCells, {view.pixelCount});
+            const auto pixels = self.p->view().pixels;
+            return shown<NumpyArray<const uint32_t, -1>>(self, pixels.cells, {pixels.count});
           },
           "(pixels,), uint32: the cell of each pixel's own map, or NO_CELL; empty without such maps.");
 }

@@ -11,16 +11,10 @@ namespace odis::core {
 
 namespace {
 
-// Makes the seed of the oracle's passes, which are no part of the image.
-constexpr uint64_t kOracleSeed = 0x6f7261636c65ull;
-// The oracle's BSDF sampling fractions come from this many of its passes.
-constexpr uint32_t kOracleFractionPasses = 2;
-
 // A sampler that stratifies draws all samples of a pixel from one set of points. Given the first of them the
 // others are not uniform, and the guide is made from the first: it is not independent of the points that it
-// guides. One pixel's share in what a cell knows makes this too small to measure, and maps at pixels leave
-// out the pixel's own sample (pixels/neighbourhood.h); but in images of fewer pixels than these every guide
-// has numbers of its own.
+// guides. One pixel's share in what a cell knows makes this too small to measure, and maps at pixels leave it
+// out; but in images of fewer pixels than these every guide has numbers of its own.
 constexpr size_t kFewPixels = 16384;
 constexpr uint64_t kGuideSeed = 0x9e3779b97f4a7c15ull;
 
@@ -41,10 +35,6 @@ Float3 finiteOrBlack(const Float3& value, std::atomic<uint64_t>& notFinite) {
   if (std::isfinite(value.x) && std::isfinite(value.y) && std::isfinite(value.z)) return value;
   ++notFinite;
   return {};
-}
-
-std::vector<ArrayView<const PathVertex>> partsOf(const VertexTiles& tiles) {
-  return {tiles.begin(), tiles.end()};
 }
 
 }  // namespace
@@ -104,14 +94,17 @@ Frame::Data::Data(const FrameOptions& o, std::shared_ptr<const Tasks> shared,
       pilot(keptOfPilot(o, schedule)),
       later(keptOfLater(o, schedule)),
       tiles(o, std::move(shared)),
-      next(o.guided ? ODIS_PASS_PILOT : ODIS_PASS_GUIDED) {}
+      next(o.guided ? ODIS_PASS_PILOT : ODIS_PASS_GUIDED) {
+  if (builder && needsGuide()) paper = PaperMethod::of(options, builder, tasks);
+  countKept();
+}
 
 SampleRange Frame::Data::samples(uint32_t pixel) const {
   switch (next) {
     case ODIS_PASS_PILOT:
       return {0, schedule.pilotCount(pixel)};
     case ODIS_PASS_ORACLE:
-      return {oraclePasses, 1};
+      return paper->oracleSamples();
     case ODIS_PASS_GUIDED:
       break;
   }
@@ -154,27 +147,23 @@ void Frame::Data::describePass() {
     pixelsPerLearned = pixelsPerLearnedIn(pixels * (end - done), kMostGuidedSamples);
     return;
   }
-  pass.stageSamples = next == ODIS_PASS_PILOT ? schedule.pilotSamples() : pixels * options.oracleSamples;
-  pass.wantsVertices = needsGuide() || keepsVertices();
-  pass.partOfImage = next == ODIS_PASS_PILOT;
-  pixelsPerLearned = keepsVertices() || !pass.partOfImage
-                         ? 1
-                         : pixelsPerLearnedIn(schedule.pilotSamples(), kMostPilotSamples);
-  if (next == ODIS_PASS_ORACLE) pass.seed ^= kOracleSeed;
-  const bool isLearnedFrom = needsGuide() && (next == ODIS_PASS_ORACLE || options.oracleSamples == 0);
-  if (isLearnedFrom) passSamples.resize(tiles.tileCount());
-  if (keepsVertices()) passVertices.assign(tiles.tileCount(), {});
+  pixelsPerLearned = 1;
+  if (next == ODIS_PASS_ORACLE) {
+    paper->describeOraclePass(pass);
+    passSamples.resize(tiles.tileCount());
+    return;
+  }
+  pass.stageSamples = schedule.pilotSamples();
+  pass.wantsVertices = needsGuide() || options.keepPilotVertices;
+  if (!options.keepPilotVertices && !(paper && paper->hasMaps()))
+    pixelsPerLearned = pixelsPerLearnedIn(schedule.pilotSamples(), kMostPilotSamples);
+  if (needsGuide() && !(paper && paper->hasOracle())) passSamples.resize(tiles.tileCount());
+  if (options.keepPilotVertices) pilotVertices.resize(tiles.tileCount());
 }
 
 // Whether anything is guided: samples that follow the pilot, or what else learns from the builder.
 bool Frame::Data::needsGuide() const {
   return !ownsBuilder || schedule.mostRemaining() > 0;
-}
-
-// Whoever asks for the pilot's vertices, and maps at pixels, want all of them as they are.
-bool Frame::Data::keepsVertices() const {
-  const bool forPixels = needsGuide() && guideOptions.pixelMaps != ODIS_PIXEL_MAPS_NONE;
-  return next != ODIS_PASS_GUIDED && (options.keepPilotVertices || forPixels);
 }
 
 // Takes a tile's samples and vertices.
@@ -198,31 +187,19 @@ void Frame::Data::take(uint32_t tile, ArrayView<const FrameSample> samples, Tile
                                                  : builder->takeUnguided(vertices.view(), seen);
     keptBytes += passSamples[tile].bytes();
   }
-  if (!keepsVertices()) return;
+  if (paper) paper->take(next, vertices.view());
+  if (next != ODIS_PASS_PILOT || !options.keepPilotVertices) return;
   keptBytes += vertices.size() * sizeof(PathVertex);
-  passVertices[tile] = vertices.take();
-}
-
-// Makes the maps at pixels that come from the pilot, or gets ready for those of the oracle.
-void Frame::Data::describePixels() {
-  if (!builder || !needsGuide()) return;
-  const auto width = int(options.width), height = int(options.height);
-  if (guideOptions.pixelMaps == ODIS_PIXEL_MAPS_ORACLE)
-    pixelOracle = std::make_unique<PixelOracle>(width, height, radianceOf(guideOptions));
-  else if (guideOptions.pixelMaps != ODIS_PIXEL_MAPS_NONE)
-    pixelMaps = builder->makePixelMaps(partsOf(passVertices), width, height);
-  keptBytes += pixelMaps.bytes();
+  pilotVertices[tile] = vertices.take();
 }
 
 // Pixel values come from the pilot's image.
 void Frame::Data::endPilot() {
   pixelValues = pilot.kept().empty() ? estimatePixelValues(pilot.sums(), options.width)
                                      : estimatePixelValuesOf(pilot, options.width);
-  describePixels();
-  pilotVertices = std::move(passVertices);
   pilotVertexCount = passVertexCount;
   buildingBytes = keptBytes;
-  next = needsGuide() && options.oracleSamples > 0 ? ODIS_PASS_ORACLE : ODIS_PASS_GUIDED;
+  next = paper && paper->hasOraclePass() ? ODIS_PASS_ORACLE : ODIS_PASS_GUIDED;
 }
 
 // Adds what was taken from an unguided pass to the cells, and keeps what BSDF sampling fractions are chosen
@@ -232,36 +209,32 @@ void Frame::Data::learnUnguided(bool forFractions) {
   builder->add(passSamples);
   if (forFractions) std::move(passSamples.begin(), passSamples.end(), std::back_inserter(unguided));
   passSamples.clear();
-  passVertices = {};
   countKept();
 }
 
 void Frame::Data::endOraclePass() {
-  if (pixelOracle) pixelOracle->add(partsOf(passVertices), *tasks);
-  learnUnguided(oraclePasses < kOracleFractionPasses);
-  if (++oraclePasses == options.oracleSamples) next = ODIS_PASS_GUIDED;
+  learnUnguided(paper->passIsForFractions());
+  paper->endOraclePass();
+  if (!paper->hasOraclePass()) next = ODIS_PASS_GUIDED;
 }
 
 // Builds the first guide from all that the builder was taught.
 void Frame::Data::buildGuide() {
   cells = builder->build(unguided, vertexCount(unguided), pixelValues);
-  if (pixelOracle) pixelMaps = pixelOracle->maps(*tasks);
-  pixelOracle.reset();
-  if (!options.keepPilotVertices) pilotVertices = {};
   useCells();
   settleRefinement();
   takeStock();
 }
 
-// Makes the guide of what the cells know, and of the maps at pixels.
+// Makes the guide of what the cells know.
 void Frame::Data::useCells() {
-  guide = pixelMaps.empty() ? cells : cells.withPixelMaps(pixelMaps, guideOptions, *tasks);
+  guide = paper ? paper->over(cells) : cells;
   ++guidesBuilt;
 }
 
 // Counts what is kept between passes.
 void Frame::Data::countKept() {
-  keptBytes = bytesOf(pilotVertices) + bytesOf(unguided) + pixelMaps.bytes();
+  keptBytes = bytesOf(pilotVertices) + bytesOf(unguided) + (paper ? paper->bytes() : 0);
 }
 
 // Notes what building needed, lets go of what was taken from vertices and, when the guide won't learn any
@@ -276,7 +249,7 @@ void Frame::Data::takeStock() {
   if (!learns()) {
     builder.reset();
     cells = {};
-    pixelMaps = {};
+    paper.reset();
   }
   countKept();
 }
@@ -297,13 +270,11 @@ void Frame::Data::refineGuide() {
 void Frame::Data::resume() {
   tiles.skip(resumed->tilesDone);
   if (!pass.wantsVertices) return resumed.reset();
-  const size_t taken = passSamples.size(), kept = passVertices.size();
+  const size_t taken = passSamples.size();
   passSamples = std::move(resumed->samples);
-  passVertices = std::move(resumed->vertices);
   passSamples.resize(taken);
-  passVertices.resize(kept);
   passVertexCount = vertexCount(passSamples);
-  keptBytes += bytesOf(passSamples) + bytesOf(passVertices);
+  keptBytes += bytesOf(passSamples);
   resumed.reset();
 }
 

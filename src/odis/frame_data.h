@@ -7,6 +7,7 @@
 #include "odis/image/pixel_samples.h"
 #include "odis/image/schedule.h"
 #include "odis/image/tiles.h"
+#include "odis/paper_method.h"
 
 namespace odis::core {
 
@@ -16,7 +17,6 @@ using VertexTiles = std::vector<std::vector<PathVertex>>;
 // What a saved frame has of a pass: all of the tiles whose samples were in.
 struct ResumedPass {
   std::vector<uint8_t> tilesDone;
-  VertexTiles vertices;  // where they are kept
   std::vector<VertexSamples> samples;
 };
 
@@ -51,8 +51,6 @@ struct Frame::Data {
   void endPilot();
   void endOraclePass();
   bool needsGuide() const;
-  bool keepsVertices() const;
-  void describePixels();
   void learnUnguided(bool forFractions);
   void useCells();
   bool nextRefinementPays() const;
@@ -107,25 +105,23 @@ struct Frame::Data {
   TileCollector tiles;
   std::vector<float> pixelValues;
   Guide guide;
-  Guide cells;  // the guide without maps at pixels; like those, until the guide is final
-  PixelMaps pixelMaps;
-  std::unique_ptr<PixelOracle> pixelOracle;
+  Guide cells;                         // what the cells know of it, until the guide is final
+  std::unique_ptr<PaperMethod> paper;  // null in ordinary frames; until the guide is final
   uint64_t guidesBuilt = 0;
 
   FramePass pass;
   GuideView view;  // of the guide of the pass
   bool inPass = false, finished = false;
-  OdisPassKind next;                        // of the pass under way, or of the next one
-  uint32_t oraclePasses = 0;                // passes of the oracle that are done
-  uint32_t done = 0, end = 0;               // samples after the pilot: done before the pass, and by its end
-  uint32_t pixelsPerLearned = 1;            // of the pass: the guide learns from one pixel in so many
-  VertexTiles pilotVertices, passVertices;  // [tile], where they are kept
-  std::vector<VertexSamples> passSamples;   // [tile], of a pass that is learned from
-  std::vector<VertexSamples> unguided;      // what BSDF sampling fractions are chosen by
+  OdisPassKind next;                       // of the pass under way, or of the next one
+  uint32_t done = 0, end = 0;              // samples after the pilot: done before the pass, and by its end
+  uint32_t pixelsPerLearned = 1;           // of the pass: the guide learns from one pixel in so many
+  VertexTiles pilotVertices;               // [tile], where they are kept
+  std::vector<VertexSamples> passSamples;  // [tile], of a pass that is learned from
+  std::vector<VertexSamples> unguided;     // what BSDF sampling fractions are chosen by
   std::atomic<uint64_t> notFinite{0};
   std::atomic<uint64_t> pilotSamplesTaken{0}, laterSamplesTaken{0};
   std::atomic<uint64_t> passVertexCount{0};  // vertices of the pass that are learned from, so far
-  std::atomic<uint64_t> keptBytes{0};  // of vertices, of what was taken from them, and of maps at pixels
+  std::atomic<uint64_t> keptBytes{0};        // of vertices, and of what was taken from them
   // Of the pass, so far: all that came, learned from or not.
   std::atomic<uint64_t> passSamplesCame{0}, passRaysCame{0}, passVerticesCame{0};
   uint64_t outsideFrame = 0, twice = 0, buildingBytes = 0, pilotVertexCount = 0;

@@ -114,6 +114,7 @@ ArrayView<const PixelSums> Frame::pilotImage() const {
 }
 
 size_t Frame::pilotVertexCount() const {
+  if (m_data->next == ODIS_PASS_PILOT) return 0;
   size_t count = 0;
   for (const std::vector<PathVertex>& tile : m_data->pilotVertices) count += tile.size();
   return count;
@@ -121,6 +122,7 @@ size_t Frame::pilotVertexCount() const {
 
 std::vector<PathVertex> Frame::pilotVertices() const {
   std::vector<PathVertex> vertices;
+  if (m_data->next == ODIS_PASS_PILOT) return vertices;
   vertices.reserve(pilotVertexCount());
   for (const std::vector<PathVertex>& tile : m_data->pilotVertices)
     vertices.insert(vertices.end(), tile.begin(), tile.end());

@@ -15,6 +15,7 @@
 #include "odis/models/lights.h"
 #include "odis/models/model.h"
 #include "odis/models/returned_light.h"
+#include "odis/paper_method.h"
 #include "odis/work/progress.h"
 
 namespace odis::core {
@@ -42,10 +43,6 @@ void check(const GuideOptions& options) {
           "fixedBsdfFraction: expected a number from 0 to 1");
   require(options.cachedError >= 0 && std::isfinite(options.cachedError),
           "cachedError: expected a finite number from 0 on");
-  require(options.pixelMaps >= ODIS_PIXEL_MAPS_NONE && options.pixelMaps <= ODIS_PIXEL_MAPS_ORACLE,
-          "pixelMaps: expected an OdisPixelMaps");
-  require(options.pixelTile >= 1 && options.pixelTile <= 16, "pixelTile: expected a number from 1 to 16");
-  require(options.pixelShare >= 0 && options.pixelShare <= 1, "pixelShare: expected a number from 0 to 1");
 }
 
 }  // namespace
@@ -76,8 +73,8 @@ GuideView Guide::view() const {
   view.maxDepth = m_data->maxDepth;
   view.cachedShares = m_data->cachedShares.empty() ? nullptr : m_data->cachedShares.data();
   view.cachedShareCount = uint32_t(m_data->cachedShares.size());
-  view.pixelCells = m_data->pixelCells.empty() ? nullptr : m_data->pixelCells.data();
-  view.pixelCount = uint32_t(m_data->pixelCells.size());
+  if (!m_data->pixelCells.empty())
+    view.pixels = {m_data->pixelCells.data(), uint32_t(m_data->pixelCells.size())};
   return view;
 }
 
@@ -115,8 +112,10 @@ uint64_t VertexSamples::bytes() const {
 }
 
 GuideBuilder::GuideBuilder(const GuideOptions& options, std::shared_ptr<const Tasks> tasks) {
+  Model model = modelOf(options.model);
   check(options);
-  m_data = std::make_unique<Data>(options, modelOf(options.model), std::move(tasks));
+  PaperMethod::check(options, model);
+  m_data = std::make_unique<Data>(options, std::move(model), std::move(tasks));
 }
 GuideBuilder::~GuideBuilder() = default;
 GuideBuilder::GuideBuilder(GuideBuilder&&) noexcept = default;

@@ -13,17 +13,11 @@
 
 #include "odis/guide_view.h"
 #include "odis/path_vertex.h"
-#include "odis/pixels/pixel_maps.h"
 #include "odis/work/tasks.h"
 
 namespace odis::core {
 
 using GuideOptions = OdisGuideOptions;
-
-// Which light maps at pixels tell of that are no network's.
-inline IncidentRadiance radianceOf(const GuideOptions& options) {
-  return options.pixelDirectLight ? IncidentRadiance::full : IncidentRadiance::withoutDirect;
-}
 
 class Archive;
 class ArchiveWriter;
@@ -68,18 +62,13 @@ class Guide {
   // How many rays followed a first vertex of the pilot, on average; 0 before build().
   double raysPerPath() const;
 
-  // This guide and a cell for each of the maps: with the decisions of the cell that the map's place lies in,
-  // and as much of its map as `options` say.
-  Guide withPixelMaps(const PixelMaps& maps, const GuideOptions& options, const Tasks& tasks) const;
-  // This guide without such cells.
-  Guide ofCellsAlone() const;
-
   // Writes the guide, and reads one. The latter throws FileError.
   void save(ArchiveWriter& file) const;
   static Guide load(const Archive& file);
 
  private:
   friend class GuideBuilder;
+  friend class PaperMethod;
   struct Data;
   std::shared_ptr<Data> m_data;
 };
@@ -128,10 +117,6 @@ class GuideBuilder {
   // that are new have their parents' fractions.
   Guide rebuild(const Guide& previous) const;
 
-  // The maps at pixels that the options ask for, from the pilot's vertices: path by path, from the camera on,
-  // all of a pixel in one part.
-  PixelMaps makePixelMaps(VertexParts pilot, int width, int height) const;
-
   // Keeps the memory of building from so many vertices, and of two guides, below a limit, as well as can be
   // foreseen: the cells become as much larger as it takes, or samples without a cell are left out.
   void limitBytes(uint64_t most, uint64_t vertices);
@@ -159,6 +144,7 @@ class GuideBuilder {
   uint64_t heldBytes() const;
 
  private:
+  friend class PaperMethod;
   struct Data;
   std::unique_ptr<Data> m_data;
 };

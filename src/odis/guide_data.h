@@ -35,7 +35,6 @@ struct Guide::Data {
   explicit Data(size_t cells) : sums(cells * kSumsPerMap), texels(cells * kMapTexels), decisions(cells) {}
 
   MapArrays maps() const { return {texels.data(), sums.data(), texelDirections().x, rim}; }
-  std::shared_ptr<Data> withRoom(size_t more) const;
   void copyMap(size_t from, size_t to) {
     std::copy_n(texels.at(from * kMapTexels), kMapTexels, texels.at(to * kMapTexels));
     std::copy_n(sums.at(from * kSumsPerMap), kSumsPerMap, sums.at(to * kSumsPerMap));
@@ -60,7 +59,7 @@ struct Guide::Data {
   std::vector<float> cachedShares;  // [bounces left]; empty without maxDepth
   std::vector<float> lightTables;
   uint32_t lightGroups = 0;
-  std::vector<uint32_t> pixelCells;  // [pixel]; empty without maps at pixels
+  std::vector<uint32_t> pixelCells;  // [pixel]; empty but by the paper's method
   GuidingPrediction prediction;
 };
 
@@ -77,13 +76,10 @@ struct GuideBuilder::Data {
         modelId(idOf(model)),
         directions(std::move(model.directions)),
         lights(std::move(model.lights)),
-        pixels(std::move(model.pixels)),
+        pixelNetwork(std::move(model.pixels)),
         store(o.clamp, directions && directions->looksAround(), std::move(tasks)) {
     if (!directions) directions = std::make_shared<DirectionFormula>(o);
     if (!lights) lights = std::make_shared<LightFormula>();
-    if (options.pixelMaps == ODIS_PIXEL_MAPS_HISTOGRAM) pixels = pixelHistogram(radianceOf(options));
-    if (options.pixelMaps == ODIS_PIXEL_MAPS_NETWORK && !pixels)
-      throw std::invalid_argument("OdisGuideOptions.model: expected one with a network for maps at pixels");
     if (options.cachedError > 0) store.cache(options.maxDepth);
     options.model = nullptr;
     options.lightParts = lightParts.data();
@@ -101,7 +97,7 @@ struct GuideBuilder::Data {
   uint64_t modelId;
   std::shared_ptr<const DirectionModel> directions;
   std::shared_ptr<const LightModel> lights;
-  std::shared_ptr<const PixelModel> pixels;  // null: none is asked for
+  std::shared_ptr<const PixelModel> pixelNetwork;  // of the paper's method; null: the model has none
   CellStore store;
 };
 

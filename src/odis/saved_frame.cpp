@@ -169,26 +169,12 @@ void Frame::save(ArchiveWriter& file) const {
   file.add("frame.lightParts", d.lightParts);
   file.addValue("frame.model", d.modelId);
   file.add("frame.hostData", d.hostData);
-  file.addValue("frame.position", FramePosition{d.guidesBuilt,
-                                                d.notFinite,
-                                                d.outsideFrame,
-                                                d.twice,
-                                                d.buildingBytes,
-                                                d.pilotVertexCount,
-                                                d.pilotSamplesTaken,
-                                                d.laterSamplesTaken,
-                                                d.missingSamples,
-                                                d.passesWithoutVertices,
-                                                d.measuredCostRatio,
-                                                d.schedule.pilotSamples(),
-                                                d.schedule.passEnd(d.done),
-                                                d.schedule.spreadAfter(),
-                                                uint32_t(d.next),
-                                                d.oraclePasses,
-                                                d.done,
-                                                d.finished,
-                                                d.builder != nullptr,
-                                                d.guidingGivenUp});
+  file.addValue("frame.position",
+                FramePosition{d.guidesBuilt, d.notFinite, d.outsideFrame, d.twice, d.buildingBytes,
+                              d.pilotVertexCount, d.pilotSamplesTaken, d.laterSamplesTaken, d.missingSamples,
+                              d.passesWithoutVertices, d.measuredCostRatio, d.schedule.pilotSamples(),
+                              d.schedule.passEnd(d.done), d.schedule.spreadAfter(), uint32_t(d.next), d.done,
+                              d.finished, d.builder != nullptr, d.guidingGivenUp});
   file.addValue("frame.vertexCounts", d.vertexCounts);
   file.add("frame.counts", d.schedule.counts());
   file.add("frame.pilot", d.pilot.sums());
@@ -204,15 +190,11 @@ void Frame::save(ArchiveWriter& file) const {
   // A pass that was loaded and has not begun again is what it was.
   if (d.inPass || d.resumed) {
     file.add("pass.tilesDone", d.resumed ? d.resumed->tilesDone : d.tiles.done());
-    saveTiles(file, "pass.vertices", d.resumed ? d.resumed->vertices : d.passVertices);
     SavedVertexSamples::save(file, "pass", d.resumed ? d.resumed->samples : d.passSamples);
   }
   if (d.builder) d.builder->save(file);
   d.guide.save(file);
-  file.add("pixels.places", d.pixelMaps.places);
-  file.add("pixels.texels", d.pixelMaps.texels);
-  file.add("pixels.ofPixel", d.pixelMaps.ofPixel);
-  file.add("pixels.oracle", d.pixelOracle ? d.pixelOracle->pixels() : std::vector<PixelOracle::Pixel>());
+  if (d.paper) d.paper->save(file);
 }
 
 SavedOptions::SavedOptions(const Archive& file)
@@ -253,18 +235,6 @@ size_t readSize(const Archive& file, const FrameOptions& options) {
   return pixels;
 }
 
-PixelMaps readPixelMaps(const Archive& file, size_t pixels) {
-  PixelMaps maps;
-  maps.places = file.get<PixelMaps::Place>("pixels.places");
-  maps.texels = file.get<uint16_t>("pixels.texels", maps.size() * kMapTexels);
-  maps.ofPixel = file.get<uint32_t>("pixels.ofPixel", maps.empty() ? 0 : pixels);
-  for (const uint16_t texel : maps.texels)
-    file.require(texel > 0, "pixels.texels: a direction is impossible");
-  for (const uint32_t map : maps.ofPixel)
-    file.require(map == kNoMap || map < maps.size(), "pixels.ofPixel: are damaged");
-  return maps;
-}
-
 }  // namespace
 
 SavedFrame::SavedFrame(const Archive& file)
@@ -277,12 +247,9 @@ SavedFrame::SavedFrame(const Archive& file)
       vertexCounts(file.value<VertexCounts>("frame.vertexCounts")),
       pilotVertices(loadTiles(file, "frame.pilotVertices", pixelCount)),
       unguided(SavedVertexSamples::load(file, "frame.unguided", pixelCount)),
-      guide(Guide::load(file)),
-      pixelMaps(readPixelMaps(file, pixelCount)),
-      oraclePixels(file.get<PixelOracle::Pixel>("pixels.oracle")) {
+      guide(Guide::load(file)) {
   const auto isFull = [this](size_t size) { return size == 0 || size == pixelCount; };
-  file.require(isFull(oraclePixels.size()), "pixels.oracle: are damaged");
-  file.require(isFull(guide.view().pixelCount), "guide.pixelCells: are damaged");
+  file.require(isFull(guide.view().pixels.count), "guide.pixelCells: are damaged");
   file.require(isFull(pixelValues.size()), "frame.pixelValues: are damaged");
   const std::vector<uint32_t> counts = file.get<uint32_t>("frame.counts");
   file.require(isFull(counts.size()) && schedule.restore(counts), "frame.counts: are damaged");
@@ -329,10 +296,9 @@ void SavedFrame::readPass(const Archive& file) {
   const size_t tiles = TileCollector(options.frame).tileCount();
   pass = std::make_unique<ResumedPass>();
   pass->tilesDone = file.get<uint8_t>("pass.tilesDone", tiles);
-  pass->vertices = loadTiles(file, "pass.vertices", pixelCount);
   pass->samples = SavedVertexSamples::load(file, "pass", pixelCount);
   const auto fits = [tiles](size_t size) { return size == 0 || size == tiles; };
-  file.require(fits(pass->vertices.size()) && fits(pass->samples.size()), "pass.vertices: are damaged");
+  file.require(fits(pass->samples.size()) && fits(pilotVertices.size()), "pass.samples: are damaged");
 }
 
 // Goes to the place between the first sample and the last where the frame was.
@@ -350,7 +316,6 @@ void Frame::Data::moveTo(const FramePosition& at) {
   buildingBytes = at.buildingBytes;
   pilotVertexCount = at.pilotVertices;
   next = OdisPassKind(at.next);
-  oraclePasses = at.oraclePasses;
   done = at.done;
   finished = at.finished != 0;
 }
@@ -376,22 +341,19 @@ Frame Frame::load(const Archive& file, OdisModel model, std::shared_ptr<const Ta
   d.pilotVertices = std::move(saved.pilotVertices);
   d.unguided = std::move(saved.unguided);
   d.guide = std::move(saved.guide);
-  d.cells = d.guide.ofCellsAlone();
-  d.pixelMaps = std::move(saved.pixelMaps);
-  d.countKept();
-  if (!saved.oraclePixels.empty()) {
-    d.pixelOracle = std::make_unique<PixelOracle>(int(d.options.width), int(d.options.height),
-                                                  radianceOf(d.guideOptions));
-    d.pixelOracle->restore(std::move(saved.oraclePixels));
-  }
   d.resumed = std::move(saved.pass);
   d.moveTo(saved.position);
   if (saved.position.builder) {
+    d.cells = d.paper ? d.paper->load(file, d.guide) : d.guide;
     d.builder->load(file);
     d.builder->adopt(d.cells);
   } else {
     d.builder.reset();
+    d.paper.reset();
   }
+  file.require(d.next != ODIS_PASS_ORACLE || (d.paper && d.paper->hasOraclePass()),
+               "frame.position: is damaged");
+  d.countKept();
   return std::move(*frame);
 }
 

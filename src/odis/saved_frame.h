@@ -16,7 +16,7 @@ struct FramePosition {
   // here on.
   uint64_t pilotSamples;
   uint32_t passEnd, spreadAfter;
-  uint32_t next, oraclePasses, done, finished, builder, guidingGivenUp;
+  uint32_t next, done, finished, builder, guidingGivenUp;
 };
 
 // The options of a saved frame, and what they point to.
@@ -45,8 +45,6 @@ struct SavedFrame {
   VertexTiles pilotVertices;
   std::vector<VertexSamples> unguided;
   Guide guide;
-  PixelMaps pixelMaps;
-  std::vector<PixelOracle::Pixel> oraclePixels;
   std::unique_ptr<ResumedPass> pass;  // null between passes
 
  private:

@@ -36,7 +36,7 @@ inline ::testing::AssertionResult sameView(const GuideView& a, const GuideView& 
     return differ("light tables");
   if (!a.cached != !b.cached || (a.cached && !sameBits(a.cached, b.cached, 2 * cells)))
     return differ("cached radiance");
-  if (a.pixelCount != b.pixelCount || !sameBits(a.pixelCells, b.pixelCells, a.pixelCount))
+  if (a.pixels.count != b.pixels.count || !sameBits(a.pixels.cells, b.pixels.cells, a.pixels.count))
     return differ("cells of pixels");
   static_assert(sizeof(GuideRules) == 32);
   if (!sameBits(&a.rules, &b.rules, 1)) return differ("rules");

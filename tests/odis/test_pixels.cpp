@@ -4,10 +4,9 @@
 #include <cmath>
 #include <cstring>
 
-#include "odis/guide.h"
 #include "odis/maps/pack.h"
 #include "odis/maps/texel_directions.h"
-#include "odis/pixels/pixel_maps.h"
+#include "odis/paper_method.h"
 #include "odis/same_guide.h"
 
 namespace odis::core {
@@ -247,10 +246,10 @@ class PixelGuide : public ::testing::Test {
 };
 
 TEST_F(PixelGuide, HoldsTheCellsAndAMapForEachPixel) {
-  const Guide guide = m_cells.withPixelMaps(m_maps, m_options, *libraryTasks(1));
+  const Guide guide = PaperMethod::over(m_cells, m_maps, m_options, *libraryTasks(1));
   const GuideView cells = m_cells.view(), view = guide.view();
   ASSERT_EQ(view.cellCount, cells.cellCount + m_maps.size());
-  ASSERT_EQ(view.pixelCount, 640u);
+  ASSERT_EQ(view.pixels.count, 640u);
   EXPECT_TRUE(sameBits(view.maps.texels, cells.maps.texels, cells.cellCount * kMapTexels));
   const Place first{m_maps.places[m_maps.ofPixel[37]].position, kUp, 37, 0, true};
   Place later = first;
@@ -269,12 +268,12 @@ TEST_F(PixelGuide, HoldsTheCellsAndAMapForEachPixel) {
   EXPECT_TRUE(sameBits(view.decisions + own, cells.decisions + cell, 1));
   EXPECT_TRUE(sameBits(view.lightTables + 3 * size_t(own), cells.lightTables + 3 * size_t(cell), 3));
   EXPECT_TRUE(sameBits(view.cached + 2 * size_t(own), cells.cached + 2 * size_t(cell), 2));
-  EXPECT_TRUE(sameView(guide.ofCellsAlone().view(), cells));
+  EXPECT_TRUE(sameView(PaperMethod::cellsOf(guide).view(), cells));
 }
 
 TEST_F(PixelGuide, WithoutCellsHalfOfTheDrawsAreGuided) {
   m_options.cellsPerDiagonal = 0;
-  const Guide guide = Guide().withPixelMaps(m_maps, m_options, *libraryTasks(1));
+  const Guide guide = PaperMethod::over(Guide(), m_maps, m_options, *libraryTasks(1));
   const GuideView view = guide.view();
   EXPECT_EQ(view.cellCount, m_maps.size());
   EXPECT_EQ(view.decisions[5].bsdfFraction[0], 0.5f);
@@ -285,9 +284,9 @@ TEST_F(PixelGuide, WithoutCellsHalfOfTheDrawsAreGuided) {
 TEST_F(PixelGuide, BlendsAPixelsMapWithItsCells) {
   m_options.pixelShare = 0.25f;
   m_options.floor = 0;
-  const Guide guide = m_cells.withPixelMaps(m_maps, m_options, *libraryTasks(1));
+  const Guide guide = PaperMethod::over(m_cells, m_maps, m_options, *libraryTasks(1));
   const GuideView view = guide.view(), cells = m_cells.view();
-  const uint32_t own = view.pixelCells[100];
+  const uint32_t own = view.pixels.cells[100];
   const PixelMaps::Place& place = m_maps.places[m_maps.ofPixel[100]];
   const uint32_t cell = findCell(cells, {place.position, place.normal});
   const auto share = [](const uint16_t* texels, int t) {
@@ -305,7 +304,7 @@ TEST_F(PixelGuide, BlendsAPixelsMapWithItsCells) {
 // Without the product the density is the map's alone, whatever the normal.
 TEST_F(PixelGuide, MapsWithoutCosineAreThemselves) {
   m_options.cosineProduct = false;
-  const Guide guide = Guide().withPixelMaps(m_maps, m_options, *libraryTasks(1));
+  const Guide guide = PaperMethod::over(Guide(), m_maps, m_options, *libraryTasks(1));
   const MapArrays maps = guide.view().maps;
   double sum = 0;
   for (int t = 0; t < kMapTexels; ++t) sum += maps.texels[3 * kMapTexels + t];

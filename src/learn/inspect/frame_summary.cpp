@@ -75,8 +75,7 @@ std::string stateText(const core::SavedFrame& saved) {
   const std::string where = saved.pass ? "within " : "before ";
   if (at.next == ODIS_PASS_PILOT) return where + "the pilot";
   if (at.next == ODIS_PASS_ORACLE)
-    return where +
-           fmt::format("pass {} of {} of the oracle", at.oraclePasses + 1, saved.options.frame.oracleSamples);
+    return where + fmt::format("one of {} passes of the oracle", saved.options.frame.oracleSamples);
   return where + fmt::format("a guided pass: samples {} to {} of at most {} after the pilot", at.done + 1,
                              saved.schedule.passEnd(at.done), all);
 }

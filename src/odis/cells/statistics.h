@@ -147,8 +147,8 @@ class CellStore {
   uint64_t transientBytes() const { return m_transientBytes; }
   // The most that a value counts in a cell whose parent has so many samples with this sum of values, so that
   // no single path rules a map. Maps take the sum of what is added at once, as it comes; what judges a map
-  // without a vertex's own sample takes all that the parent has, clamped already. That is less, and better: by
-  // the maps' limits cells are guided too seldom (docs/experiments/0060-one-clamp.md).
+  // without a vertex's own sample takes all that the parent has, clamped already. That is less, and better:
+  // by the maps' limits cells are guided too seldom (docs/experiments/0060-one-clamp.md).
   float largestValue(double count, double sum) const { return count > 0 ? m_clamp * float(sum / count) : 0; }
   const DepthShares& depthShares() const { return m_depthShares; }
   const Tasks& tasks() const { return *m_tasks; }

@@ -41,7 +41,12 @@ class FirstVertices {
 
   // Takes the first vertices of a frame's paths; vertices follow each other path by path, from the camera on.
   // Where a pixel has several samples, the first counts.
+  // Thread-safe for different pixels.
   void add(ArrayView<const PathVertex> vertices, IncidentRadiance kind);
+
+  const std::vector<FirstVertex>& pixels() const { return m_pixels; }
+  void restore(std::vector<FirstVertex> pixels) { m_pixels = std::move(pixels); }
+  uint64_t bytes() const { return m_pixels.size() * sizeof(FirstVertex); }
 
  private:
   int m_width, m_height;

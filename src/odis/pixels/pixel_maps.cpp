@@ -140,25 +140,23 @@ PixelMaps makePixelMaps(const FirstVertices& vertices, int tile, const PixelMode
   return maps;
 }
 
-void PixelOracle::add(VertexParts parts, const Tasks& tasks) {
-  tasks.forEach(parts.size(), [&](size_t part) {
-    uint32_t lastPixel = ~0u, lastSample = ~0u;
-    for (const PathVertex& v : parts[part]) {
-      if (v.pixel >= m_pixels.size() || !mayBeGuided(v)) continue;
-      if (v.pixel == lastPixel && v.sample == lastSample) continue;  // beyond the path's first vertex
-      lastPixel = v.pixel;
-      lastSample = v.sample;
-      const FirstVertex first = describeFirst(v, m_radiance);
-      Pixel& pixel = m_pixels[v.pixel];
-      ++pixel.count;
-      pixel.position = pixel.position + first.position;
-      pixel.normal = pixel.normal + first.normal;
-      if (!(first.pdf > 0)) continue;
-      const Splat texels = splat(first.wi);
-      for (int i = 0; i < 4; ++i)
-        pixel.energy[size_t(texels.texel[i])] += texels.weight[i] * first.radiance / first.pdf;
-    }
-  });
+void PixelOracle::add(ArrayView<const PathVertex> vertices) {
+  uint32_t lastPixel = ~0u, lastSample = ~0u;
+  for (const PathVertex& v : vertices) {
+    if (v.pixel >= m_pixels.size() || !mayBeGuided(v)) continue;
+    if (v.pixel == lastPixel && v.sample == lastSample) continue;  // beyond the path's first vertex
+    lastPixel = v.pixel;
+    lastSample = v.sample;
+    const FirstVertex first = describeFirst(v, m_radiance);
+    Pixel& pixel = m_pixels[v.pixel];
+    ++pixel.count;
+    pixel.position = pixel.position + first.position;
+    pixel.normal = pixel.normal + first.normal;
+    if (!(first.pdf > 0)) continue;
+    const Splat texels = splat(first.wi);
+    for (int i = 0; i < 4; ++i)
+      pixel.energy[size_t(texels.texel[i])] += texels.weight[i] * first.radiance / first.pdf;
+  }
 }
 
 PixelMaps PixelOracle::maps(const Tasks& tasks) const {

@@ -47,8 +47,8 @@ class PixelOracle {
     float count = 0;
   };
 
-  // Vertices follow each other path by path; those of one pixel are in one part.
-  void add(VertexParts parts, const Tasks& tasks);
+  // Vertices follow each other path by path, those of a path at once. Thread-safe for different pixels.
+  void add(ArrayView<const PathVertex> vertices);
   PixelMaps maps(const Tasks& tasks) const;
 
   const std::vector<Pixel>& pixels() const { return m_pixels; }

@@ -110,7 +110,7 @@ void findGuidingCells(const PathSettings& settings, std::span<const Path> paths,
   findAround(*settings.guide, lookUps.keys.data(), lookUps.hashes.data(), lookUps.count,
              lookUps.cells.data());
   for (size_t k = 0; k < lookUps.count; ++k) batch.cells[lookUps.vertices[k]] = lookUps.cells[k];
-  if (!settings.guide->pixelCells) return;
+  if (!settings.guide->pixels.cells) return;
   for (size_t k = 0; k < lookUps.count; ++k) {
     const uint32_t i = lookUps.vertices[k];
     const Path& path = paths[batch.active[i]];
