@@ -61,9 +61,9 @@ void printRow(const Row& row) {
 }
 
 // The means over the scenes of what operations cost, as a frame can be told of them.
-void printCosts(const std::vector<render::OperationCosts>& scenes) {
+void printCosts(const std::vector<eval::OperationCosts>& scenes) {
   double guidedRay = 0, builtCell = 0, recordedRay = 0;
-  for (const render::OperationCosts& costs : scenes) {
+  for (const eval::OperationCosts& costs : scenes) {
     guidedRay += costs.guidedRay / double(scenes.size());
     builtCell += costs.builtCell / double(scenes.size());
     recordedRay += costs.recordedRay / double(scenes.size());
@@ -81,7 +81,7 @@ static int runBench(BenchArguments& a) {
   const InterruptScope interruptible;
   ConsoleProgress progress(a.quiet);
   nlohmann::ordered_json all = nlohmann::ordered_json::array();
-  std::vector<render::OperationCosts> costs;
+  std::vector<eval::OperationCosts> costs;
   const auto printHead = [&] {
     fmt::print(
         "| scene | load, s | path, M samples/s | M rays/s | guided sample | guiding of a frame | frame | "

@@ -40,7 +40,7 @@ static int fail(ExitCode code, const std::string& message) {
 static ExitCode codeOf(const Error& error) {
   if (error.code() != ODIS_ERROR_FILE) return kInternalError;
   try {
-    Model().withPixelNetwork("fast");
+    GuideBuilder(GuideOptions().set("pixel-maps=network pixel-network=fast"));
   } catch (const Error& again) {
     if (std::string(error.what()) == again.what()) return kLibraryError;
   }

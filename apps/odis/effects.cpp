@@ -25,16 +25,17 @@ struct Need {
 };
 
 bool hasOracle(const RenderOptions& o) {
-  return o.guide == GuideKind::oracle || o.guideOptions.pixelMaps == ODIS_PIXEL_MAPS_ORACLE;
+  return o.setting("guide") == "oracle" || o.setting("pixel-maps") == "oracle";
 }
 bool hasPixelMaps(const RenderOptions& o) {
-  return o.guideOptions.pixelMaps != ODIS_PIXEL_MAPS_NONE;
+  return o.setting("pixel-maps") != "none";
 }
 bool hasCells(const RenderOptions& o) {
-  return o.guideOptions.cellsPerDiagonal > 0;
+  return o.settingNumber("cells") > 0;
 }
 bool refines(const RenderOptions& o) {
-  return o.refineSpp > 0 && o.costs.guidedRay > 0 && o.guideOptions.fixedBsdfFraction == 0 && !hasOracle(o);
+  return o.settingNumber("refine") > 0 && o.settingNumber("guided-cost") > 0 &&
+         o.settingNumber("bsdf-fraction") == 0 && !hasOracle(o);
 }
 
 const std::vector<Need>& needs() {
@@ -45,11 +46,13 @@ const std::vector<Need>& needs() {
        refines,
        "with refine=0, guided-cost=0, a bsdf-fraction or an oracle"},
       {{"ended-paths"},
-       [](const RenderOptions& o) { return o.roulette == RouletteKind::formula; },
+       [](const RenderOptions& o) { return o.setting("roulette") == "formula"; },
        "without roulette=formula"},
-      {{"cached-error"}, [](const RenderOptions& o) { return o.cached; }, "without --cached"},
+      {{"cached-error"},
+       [](const RenderOptions& o) { return o.setting("cached") == "on"; },
+       "without --cached"},
       {{"prior-samples"},
-       [](const RenderOptions& o) { return o.guide != GuideKind::network; },
+       [](const RenderOptions& o) { return o.setting("guide") != "network"; },
        "without guide=histogram or guide=oracle"},
       {{"guide", "prior-samples", "pixel-share"}, hasCells, "without cells"},
       {{"guide-bounces", "roulette", "ended-paths", "shadow-rays", "refine", "guided-cost", "bsdf-fraction",
@@ -58,12 +61,11 @@ const std::vector<Need>& needs() {
        "with cells=0 and without maps at pixels: nothing is guided"},
       {{"pixel-tile", "pixel-share"}, hasPixelMaps, "without maps at pixels (pixel-maps)"},
       {{"pixel-network"},
-       [](const RenderOptions& o) { return o.guideOptions.pixelMaps == ODIS_PIXEL_MAPS_NETWORK; },
+       [](const RenderOptions& o) { return o.setting("pixel-maps") == "network"; },
        "without pixel-maps=network"},
       {{"pixel-light"},
        [](const RenderOptions& o) {
-         return o.guideOptions.pixelMaps == ODIS_PIXEL_MAPS_HISTOGRAM ||
-                o.guideOptions.pixelMaps == ODIS_PIXEL_MAPS_ORACLE;
+         return o.setting("pixel-maps") == "histogram" || o.setting("pixel-maps") == "oracle";
        },
        "without pixel-maps=histogram or pixel-maps=oracle"}};
   return all;
@@ -89,7 +91,7 @@ bool contains(const auto& values, const auto& value) {
 
 // The least number of samples per pixel that can be spread over the pixels unevenly.
 int leastToSpread(const RenderOptions& o) {
-  const double pilot = o.integrator == IntegratorKind::odis ? o.pilotSpp : 0;
+  const double pilot = o.integrator == IntegratorKind::odis ? o.settingNumber("pilot-spp") : 0;
   return std::max(4, int(std::floor(pilot)) + 3);
 }
 
@@ -131,10 +133,10 @@ void tellWithoutEffect(const RenderArguments& a, const RenderOptions& options, c
   if (options.variance && options.spp < 2)
     throw UsageError("--variance: one sample per pixel has none, expected --spp 2 or more");
   std::string notes;
-  if (options.cached && !isCaching(options))
+  if (options.setting("cached") == "on" && !isCaching(options))
     notes += fmt::format("note: --cached: has no effect with a max_depth below {}, found {}: not biased\n",
-                         kLeastCachedMaxDepth, options.maxDepth);
-  if (options.samples == SampleSpread::adaptive && options.spp < leastToSpread(options))
+                         ODIS_LEAST_CACHED_MAX_DEPTH, options.maxDepth);
+  if (options.setting("samples") == "adaptive" && options.spp < leastToSpread(options))
     notes += fmt::format("note: --set samples=adaptive: needs {} samples per pixel, found {}\n",
                          leastToSpread(options), options.spp);
   if (options.integrator == IntegratorKind::odis && !isGuiding(options))

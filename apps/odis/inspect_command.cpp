@@ -87,7 +87,7 @@ int runInspect(InspectArguments& a) {
   RenderOptions options;
   if (!a.method.film.empty()) throw UsageError("--film: has no effect, no image is made of samples");
   a.method.apply(options);
-  if (options.integrator != IntegratorKind::odis || options.guide == GuideKind::oracle)
+  if (options.integrator != IntegratorKind::odis || options.setting("guide") == "oracle")
     throw UsageError("odis inspect: looks into --integrator odis with the pilot's guide, expected no other");
   Outputs outputs;
   if (!a.output.empty()) outputs.add(a.output, {".png", ".exr"});

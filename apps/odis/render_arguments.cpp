@@ -55,31 +55,6 @@ void MethodArguments::addTo(CLI::App& app) {
       ->group(group);
 }
 
-namespace {
-
-// The method of the paper: maps at pixels, half and half with the BSDF, and nothing else that is learned.
-void applyPaperPreset(RenderOptions& options, bool fast) {
-  if (options.integrator != IntegratorKind::odis)
-    throw UsageError("--preset: expected --integrator odis, others have no presets");
-  options.guideOptions.pixelMaps = ODIS_PIXEL_MAPS_NETWORK;
-  options.pixelNetwork = fast ? "fast" : "paper";
-  options.guideOptions.pixelTile = fast ? 4 : 1;
-  options.guideOptions.cosineProduct = false;
-  options.guideOptions.fixedBsdfFraction = 0.5f;
-  options.guideOptions.cellsPerDiagonal = 0;
-  options.guideBounces = 1;
-  options.roulette = RouletteKind::throughput;
-  options.lights = LightChoiceKind::hierarchy;
-  options.shadowRays = ShadowRayKind::all;
-  options.samples = SampleSpread::even;
-  options.refineSpp = 0;
-  options.pilotSpp = 1;
-  options.pilotWeight = 1;
-  options.costs.guidedRay = 0;
-}
-
-}  // namespace
-
 void MethodArguments::apply(RenderOptions& options) const {
   options.integrator = integrator == "path"      ? IntegratorKind::path
                        : integrator == "ppg"     ? IntegratorKind::ppg
@@ -88,21 +63,23 @@ void MethodArguments::apply(RenderOptions& options) const {
                                                  : IntegratorKind::odis;
   options.sampler = sampler == "sobol" ? SamplerKind::sobol : SamplerKind::independent;
   if (!film.empty()) options.film = film == "splat" ? FilmKind::splat : FilmKind::pixels;
-  if (preset != "default") applyPaperPreset(options, preset == "paper-fast");
+  if (preset != "default" && options.integrator != IntegratorKind::odis)
+    throw UsageError("--preset: expected --integrator odis, others have no presets");
+  options.set("preset=" + preset);
   if (!weights.empty()) {
     options.model = Model::load(weights);
-    options.pixelNetwork.clear();
+    options.set("pixel-network=model");
   }
-  options.cached = cached;
+  if (cached) options.set("cached=on");
   if (cached && options.integrator != IntegratorKind::odis)
     throw UsageError("--cached: only --integrator odis has a cache");
   applySettings(options, settings);
   requireEffects(options, settings);
-  if (cached && options.guideOptions.cellsPerDiagonal == 0)
+  if (cached && options.settingNumber("cells") == 0)
     throw UsageError("--cached: has no effect without cells, whose radiance it is (--set cells)");
   const bool usesNetworks =
-      options.guide == GuideKind::network || options.lights == LightChoiceKind::network ||
-      (options.guideOptions.pixelMaps == ODIS_PIXEL_MAPS_NETWORK && options.pixelNetwork.empty());
+      options.setting("guide") == "network" || options.setting("lights") == "network" ||
+      (options.setting("pixel-maps") == "network" && options.setting("pixel-network") == "model");
   if (!weights.empty() && !(options.integrator == IntegratorKind::odis && usesNetworks))
     throw UsageError("--weights: this method has no networks");
 }

@@ -76,7 +76,7 @@ static Outputs outputsOf(const RenderArguments& a) {
   if (!a.png.empty()) outputs.add(a.png, {".png"});
   if (!a.statsFile.empty()) outputs.add(a.statsFile, {});
   if (!a.recordsFile.empty()) outputs.add(a.recordsFile, {".npy"});
-  outputs.rejectInputs({a.scene, a.method.weights, a.resume});
+  outputs.rejectInputs({a.resume});
   // A rendering may go on with the file that it is saved to.
   if (a.saveMinutes > 0) outputs.add(savedFile(a), {});
   outputs.rejectInputs({a.scene, a.method.weights});
@@ -155,7 +155,10 @@ static void describeRun(const RenderArguments& a, const Scene& scene, const Rend
   stats.bytesPeak = peakMemory();
   stats.seed = a.seed;
   stats.cached = isCaching(options) && isGuiding(options, rendered);
-  if (options.integrator == IntegratorKind::odis) stats.costs = options.costs;
+  if (options.integrator == IntegratorKind::odis)
+    stats.costs = {{float(options.settingNumber("guided-cost")),
+                    float(options.settingNumber("built-cell-cost")),
+                    float(options.settingNumber("recorded-ray-cost"))}};
   stats.scene = a.scene;
   stats.integrator = a.method.integrator;
   stats.film = filmName(filmKindFor(*scene.film().filter, options.film));

@@ -1,5 +1,5 @@
-// The table of `--set key=value`: everything about a method that hardly anybody changes. docs/settings.md
-// shows it.
+// The table of `--set key=value`: that of the library (odis/odis.h), and the settings of other methods.
+// docs/settings.md shows it.
 #pragma once
 
 #include <functional>
@@ -17,6 +17,7 @@ struct Setting {
   std::string meaning;       // one sentence, or two short ones: a row of docs/settings.md has 120 columns
   // Writes a value into the options; throws UsageError.
   std::function<void(render::RenderOptions& options, const std::string& value)> set;
+  std::string option;  // of the command line, which sets it in place of --set; else empty
 };
 
 // All settings, in the order in which help shows them.

@@ -18,7 +18,7 @@ struct RunStats {
   uint64_t bytesScene = 0, bytesPeak = 0;
   uint64_t seed = 0;
   bool cached = false;
-  std::optional<render::OperationCosts> costs;  // that decisions weighed; of frames that are guided
+  std::optional<eval::OperationCosts> costs;  // that decisions weighed; of frames that are guided
   std::string scene, integrator, film, commandLine;
 };
 

@@ -48,7 +48,8 @@ std::string suggestFor(const CLI::App& app, const CLI::App& command) {
       for (const CLI::Option* option : command.get_options())
         for (const std::string& name : option->get_lnames()) candidates.push_back("--" + name);
       if (command.get_option_no_throw("--set"))
-        for (const Setting& setting : allSettings()) candidates.push_back("--" + setting.key);
+        for (const Setting& setting : allSettings())
+          if (setting.option.empty()) candidates.push_back("--" + setting.key);
     } else {
       candidates = commandsOf(command);
     }

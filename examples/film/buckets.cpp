@@ -33,7 +33,7 @@ int main(int count, char** arguments) try {
   const Scene scene = makeScene(settings.scene);
   const odis::FrameOptions options = frameOptions(settings, scene);
   odis::Frame frame(options);
-  const odis::TileGrid tiles(options);
+  const odis::TileGrid tiles(options.width, options.height);
   std::vector<Bucket> buckets = makeBuckets(tiles, settings);
   while (const odis::FramePass* pass = frame.beginPass()) {
     parallelFor(uint32_t(buckets.size()), settings.threads, [&](uint32_t index) {

@@ -66,7 +66,8 @@ inline Settings parseSettings(int count, char** arguments) {
 inline odis::FrameOptions frameOptions(const Settings& settings, const Scene& scene) {
   odis::FrameOptions options;
   options.width = settings.width, options.height = settings.height;
-  options.samplesPerPixel = settings.spp, options.seed = settings.seed, options.guided = settings.guided;
+  options.samplesPerPixel = settings.spp, options.seed = settings.seed;
+  if (!settings.guided) options.set("guided=off");
   options.guide.lightGroups = uint32_t(scene.lightCount());
   options.keepPixelMeans = false;
   return options;

@@ -18,10 +18,10 @@ int main(int count, char** arguments) try {
   const Scene scene = makeScene(settings.scene);
   odis::FrameOptions options = frameOptions(settings, scene);
   // The film is to be right after every pass: with even counts the weights so far are alike in all pixels.
-  options.adaptive = false;
+  options.set("samples=even");
   Film film(wholeImage(settings));
   odis::Frame frame = openFrame(settings, options, film);
-  const odis::TileGrid tiles(options);
+  const odis::TileGrid tiles(options.width, options.height);
   for (uint32_t passes = 0; passes < settings.passes; ++passes) {
     const odis::FramePass* pass = frame.beginPass();
     if (!pass) break;

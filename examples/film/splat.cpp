@@ -8,7 +8,7 @@ int main(int count, char** arguments) try {
   const odis::FrameOptions options = frameOptions(settings, scene);
   odis::Frame frame(options);
   Film film(wholeImage(settings));
-  const odis::TileGrid tiles(options);
+  const odis::TileGrid tiles(options.width, options.height);
   while (const odis::FramePass* pass = frame.beginPass()) {
     std::vector<std::vector<Traced>> samples(tiles.tileCount());
     parallelFor(tiles.tileCount(), settings.threads, [&](uint32_t tile) {

@@ -82,14 +82,17 @@ ODIS_API OdisModel odisNewModel(OdisContext context);
 // The networks of a file of weights, or of its bytes.
 ODIS_API OdisModel odisNewModelFromFile(OdisContext context, const char* path);
 ODIS_API OdisModel odisNewModelFromMemory(OdisContext context, const void* bytes, size_t size);
-// Makes a model like this one in which a formula replaces the network for directions, for lights, or both.
-ODIS_API OdisModel odisNewModelWithFormulas(OdisModel model, bool directions, bool lights);
-// Makes a model like this one with a network for maps at pixels (OdisGuideOptions.pixelMaps) that comes with
-// the optional component of ODIS on oneDNN: "paper", "paper-gan", "fast" or
-// "fast-gan". Without the component ODIS_ERROR_FILE says how to get it.
-ODIS_API OdisModel odisNewModelWithPixelNetwork(OdisModel model, const char* name);
 ODIS_API void odisRetainModel(OdisModel model);
 ODIS_API void odisReleaseModel(OdisModel model);
+
+// ---- settings: what is set by name (OdisFrameOptions.settings, OdisGuideOptions.settings) ----
+
+ODIS_API size_t odisGetSettingCount(void);
+// A row of the table of all settings, in the order of docs/settings.md.
+ODIS_API bool odisGetSetting(size_t index, OdisSetting* setting);
+// The value that a text of settings (NULL: none) gives to the setting of this name, or its default. NULL if
+// there is no such setting, or a value in the text that is none. Valid until the thread's next call.
+ODIS_API const char* odisReadSetting(const char* settings, const char* name);
 
 // ---- recorder: from the events of paths to vertices ----
 

@@ -35,6 +35,7 @@ namespace odis {
 
 using ContextOptions = OdisContextOptions;
 using LightParts = OdisLightParts;
+using Setting = OdisSetting;
 using FramePass = OdisFramePass;
 using SampleRange = OdisSampleRange;
 using FrameSample = OdisFrameSample;
@@ -79,6 +80,17 @@ void orThrow(const Call& call) {
 template <class Call>
 auto made(const Call& call) {
   return checked(decltype(call())(nullptr), call);
+}
+
+// The table of what is set by name.
+inline std::vector<Setting> settings() {
+  std::vector<Setting> all(odisGetSettingCount());
+  for (size_t i = 0; i < all.size(); ++i) orThrow([&] { return odisGetSetting(i, &all[i]); });
+  return all;
+}
+// The value that a text of settings gives to one of them, or its default.
+inline std::string readSetting(const std::string& settings, const std::string& name) {
+  return made([&] { return odisReadSetting(settings.c_str(), name.c_str()); });
 }
 
 // A reference to an object of the library: copies share it.
@@ -129,30 +141,32 @@ class Model : public Handle<OdisModel, odisRetainModel, odisReleaseModel> {
   static Model parse(const void* bytes, size_t size, const Context& context = Context::shared()) {
     return Model(made([&] { return odisNewModelFromMemory(context.get(), bytes, size); }));
   }
-  // This model with a formula for directions, or for the choice of lights.
-  Model withDirectionFormula() const {
-    return Model(made([&] { return odisNewModelWithFormulas(get(), true, false); }));
-  }
-  Model withLightFormula() const {
-    return Model(made([&] { return odisNewModelWithFormulas(get(), false, true); }));
-  }
-  // This model with a network for maps at pixels, by name.
-  Model withPixelNetwork(const std::string& name) const {
-    return Model(made([&] { return odisNewModelWithPixelNetwork(get(), name.c_str()); }));
-  }
 };
 
-// `model` and `lightParts` take the place of the fields of the same names in C.
-struct GuideOptions : OdisGuideOptions {
-  Model model;
+// OdisGuideOptions with owners in place of pointers.
+struct GuideOptions {
+  std::optional<Model> model;  // none: the networks that come with the library
+  uint32_t lightGroups = OdisGuideOptions().lightGroups;
   std::vector<LightParts> lightParts;
+  OdisProgressFunction progressFunction = nullptr;
+  void* progressUser = nullptr;
+  std::string settings;
 
+  // Sets more by name; wins over what was set before.
+  GuideOptions& set(const std::string& text) {
+    settings += " " + text;
+    return *this;
+  }
   // Valid as long as this object stays as it is.
   OdisGuideOptions flat() const {
-    OdisGuideOptions options = *this;
-    options.model = model.get();
-    options.OdisGuideOptions::lightParts = lightParts.data();
+    OdisGuideOptions options;
+    if (model) options.model = model->get();
+    options.lightGroups = lightGroups;
+    options.lightParts = lightParts.data();
     options.lightPartCount = lightParts.size();
+    options.progressFunction = progressFunction;
+    options.progressUser = progressUser;
+    options.settings = settings.c_str();
     return options;
   }
 };
@@ -223,7 +237,10 @@ class Guide : public Handle<OdisGuide, odisRetainGuide, odisReleaseGuide> {
 class GuideBuilder : public Handle<OdisGuideBuilder, odisRetainGuideBuilder, odisReleaseGuideBuilder> {
  public:
   explicit GuideBuilder(const GuideOptions& options = {}, const Context& context = Context::shared())
-      : Handle(made([&] { return make(options.flat(), context); })) {}
+      : Handle(made([&] {
+          const OdisGuideOptions flat = options.flat();
+          return odisNewGuideBuilder(context.get(), &flat);
+        })) {}
 
   void add(ArrayView<const PathVertex> vertices) { add(describe(vertices)); }
   void add(const OdisPathVertices& vertices) {
@@ -259,28 +276,57 @@ class GuideBuilder : public Handle<OdisGuideBuilder, odisRetainGuideBuilder, odi
   void setBounds(const Float3& lower, const Float3& upper) {
     orThrow([&] { return odisSetBounds(get(), &lower, &upper); });
   }
-
- private:
-  static OdisGuideBuilder make(const OdisGuideOptions& options, const Context& context) {
-    return odisNewGuideBuilder(context.get(), &options);
-  }
 };
 
-// `guide` and `builder` take the place of the fields of the same names in C. With a builder its own options
-// hold, not `guide`.
-struct FrameOptions : OdisFrameOptions {
-  GuideOptions guide;
-  std::optional<GuideBuilder> builder = std::nullopt;
+// OdisFrameOptions with owners in place of pointers.
+struct FrameOptions {
+  uint32_t width = 0, height = 0;
+  uint32_t samplesPerPixel = OdisFrameOptions().samplesPerPixel;
+  uint64_t seed = OdisFrameOptions().seed;
+  bool keepPixelMeans = OdisFrameOptions().keepPixelMeans;
+  uint32_t tileOffsetX = 0, tileOffsetY = 0;
+  GuideOptions guide;                   // of a frame without a builder of the host's
+  std::optional<GuideBuilder> builder;  // with its own options: those of `guide` have no effect
+  std::string settings;
+
+  // Sets more by name; wins over what was set before.
+  FrameOptions& set(const std::string& text) {
+    settings += " " + text;
+    return *this;
+  }
+  // Valid as long as this object and that of `guide`, this->guide.flat(), stay as they are.
+  OdisFrameOptions flat(const OdisGuideOptions& flatGuide) const {
+    OdisFrameOptions options;
+    options.width = width;
+    options.height = height;
+    options.samplesPerPixel = samplesPerPixel;
+    options.seed = seed;
+    options.keepPixelMeans = keepPixelMeans;
+    options.tileOffsetX = tileOffsetX;
+    options.tileOffsetY = tileOffsetY;
+    if (builder)
+      options.builder = builder->get();
+    else
+      options.guide = &flatGuide;
+    options.settings = settings.c_str();
+    return options;
+  }
 };
 
 class Frame : public Handle<OdisFrame, odisRetainFrame, odisReleaseFrame> {
  public:
   explicit Frame(const FrameOptions& options, const Context& context = Context::shared())
-      : Frame(made([&] { return make(options, context); })) {}
+      : Frame(made([&] {
+          const OdisGuideOptions guide = options.guide.flat();
+          const OdisFrameOptions flat = options.flat(guide);
+          return odisNewFrame(context.get(), &flat);
+        })) {}
 
   // A frame that was saved, with the model that it had; it goes on where it was.
-  static Frame load(const std::string& path, const Model& model, const Context& context = Context::shared()) {
-    return Frame(made([&] { return odisLoadFrame(context.get(), path.c_str(), model.get()); }));
+  static Frame load(const std::string& path, const std::optional<Model>& model = std::nullopt,
+                    const Context& context = Context::shared()) {
+    return Frame(
+        made([&] { return odisLoadFrame(context.get(), path.c_str(), model ? model->get() : nullptr); }));
   }
   void save(const std::string& path) const {
     orThrow([&] { return odisSaveFrame(get(), path.c_str()); });
@@ -377,15 +423,6 @@ class Frame : public Handle<OdisFrame, odisRetainFrame, odisReleaseFrame> {
   explicit Frame(OdisFrame frame)
       : Handle(frame), m_pixels(pixelsOf(statistics())), m_pass(std::make_shared<FramePass>()) {}
   static size_t pixelsOf(const FrameStatistics& s) { return size_t(s.width) * s.height; }
-  static OdisFrame make(const FrameOptions& given, const Context& context) {
-    OdisFrameOptions options = given;
-    const OdisGuideOptions guide = given.guide.flat();
-    if (given.builder)
-      options.builder = given.builder->get();
-    else
-      options.guide = &guide;
-    return odisNewFrame(context.get(), &options);
-  }
 
   size_t m_pixels;
   std::shared_ptr<FramePass> m_pass;

@@ -35,6 +35,9 @@ typedef struct OdisFloat3 {
 #define ODIS_TILE_SIZE 16
 // The most groups of lights that a host may tell apart for next-event estimation.
 #define ODIS_MAX_LIGHT_GROUPS 32
+// With a smaller setting `max-depth` (but 0) no path ends with cached radiance: how much light comes from how
+// many bounces differs too much from place to place.
+#define ODIS_LEAST_CACHED_MAX_DEPTH 8
 // Nested cells have the edges e, 2e, 4e, 8e.
 #define ODIS_CELL_LEVELS 4
 // The vertices of a cell fall into classes by their roughness; each has a BSDF sampling fraction of its own.
@@ -78,14 +81,6 @@ typedef void (*OdisMemoryFunction)(void* user, int64_t change);
 typedef void (*OdisTaskFunction)(void* user, size_t count, void (*task)(void* taskData, size_t index),
                                  void* taskData);
 
-// What makes maps at pixels (OdisGuideOptions).
-typedef enum OdisPixelMaps {
-  ODIS_PIXEL_MAPS_NONE = 0,
-  ODIS_PIXEL_MAPS_HISTOGRAM = 1,  // the pilot's samples around
-  ODIS_PIXEL_MAPS_NETWORK = 2,    // a network that sees these samples (Bako et al. 2019): the model's
-  ODIS_PIXEL_MAPS_ORACLE = 3      // each pixel's own samples of OdisFrameOptions.oracleSamples
-} OdisPixelMaps;
-
 // ---- options ----
 
 typedef struct OdisContextOptions {
@@ -99,13 +94,10 @@ typedef struct OdisContextOptions {
   // ODIS_ERROR_OUT_OF_MEMORY.
   uint64_t memoryLimit ODIS_DEFAULT(0);
   OdisLogFunction logFunction ODIS_DEFAULT(NULL);  // NULL: nothing is told
-  void* logUser ODIS_DEFAULT(NULL);
   OdisErrorFunction errorFunction ODIS_DEFAULT(NULL);
-  void* errorUser ODIS_DEFAULT(NULL);
   OdisMemoryFunction memoryFunction ODIS_DEFAULT(NULL);
-  void* memoryUser ODIS_DEFAULT(NULL);
   OdisTaskFunction taskFunction ODIS_DEFAULT(NULL);  // NULL: the library's own threads
-  void* taskUser ODIS_DEFAULT(NULL);
+  void* user ODIS_DEFAULT(NULL);                     // what these functions get back
 } OdisContextOptions;
 
 // Groups of lights that are equal parts of one light: where nothing was learned, each is as likely as the
@@ -116,73 +108,26 @@ typedef struct OdisLightParts {
 
 typedef struct OdisGuideOptions {
   size_t size ODIS_DEFAULT(sizeof(OdisGuideOptions));
-  OdisModel model ODIS_DEFAULT(NULL);  // NULL: the networks that come with the library
-  // >= 1: the finest cells have an edge of (diagonal of what the first vertices span) / this. 0: there are no
-  // cells, and only maps at pixels guide.
-  int32_t cellsPerDiagonal ODIS_DEFAULT(32);
-  // >= 0. Weight of the coarser level when the formula blends its map with a finer one's, in samples, for
-  // each level, finest first; the last one is for the uniform map.
-  float priorSamples[ODIS_CELL_LEVELS] ODIS_DEFAULT({250, 250, 120, 30});
-  float floor ODIS_DEFAULT(0.03f);  // in [0, 1]: share of the uniform distribution in every map
-  float clamp
-      ODIS_DEFAULT(20);  // > 0: a sample counts at most this many times its neighbourhood's mean in maps
-  // In [0, 1]; > 0: this BSDF sampling fraction everywhere, in place of the one by variance and cost.
-  float fixedBsdfFraction ODIS_DEFAULT(0);
-  // Whether the mean outgoing radiance stands in for paths that roulette ends.
-  bool controlVariate ODIS_DEFAULT(true);
+  OdisModel model ODIS_DEFAULT(NULL);    // NULL: the networks that come with the library
   uint32_t lightGroups ODIS_DEFAULT(0);  // that the vertices tell apart, <= 32; 0: learn nothing about lights
   const OdisLightParts* lightParts ODIS_DEFAULT(NULL);  // groups that are parts of one light; copied
   size_t lightPartCount ODIS_DEFAULT(0);
   // Told of progress while guides are built; may cancel. NULL: nobody is told.
   OdisProgressFunction progressFunction ODIS_DEFAULT(NULL);
   void* progressUser ODIS_DEFAULT(NULL);
-  // >= 0. 0: paths bring what they find, and images are unbiased. Otherwise a path may end with the cached
-  // radiance of a cell (OdisCachedRadiance) whose standard error, times the path's throughput, is below this
-  // fraction of the pixel's value: less noise and fewer rays, and images that are biased.
-  float cachedError ODIS_DEFAULT(0);
-  // An OdisPixelMaps: what guides the first vertex of each path whose lobes may be guided, in frames. Its
-  // other decisions are those of the cell that it lies in; where there is none, half of the draws follow the
-  // map.
-  int32_t pixelMaps ODIS_DEFAULT(ODIS_PIXEL_MAPS_NONE);
-  uint32_t pixelTile ODIS_DEFAULT(1);  // in [1, 16]: a map for each square of so many pixels a side
-  // In [0, 1]: share of a pixel's map in what guides there; the rest is that of the cell's, if there is one.
-  float pixelShare ODIS_DEFAULT(1);
-  // Whether maps at pixels tell of all light that arrives, or without what next-event estimation covers. A
-  // network tells of what it has learned.
-  bool pixelDirectLight ODIS_DEFAULT(true);
-  // Whether maps are multiplied by the cosine at a vertex.
-  bool cosineProduct ODIS_DEFAULT(true);
-  // The host's limit of depth, for cachedError: vertices are scattered at depths 1 to maxDepth - 1
-  // (OdisPathVertex.depth), and paths that end with cached radiance bring as much as such paths find. 0:
-  // none.
-  uint32_t maxDepth ODIS_DEFAULT(0);
+  // All that hardly any host changes, by name: words like "cells=64 map-floor=0.05" with blanks between them,
+  // of which later ones win (odisGetSetting lists them; docs/settings.md). Copied. Those of frames and of
+  // paths have no effect here. NULL: none.
+  const char* settings ODIS_DEFAULT(NULL);
 } OdisGuideOptions;
 
 typedef struct OdisFrameOptions {
   size_t size ODIS_DEFAULT(sizeof(OdisFrameOptions));
-  uint32_t width ODIS_DEFAULT(0), height
-      ODIS_DEFAULT(0);                       // of the image, crop or tile in pixels; below 2^31 pixels
+  // Of the image, crop or tile in pixels; below 2^31 pixels.
+  uint32_t width ODIS_DEFAULT(0), height ODIS_DEFAULT(0);
   uint32_t samplesPerPixel ODIS_DEFAULT(4);  // >= 1, pilot included
-  // Guided samples per pixel that the guide learns from as well. It is rebuilt after 1, 3, 7, ... of them
-  // where at least as many samples follow and rebuilding is worth its time; with the host's own `builder`
-  // whether it is worth it or not.
-  uint32_t refinementSamples ODIS_DEFAULT(3);
   // Chooses the pilot's pixels; the host draws its random numbers from OdisFramePass.seed.
   uint64_t seed ODIS_DEFAULT(0);
-  // Samples per pixel of the pilot; 0.25 is one sample in each 2 x 2 pixels. 0: 0.25 where that is enough to
-  // learn from (the image is large) and a whole sample would be dear (there are few), else 1.
-  double pilotSamplesPerPixel ODIS_DEFAULT(0);
-  // >= 0. Weight of a pilot sample relative to a guided one. A constant, because whatever the frame learns,
-  // it learns from the pilot: weights by what was learned would bias the image.
-  float pilotWeight ODIS_DEFAULT(0.6f);
-  // Further samples per pixel that the guide is made from instead of the pilot's, and that are no part of the
-  // image: for experiments that ask what a better guide would gain. The guide is not refined then.
-  uint32_t oracleSamples ODIS_DEFAULT(0);
-  bool guided ODIS_DEFAULT(true);  // false: plain path tracing, without a pilot
-  // Whether pixels whose first samples differ more get more samples, for about as many rays. Needs at least 4
-  // samples per pixel.
-  bool adaptive ODIS_DEFAULT(true);
-  bool keepPilotVertices ODIS_DEFAULT(false);  // whether the pilot's vertices stay after the guide is built
   // Whether the frame keeps sums over the samples of each pixel, of which odisGetPixelMean and
   // odisGetPilotImage are made. false, for a host with a film of its own (docs/own-film.md): it keeps what it
   // decides by, and those two are errors. All decisions are the same, to the bit.
@@ -190,18 +135,33 @@ typedef struct OdisFrameOptions {
   // Tiles of 16 x 16 pixels begin this many pixels before the image's first column and row, 0 to 15: 5 and 0
   // for a crop that begins at column 37 and row 16, so that its tiles are those of the whole image.
   uint32_t tileOffsetX ODIS_DEFAULT(0), tileOffsetY ODIS_DEFAULT(0);
-  // >= 0. Time of a ray of a guided path, relative to one of an unguided path. Where the first guided samples
-  // show that guiding does not pay, the others are not guided: their passes have a guide without cells. 0:
-  // costs are not weighed, what follows is guided and the guide refined in any case.
-  float guidedCost ODIS_DEFAULT(1);
-  // >= 0, in the time that a ray takes with all that is computed where it arrives: to build a cell of the
-  // guide, and to record what one ray brings. By them a frame decides whether refining pays.
-  float builtCellCost ODIS_DEFAULT(70), recordedRayCost ODIS_DEFAULT(0.15f);
   const OdisGuideOptions* guide ODIS_DEFAULT(NULL);  // NULL: the defaults; copied
   // The builder to learn into, with its own options (`guide` must be NULL), which may know of earlier frames;
   // nobody else uses it until the frame has ended. NULL: one of the frame's own.
   OdisGuideBuilder builder ODIS_DEFAULT(NULL);
+  // As OdisGuideOptions.settings, those of frames and of guides: they win over those of `guide`. Those of
+  // guides have no effect with a `builder`.
+  const char* settings ODIS_DEFAULT(NULL);
 } OdisFrameOptions;
+
+// What a setting is about.
+typedef enum OdisSettingOwner {
+  ODIS_SETTING_OF_ALL = 0,
+  ODIS_SETTING_OF_FRAMES = 1,
+  ODIS_SETTING_OF_GUIDES = 2,  // and of builders
+  ODIS_SETTING_OF_PATHS = 3    // what the host's paths do, who reads it by odisReadSetting
+} OdisSettingOwner;
+
+// A row of the table of settings. Texts stay as long as the library.
+typedef struct OdisSetting {
+  size_t size ODIS_DEFAULT(sizeof(OdisSetting));
+  const char* name ODIS_DEFAULT(NULL);
+  const char* values ODIS_DEFAULT(NULL);  // what it may be: "0 to 1", "roulette|all"
+  const char* defaultValue ODIS_DEFAULT(NULL);
+  const char* help ODIS_DEFAULT(NULL);  // a line
+  OdisSettingOwner owner ODIS_DEFAULT(ODIS_SETTING_OF_ALL);
+  bool research ODIS_DEFAULT(false);  // it takes the method apart; users have no use for it
+} OdisSetting;
 
 // ---- what a frame asks for and gets ----
 

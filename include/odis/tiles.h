@@ -16,11 +16,12 @@ inline constexpr uint32_t kTileBlock = 4;              // likewise
 // neighbours in the image. Pixels are counted row by row and must be those of the image, tiles likewise.
 class TileGrid {
  public:
-  explicit TileGrid(const OdisFrameOptions& image)
-      : m_width(image.width),
-        m_height(image.height),
-        m_offsetX(image.tileOffsetX),
-        m_offsetY(image.tileOffsetY),
+  // As in OdisFrameOptions.
+  TileGrid(uint32_t width, uint32_t height, uint32_t offsetX = 0, uint32_t offsetY = 0)
+      : m_width(width),
+        m_height(height),
+        m_offsetX(offsetX),
+        m_offsetY(offsetY),
         m_columns((m_offsetX + m_width + kTileSize - 1) / kTileSize),
         m_rows((m_offsetY + m_height + kTileSize - 1) / kTileSize) {}
 

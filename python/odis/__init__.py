@@ -13,6 +13,7 @@ docs/python.md of the sources.
 """
 
 from ._odis import (
+    LEAST_CACHED_MAX_DEPTH,
     NO_CELL,
     NO_LIGHT_GROUP,
     Context,
@@ -28,14 +29,18 @@ from ._odis import (
     Model,
     PassKind,
     PathVertices,
-    PixelMaps,
+    Setting,
+    SettingOwner,
     VertexCounts,
+    read_setting,
+    settings,
     version_text,
 )
 
 __version__ = version_text.split()[0]
 
 __all__ = [
+    "LEAST_CACHED_MAX_DEPTH",
     "NO_CELL",
     "NO_LIGHT_GROUP",
     "Context",
@@ -51,7 +56,10 @@ __all__ = [
     "Model",
     "PassKind",
     "PathVertices",
-    "PixelMaps",
+    "Setting",
+    "SettingOwner",
     "VertexCounts",
+    "read_setting",
+    "settings",
     "version_text",
 ]

@@ -39,8 +39,7 @@ class ImageFrame {
 
   static ImageFrame* load(const std::filesystem::path& path, const std::optional<Model>& model,
                           const LoggingContext* context) {
-    Frame frame = withoutLock(
-        [&] { return Frame::load(path.string(), model ? *model : Model(), contextOrShared(context)); });
+    Frame frame = withoutLock([&] { return Frame::load(path.string(), model, contextOrShared(context)); });
     frame.setProgress(goOn);
     return new ImageFrame(std::move(frame));
   }

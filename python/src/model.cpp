@@ -25,15 +25,7 @@ void bindModel(nb::module_& module) {
           [](const nb::bytes& data, const LoggingContext* context) {
             return Model(odisNewModelFromMemory(contextOrShared(context).get(), data.data(), data.size()));
           },
-          "data"_a, "context"_a = nb::none(), "The networks of a file's bytes. Raises Error (FILE).")
-      .def("with_direction_formula", &Model::withDirectionFormula,
-           "A model like this one, with a formula instead of the network for directions.")
-      .def("with_pixel_network", &Model::withPixelNetwork, "name"_a,
-           "A model like this one, with a network for maps at pixels of those that come with ODIS: "
-           "\"paper\",\n"
-           "say. Raises Error (FILE) where ODIS was built without oneDNN.")
-      .def("with_light_formula", &Model::withLightFormula,
-           "A model like this one, with a formula instead of the network for the choice of lights.");
+          "data"_a, "context"_a = nb::none(), "The networks of a file's bytes. Raises Error (FILE).");
 }
 
 }  // namespace odis::python

@@ -7,6 +7,7 @@ NB_MODULE(_odis, module) {
   module.doc() = "The compiled part of the package odis.";
   module.attr("version_text") = odisGetVersionText();
   module.attr("NO_CELL") = ODIS_NO_CELL;
+  module.attr("LEAST_CACHED_MAX_DEPTH") = ODIS_LEAST_CACHED_MAX_DEPTH;
   module.attr("NO_LIGHT_GROUP") = ODIS_NO_LIGHT_GROUP;
   bindErrors(module);
   bindContext(module);

@@ -12,13 +12,13 @@ class PixelNetworks(unittest.TestCase):
         # Where the library was built without oneDNN it says that first.
         message = "maps at pixels by a network: |oneDNN is missing, which networks at pixels"
         with self.assertRaisesRegex(odis.Error, message):
-            odis.Model().with_pixel_network("papre")
+            odis.GuideBuilder(odis.GuideOptions(settings="pixel-maps=network"))
 
     def test_options(self):
-        for options, field in (({"pixel_tile": 0}, "pixelTile"), ({"pixel_share": 2.0}, "pixelShare"),
-                               ({"pixel_maps": odis.PixelMaps.NETWORK}, "model")):
-            with self.assertRaisesRegex(odis.Error, f"{field}: expected"):
-                odis.GuideBuilder(odis.GuideOptions(**options))
+        for settings in ("pixel-tile=0", "pixel-share=2", "pixel-network=papre"):
+            name, value = settings.split("=")
+            with self.assertRaisesRegex(odis.Error, f'{name}: found "{value}", expected'):
+                odis.GuideBuilder(odis.GuideOptions(settings=settings))
 
 
 class Arrays(unittest.TestCase):
@@ -118,22 +118,34 @@ class Library(unittest.TestCase):
 
     def test_options(self):
         invalid = odis.ErrorCode.INVALID_ARGUMENT
-        for name, value in {"cells_per_diagonal": -1, "floor": 2, "clamp": 0, "fixed_bsdf_fraction": -1,
-                            "light_groups": 33, "prior_samples": (-1, 0, 0, 0)}.items():
+        for name, value in (("settings", "cells=-1"), ("settings", "map-floor=2"), ("settings", "map-clamp=0"),
+                            ("settings", "prior-samples=-1:0:0:0"), ("settings", "cels=3"), ("light_groups", 33)):
             options = odis.GuideOptions(**{name: value})
-            self.assertEqual(np.ravel(getattr(options, name)).tolist(), np.ravel(value).tolist())
+            self.assertEqual(getattr(options, name), value)
             self.expect_error(invalid, odis.GuideBuilder, options)
             self.expect_error(invalid, odis.Frame, odis.FrameOptions(4, 4, guide=options))
-        for name, value in {"samples_per_pixel": 0, "pilot_samples_per_pixel": -1, "pilot_weight": -1,
-                            "built_cell_cost": -1, "recorded_ray_cost": float("inf")}.items():
+        for name, value in (("samples_per_pixel", 0), ("settings", "pilot-spp=-1"), ("settings", "pilot-weight=-1"),
+                            ("settings", "built-cell-cost=-1"), ("settings", "recorded-ray-cost=inf")):
             self.expect_error(invalid, odis.Frame, odis.FrameOptions(4, 4, **{name: value}))
         self.expect_error(invalid, odis.Frame, odis.FrameOptions(0, 4))
         with self.assertRaises(TypeError):
             odis.GuideOptions(lights=1)
         self.assertEqual(odis.GuideOptions(light_parts=[(1, 2)]).light_parts, [(1, 2)])
         options = odis.GuideOptions()
-        options.prior_samples, options.light_parts = (1, 2, 3, 4), [(5, 6)]
-        self.assertEqual((options.prior_samples, options.light_parts), ([1, 2, 3, 4], [(5, 6)]))
+        options.settings, options.light_parts = "cells=3", [(5, 6)]
+        self.assertEqual((options.settings, options.light_parts), ("cells=3", [(5, 6)]))
+
+    def test_settings(self):
+        names = [setting.name for setting in odis.settings()]
+        self.assertEqual(len(set(names)), len(names))
+        for setting in odis.settings():
+            self.assertTrue(setting.help)
+            self.assertEqual(odis.read_setting("", setting.name), setting.default)
+            self.assertEqual(odis.read_setting(f"{setting.name}={setting.default}", setting.name), setting.default)
+        self.assertEqual(odis.read_setting("cells=3 preset=paper refine=2", "cells"), "0")
+        self.assertEqual(odis.read_setting("cells=3 preset=paper refine=2", "refine"), "2")
+        for text, name in (("", "cels"), ("cells=x", "refine"), ("cells", "cells")):
+            self.expect_error(odis.ErrorCode.INVALID_ARGUMENT, odis.read_setting, text, name)
 
     def test_context(self):
         self.expect_error(odis.ErrorCode.INVALID_ARGUMENT, odis.Context, threads=10**6)

@@ -107,7 +107,7 @@ class Frames(unittest.TestCase):
         self.assertEqual((mean.shape, mean.dtype, variance.shape), ((HEIGHT, WIDTH, 3), np.float32, mean.shape))
         error = np.sqrt(mean[..., 0].var() / mean[..., 0].size)
         self.assertLess(abs(mean[..., 0].mean() - EXPECTED), 2.58 * error)  # two-sided, significance 0.01
-        plain, _ = render(odis.FrameOptions(WIDTH, HEIGHT, samples_per_pixel=16, guided=False))
+        plain, _ = render(odis.FrameOptions(WIDTH, HEIGHT, samples_per_pixel=16, settings="guided=off"))
         self.assertLess(mean[..., 0].var(), 0.5 * plain.image()[0][..., 0].var())
 
     def test_counts(self):

@@ -104,13 +104,12 @@ class SameBits(unittest.TestCase):
         self.assertEqual(made_up.guide_bytes(first), self.expected)
 
     def test_models(self):
-        model = odis.Model()
-        formulas = model.with_direction_formula().with_light_formula()
-        for changed in (model, formulas):
-            builder = odis.GuideBuilder(odis.GuideOptions(model=changed, light_groups=made_up.LIGHT_GROUPS))
+        for settings in ("", "guide=histogram lights=formula"):
+            builder = odis.GuideBuilder(odis.GuideOptions(model=odis.Model(), light_groups=made_up.LIGHT_GROUPS,
+                                                          settings=settings))
             builder.add(self.fields)
             same = made_up.guide_bytes(builder.build(self.fields)) == self.expected
-            self.assertEqual(same, changed is model)
+            self.assertEqual(same, not settings)
 
     def test_pixel_values(self):
         builder = odis.GuideBuilder(odis.GuideOptions(light_groups=made_up.LIGHT_GROUPS))

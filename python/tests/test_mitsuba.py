@@ -266,14 +266,15 @@ class Errors(unittest.TestCase):
                                      ({"film": "spalt"}, "film: expected one of splat, pixels, found spalt"),
                                      ({"film": True}, "film: expected a string, found True"),
                                      ({"cached": "no"}, "cached: expected true or false, found no"),
-                                     ({"settings": "cells"}, "expected words key=value .* found cells"),
-                                     ({"settings": "cels=3"}, "no cels in Mitsuba; did you mean cells?"),
-                                     ({"settings": "refine=1 cells=1.5"}, "cells: expected a whole number from 0 "
-                                      "to 65536, found 1.5"),
-                                     ({"settings": "map-floor=2"}, "map-floor: expected a number from 0 to 1, found 2"),
-                                     ({"settings": "map-floor=nan"}, "map-floor: expected a number"),
-                                     ({"settings": "lights=all"}, "lights: expected one of network, formula, hierarchy"),
-                                     ({"settings": "prior-samples=1:2:3"}, "prior-samples: expected four numbers")):
+                                     ({"settings": "cells"}, 'found "cells", expected name=value'),
+                                     ({"settings": "cels=3"}, 'there is no setting "cels". Did you mean cells?'),
+                                     ({"settings": "refine=1 cells=1.5"}, 'cells: found "1.5", expected a whole number from 0 '
+                                      "to 65536"),
+                                     ({"settings": "map-floor=2"}, 'map-floor: found "2", expected a number from 0 to 1'),
+                                     ({"settings": "map-floor=nan"}, 'map-floor: found "nan", expected a number'),
+                                     ({"settings": "lights=all"}, 'lights: found "all", expected one of network.formula.hierarchy'),
+                                     ({"settings": "prior-samples=1:2:3"}, 'prior-samples: found "1:2:3", expected four numbers'),
+                                     ({"settings": "guide=oracle"}, "there is no oracle in Mitsuba")):
             with self.assertRaisesRegex(Exception, expected):
                 mi.load_dict({"type": "odis", **parameters})
 
@@ -325,7 +326,7 @@ class Maps(unittest.TestCase):
     def test_cached_radiance(self):
         """A path ends where it is wide enough and what the cell doesn't know matters little enough."""
         vertices = made_up.vertices(20000)
-        builder = odis.GuideBuilder(odis.GuideOptions(cached_error=0.5))
+        builder = odis.GuideBuilder(odis.GuideOptions(settings="cached=on cached-error=0.5"))
         builder.add(vertices)
         guide = builder.build(vertices)
         tables = guide_tables.make_guide_tables(guide, both_sides=False)

@@ -13,6 +13,13 @@ struct BenchmarkSettings {
   int threads = 0;
 };
 
+// What operations cost that a guided frame decides about (settings guided-cost, built-cell-cost and
+// recorded-ray-cost), in the time that a ray of an unguided path takes with all that is computed where it
+// arrives.
+struct OperationCosts {
+  float guidedRay = 0, builtCell = 0, recordedRay = 0;
+};
+
 // Seconds are of the wall clock unless they say otherwise.
 struct BenchmarkResult {
   uint64_t pixels = 0;
@@ -24,7 +31,7 @@ struct BenchmarkResult {
   double frameCost = 0;       // time of a frame of `odis` over that of `path` with as many samples
   double bytesPerVertex = 0;  // held at most while building, over the pilot's vertices
   uint64_t bytesMaps = 0;
-  render::OperationCosts costs;  // as measured
+  OperationCosts costs;  // as measured
 };
 
 // Throws nothing of its own; ends early, with what there is, if progress is cancelled.

@@ -6,6 +6,7 @@
 
 #include "odis/models/model.h"
 #include "odis/record/vertex_check.h"
+#include "odis/settings.h"
 
 namespace odis::core {
 
@@ -59,8 +60,18 @@ uint64_t bytesOf(const VertexTiles& tiles) {
   return bytes;
 }
 
-void requireFromZero(double value, const std::string& name) {
-  requireOption(value >= 0 && std::isfinite(value), (name + ": expected a finite number from 0 on").c_str());
+// The options of a frame's own guide. A pixel's noise falls with the root of its number of samples, and so does
+// how far off cached radiance may be.
+GuideOptions ownGuideOptions(const FrameOptions& options) {
+  constexpr float kErrorOfOneSample = 0.6f;
+  GuideOptions guide = options.guide;
+  if (guide.cachedError == 0)
+    guide.cachedError = kErrorOfOneSample / std::sqrt(float(options.samplesPerPixel));
+  return guide;
+}
+
+TileGrid tilesOf(const FrameOptions& o) {
+  return {o.width, o.height, o.tileOffsetX, o.tileOffsetY};
 }
 
 const FrameOptions& checkedOptions(const FrameOptions& o) {
@@ -70,11 +81,7 @@ const FrameOptions& checkedOptions(const FrameOptions& o) {
   requireOption(o.samplesPerPixel > 0, "samplesPerPixel: expected at least 1");
   requireOption(o.tileOffsetX < kTileSize && o.tileOffsetY < kTileSize,
                 "tileOffsetX, tileOffsetY: expected 0 to 15");
-  requireFromZero(o.pilotSamplesPerPixel, "pilotSamplesPerPixel");
-  requireFromZero(o.pilotWeight, "pilotWeight");
-  requireFromZero(o.guidedCost, "guidedCost");
-  requireFromZero(o.builtCellCost, "builtCellCost");
-  requireFromZero(o.recordedRayCost, "recordedRayCost");
+  requireRanges(o);
   return o;
 }
 
@@ -85,15 +92,14 @@ Frame::Data::Data(const FrameOptions& o, std::shared_ptr<const Tasks> shared,
       tasks(shared),
       builder(!o.guided ? nullptr
               : given   ? std::move(given)
-                        : std::make_shared<GuideBuilder>(o.guide ? *o.guide : GuideOptions(), shared)),
+                        : std::make_shared<GuideBuilder>(ownGuideOptions(o), shared)),
       guideOptions(builder ? builder->options() : GuideOptions()),
-      lightParts(guideOptions.lightParts, guideOptions.lightParts + guideOptions.lightPartCount),
       modelId(builder ? builder->modelId() : 0),
       pixelCount(size_t(o.width) * o.height),
       schedule(o),
       pilot(keptOfPilot(o, schedule)),
       later(keptOfLater(o, schedule)),
-      tiles(o, std::move(shared)),
+      tiles(tilesOf(o), std::move(shared)),
       next(o.guided ? ODIS_PASS_PILOT : ODIS_PASS_GUIDED) {
   if (builder && needsGuide()) paper = PaperMethod::of(options, builder, tasks);
   countKept();

@@ -34,7 +34,6 @@ namespace odis::core {
 
 class VertexSource;
 
-using FrameOptions = OdisFrameOptions;
 using FramePass = OdisFramePass;
 using SampleRange = OdisSampleRange;
 using FrameSample = OdisFrameSample;
@@ -108,7 +107,7 @@ class Frame {
   // The frame that was saved, which goes on where it was: beginPass() begins the rest of the pass that was
   // under way, and samples() answers none where they are in. `model` must be the one that the frame had.
   // Throws FileError.
-  static Frame load(const Archive& file, OdisModel model,
+  static Frame load(const Archive& file, std::optional<Model> model,
                     std::shared_ptr<const Tasks> tasks = libraryTasks());
   // Bytes of the host's that are saved with the frame.
   void setHostData(ArrayView<const uint8_t> bytes);

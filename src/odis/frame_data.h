@@ -29,6 +29,7 @@ float pilotWeight(const FrameOptions& options, const Schedule& schedule, uint32_
 PixelSamples keptOfPilot(const FrameOptions& options, const Schedule& schedule);
 PixelSamples keptOfLater(const FrameOptions& options, const Schedule& schedule);
 // Throws std::invalid_argument where an option is out of its range.
+TileGrid tilesOf(const FrameOptions& options);
 const FrameOptions& checkedOptions(const FrameOptions& options);
 
 // Sums over tiles: vertices by what can be learned from them, all vertices, memory.
@@ -97,7 +98,6 @@ struct Frame::Data {
   std::shared_ptr<const Tasks> tasks;
   std::shared_ptr<GuideBuilder> builder;  // null once the guide is final
   GuideOptions guideOptions;
-  std::vector<OdisLightParts> lightParts;
   uint64_t modelId;  // the same for models that decide the same; 0 where there is none
   size_t pixelCount;
   Schedule schedule;

@@ -44,7 +44,7 @@ void Frame::Data::settleRefinement() {
 
 // Whether the first guided samples, compared with the pilot's, were clearly not worth their time.
 bool Frame::Data::guidingDoesNotPay() {
-  if (!options.guided || options.oracleSamples > 0 || options.guidedCost == 0) return false;
+  if (!options.guided || options.oracleSamples() > 0 || options.guidedCost == 0) return false;
   if (done > 0 || end >= schedule.mostRemaining()) return false;
   const std::optional<GuidingGain> gain = guidedOverUnguided(*tasks, pilot, later, options.width);
   if (gain) measuredCostRatio = gain->ratio * options.guidedCost;

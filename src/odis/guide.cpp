@@ -22,27 +22,28 @@ namespace odis::core {
 
 namespace {
 
-void require(bool holds, const char* message) {
-  if (!holds) throw std::invalid_argument(std::string("OdisGuideOptions.") + message);
+// The options, if all are in their ranges.
+const GuideOptions& checked(const GuideOptions& options) {
+  if (options.lightGroups > kMaxLightGroups)
+    throw std::invalid_argument("OdisGuideOptions.lightGroups: expected at most " +
+                                std::to_string(kMaxLightGroups));
+  for (const auto& [first, count] : options.lightParts)
+    if (options.lightGroups > 0 && (first > options.lightGroups || count > options.lightGroups - first))
+      throw std::invalid_argument("OdisGuideOptions.lightParts: expected groups below lightGroups");
+  FrameOptions all;
+  all.guide = options;
+  requireRanges(all);
+  return options;
 }
 
-void check(const GuideOptions& options) {
-  require(options.cellsPerDiagonal >= 0, "cellsPerDiagonal: expected a number from 0");
-  for (const float samples : options.priorSamples)
-    require(samples >= 0 && std::isfinite(samples), "priorSamples: expected finite numbers from 0 on");
-  require(options.lightPartCount == 0 || options.lightParts, "lightParts: expected an array");
-  require(options.lightGroups <= kMaxLightGroups, "lightGroups: expected at most kMaxLightGroups");
-  for (size_t i = 0; i < options.lightPartCount && options.lightGroups > 0; ++i) {
-    const auto [first, count] = options.lightParts[i];
-    require(first <= options.lightGroups && count <= options.lightGroups - first,
-            "lightParts: expected groups below lightGroups");
-  }
-  require(options.floor >= 0 && options.floor <= 1, "floor: expected a number from 0 to 1");
-  require(options.clamp > 0, "clamp: expected a positive number");
-  require(options.fixedBsdfFraction >= 0 && options.fixedBsdfFraction <= 1,
-          "fixedBsdfFraction: expected a number from 0 to 1");
-  require(options.cachedError >= 0 && std::isfinite(options.cachedError),
-          "cachedError: expected a finite number from 0 on");
+// The model of some options: with formulas in place of networks where they ask for that.
+Model modelOf(const GuideOptions& options) {
+  Model model = options.model ? *options.model : Model::builtIn();
+  if (options.guide != GuideKind::network) model.directions = nullptr;
+  if (options.lights != LightChoiceKind::network) model.lights = nullptr;
+  if (options.pixelMaps == PixelMapKind::network && !options.pixelNetwork.empty())
+    model = model.withPixelNetwork(options.pixelNetwork);
+  return model;
 }
 
 }  // namespace
@@ -112,10 +113,9 @@ uint64_t VertexSamples::bytes() const {
 }
 
 GuideBuilder::GuideBuilder(const GuideOptions& options, std::shared_ptr<const Tasks> tasks) {
-  Model model = modelOf(options.model);
-  check(options);
+  Model model = modelOf(options);
   PaperMethod::check(options, model);
-  m_data = std::make_unique<Data>(options, std::move(model), std::move(tasks));
+  m_data = std::make_unique<Data>(checked(options), std::move(model), std::move(tasks));
 }
 GuideBuilder::~GuideBuilder() = default;
 GuideBuilder::GuideBuilder(GuideBuilder&&) noexcept = default;
@@ -247,7 +247,7 @@ void GuideBuilder::Data::addRouletteAndLights(Guide::Data& guide,
   guide.lightGroups = options.lightGroups;
   if (guide.lightGroups > 0)
     guide.lightTables =
-        tabulateLights(store.tasks(), guide.decisions, cells, *lights, guide.lightGroups, lightParts);
+        tabulateLights(store.tasks(), guide.decisions, cells, *lights, guide.lightGroups, options.lightParts);
 }
 
 Guide GuideBuilder::build(VertexParts parts, ArrayView<const float> pixelValues) const {

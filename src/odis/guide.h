@@ -12,12 +12,12 @@
 #include <vector>
 
 #include "odis/guide_view.h"
+#include "odis/options.h"
 #include "odis/path_vertex.h"
 #include "odis/work/tasks.h"
 
 namespace odis::core {
 
-using GuideOptions = OdisGuideOptions;
 
 class Archive;
 class ArchiveWriter;
@@ -131,7 +131,7 @@ class GuideBuilder {
   // Lets rebuild() take a guide that was built before this builder was saved.
   void adopt(Guide& guide) const;
 
-  // As they hold: without the model, and with the builder's own copies of arrays.
+  // As they hold, without the model.
   const GuideOptions& options() const;
   // That of its model (odis/models/model.h).
   uint64_t modelId() const;

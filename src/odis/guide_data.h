@@ -71,18 +71,19 @@ struct VertexSamples::Data {
 struct GuideBuilder::Data {
   Data(const GuideOptions& o, Model model, std::shared_ptr<const Tasks> tasks)
       : options(o),
-        lightParts(o.lightParts, o.lightParts + o.lightPartCount),
         progress(o.progressFunction, o.progressUser),
         modelId(idOf(model)),
         directions(std::move(model.directions)),
         lights(std::move(model.lights)),
         pixelNetwork(std::move(model.pixels)),
         store(o.clamp, directions && directions->looksAround(), std::move(tasks)) {
-    if (!directions) directions = std::make_shared<DirectionFormula>(o);
+    if (!directions) directions = std::make_shared<DirectionFormula>(o.priorSamples);
     if (!lights) lights = std::make_shared<LightFormula>();
+    if (!options.caches()) options.cachedError = 0;
+    if (options.caches() && options.cachedError == 0)
+      throw std::invalid_argument("cached-error: expected a positive number for a builder without a frame");
     if (options.cachedError > 0) store.cache(options.maxDepth);
-    options.model = nullptr;
-    options.lightParts = lightParts.data();
+    options.model.reset();
   }
 
   VertexRules rules(bool unguided) const { return {options.lightGroups, unguided}; }
@@ -92,7 +93,6 @@ struct GuideBuilder::Data {
   void addRouletteAndLights(Guide::Data& guide, const std::vector<CellStatistics>& cells) const;
 
   GuideOptions options;
-  std::vector<LightParts> lightParts;
   Progress progress;
   uint64_t modelId;
   std::shared_ptr<const DirectionModel> directions;

@@ -37,21 +37,11 @@ uint32_t cellAt(const GuideView& view, const PixelMaps::Place& place) {
   return findCell(view, {place.position, place.normal});
 }
 
-void requireOfPaper(bool holds, const char* message) {
-  if (!holds) throw std::invalid_argument(std::string("OdisGuideOptions.") + message);
-}
-
 }  // namespace
 
 void PaperMethod::check(const GuideOptions& options, const Model& model) {
-  requireOfPaper(options.pixelMaps >= ODIS_PIXEL_MAPS_NONE && options.pixelMaps <= ODIS_PIXEL_MAPS_ORACLE,
-                 "pixelMaps: expected an OdisPixelMaps");
-  requireOfPaper(options.pixelTile >= 1 && options.pixelTile <= 16,
-                 "pixelTile: expected a number from 1 to 16");
-  requireOfPaper(options.pixelShare >= 0 && options.pixelShare <= 1,
-                 "pixelShare: expected a number from 0 to 1");
-  requireOfPaper(options.pixelMaps != ODIS_PIXEL_MAPS_NETWORK || model.pixels,
-                 "model: expected one with a network for maps at pixels");
+  if (options.pixelMaps == PixelMapKind::network && !model.pixels)
+    throw std::invalid_argument("OdisGuideOptions.model: expected one with a network for maps at pixels");
 }
 
 std::unique_ptr<PaperMethod> PaperMethod::of(const FrameOptions& options,
@@ -64,20 +54,22 @@ std::unique_ptr<PaperMethod> PaperMethod::of(const FrameOptions& options,
 PaperMethod::PaperMethod(const FrameOptions& options, std::shared_ptr<const GuideBuilder> builder,
                          std::shared_ptr<const Tasks> tasks)
     : m_pixels(size_t(options.width) * options.height),
-      m_passes(options.oracleSamples),
+      m_passes(options.oracleSamples()),
       m_guide(builder->options()),
       m_builder(std::move(builder)),
       m_tasks(std::move(tasks)) {
   const auto width = int(options.width), height = int(options.height);
   switch (m_guide.pixelMaps) {
-    case ODIS_PIXEL_MAPS_HISTOGRAM:
+    case PixelMapKind::histogram:
       m_model = pixelHistogram(radianceOf(m_guide));
       break;
-    case ODIS_PIXEL_MAPS_NETWORK:
+    case PixelMapKind::network:
       m_model = m_builder->m_data->pixelNetwork;
       break;
-    case ODIS_PIXEL_MAPS_ORACLE:
+    case PixelMapKind::oracle:
       m_oracle = std::make_unique<PixelOracle>(width, height, radianceOf(m_guide));
+      break;
+    case PixelMapKind::none:
       break;
   }
   if (m_model) m_pilot = std::make_unique<FirstVertices>(width, height);

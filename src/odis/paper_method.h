@@ -18,11 +18,11 @@ class PaperMethod {
   static std::unique_ptr<PaperMethod> of(const FrameOptions& options,
                                          std::shared_ptr<const GuideBuilder> builder,
                                          std::shared_ptr<const Tasks> tasks);
-  // Throws std::invalid_argument where an option is out of its range, or asks for a network that is missing.
+  // Throws std::invalid_argument where options ask for a network that is missing.
   static void check(const GuideOptions& options, const Model& model);
 
   // Whether maps are made of the pilot or of the oracle: of all pixels.
-  bool hasMaps() const { return m_guide.pixelMaps != ODIS_PIXEL_MAPS_NONE; }
+  bool hasMaps() const { return m_guide.pixelMaps != PixelMapKind::none; }
   // Passes of the oracle follow the pilot, each of one sample in every pixel that is no part of the image.
   // Guides are made of these instead of the pilot's.
   bool hasOracle() const { return m_passes > 0; }

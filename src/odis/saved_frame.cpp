@@ -10,18 +10,11 @@
 
 #include "odis/guide_data.h"
 #include "odis/saved_vertices.h"
+#include "odis/settings.h"
 
 namespace odis::core {
 
 namespace {
-
-// A struct some of whose fields are truth values, which a damaged file may hold anything for.
-template <class T>
-T readChecked(const Archive& file, const std::string& name, std::initializer_list<size_t> truthValues) {
-  const auto bytes = file.value<std::array<unsigned char, sizeof(T)>>(name);
-  for (const size_t offset : truthValues) file.require(bytes[offset] <= 1, name + ": is damaged");
-  return file.value<T>(name);
-}
 
 // Arrays of each tile one after another, and their sizes.
 void saveTiles(ArchiveWriter& file, const std::string& name, const VertexTiles& tiles) {
@@ -154,19 +147,49 @@ struct SavedVertexSamples {
   }
 };
 
+namespace {
+
+// What is not set by name, and a text of all that is.
+void saveOptions(ArchiveWriter& file, const FrameOptions& options) {
+  file.addValue("frame.width", options.width);
+  file.addValue("frame.height", options.height);
+  file.addValue("frame.samplesPerPixel", options.samplesPerPixel);
+  file.addValue("frame.seed", options.seed);
+  file.addValue("frame.keepPixelMeans", uint8_t(options.keepPixelMeans));
+  file.addValue("frame.tileOffsetX", options.tileOffsetX);
+  file.addValue("frame.tileOffsetY", options.tileOffsetY);
+  file.addValue("frame.lightGroups", options.guide.lightGroups);
+  file.add("frame.lightParts", options.guide.lightParts);
+  file.addText("frame.settings", settingsText(options));
+}
+
+}  // namespace
+
+FrameOptions loadOptions(const Archive& file) {
+  FrameOptions options;
+  options.width = file.value<uint32_t>("frame.width");
+  options.height = file.value<uint32_t>("frame.height");
+  options.samplesPerPixel = file.value<uint32_t>("frame.samplesPerPixel");
+  options.seed = file.value<uint64_t>("frame.seed");
+  options.keepPixelMeans = file.value<uint8_t>("frame.keepPixelMeans") != 0;
+  options.tileOffsetX = file.value<uint32_t>("frame.tileOffsetX");
+  options.tileOffsetY = file.value<uint32_t>("frame.tileOffsetY");
+  options.guide.lightGroups = file.value<uint32_t>("frame.lightGroups");
+  options.guide.lightParts = file.get<OdisLightParts>("frame.lightParts");
+  try {
+    applySettings(options, file.text("frame.settings"));
+    checkedOptions(options);
+  } catch (const std::invalid_argument& error) {
+    file.require(false, std::string("frame.settings: ") + error.what());
+  }
+  return options;
+}
+
 void Frame::save(ArchiveWriter& file) const {
   const Data& d = *m_data;
   FrameOptions options = d.options;
-  GuideOptions guide = d.guideOptions;
-  options.guide = nullptr;
-  options.builder = nullptr;
-  guide.model = nullptr;
-  guide.lightParts = nullptr;
-  guide.progressFunction = nullptr;
-  guide.progressUser = nullptr;
-  file.addValue("frame.options", options);
-  file.addValue("frame.guideOptions", guide);
-  file.add("frame.lightParts", d.lightParts);
+  options.guide = d.guideOptions;
+  saveOptions(file, options);
   file.addValue("frame.model", d.modelId);
   file.add("frame.hostData", d.hostData);
   file.addValue("frame.position",
@@ -197,31 +220,6 @@ void Frame::save(ArchiveWriter& file) const {
   if (d.paper) d.paper->save(file);
 }
 
-SavedOptions::SavedOptions(const Archive& file)
-    : frame(readChecked<FrameOptions>(
-          file, "frame.options",
-          {offsetof(FrameOptions, guided), offsetof(FrameOptions, adaptive),
-           offsetof(FrameOptions, keepPilotVertices), offsetof(FrameOptions, keepPixelMeans)})),
-      guide(readChecked<GuideOptions>(
-          file, "frame.guideOptions",
-          {offsetof(GuideOptions, controlVariate), offsetof(GuideOptions, pixelDirectLight),
-           offsetof(GuideOptions, cosineProduct)})),
-      lightParts(file.get<OdisLightParts>("frame.lightParts")) {
-  // Pointers of a file mean nothing.
-  frame.guide = &guide;
-  frame.builder = nullptr;
-  guide.model = nullptr;
-  guide.progressFunction = nullptr;
-  guide.progressUser = nullptr;
-  guide.lightParts = lightParts.data();
-  guide.lightPartCount = lightParts.size();
-  try {
-    checkedOptions(frame);
-  } catch (const std::invalid_argument& error) {
-    file.require(false, error.what());
-  }
-}
-
 namespace {
 
 // The number of pixels. A damaged size must not cost much more memory than the file has: where there may be
@@ -230,7 +228,7 @@ size_t readSize(const Archive& file, const FrameOptions& options) {
   const uint64_t pixels = uint64_t(options.width) * options.height;
   const bool isSound = options.keepPixelMeans
                            ? pixels == file.count<PixelSums>("frame.pilot")
-                           : TileGrid(options).tileCount() == file.count<uint8_t>("frame.tiles");
+                           : tilesOf(options).tileCount() == file.count<uint8_t>("frame.tiles");
   file.require(isSound, "frame.options: are damaged");
   return pixels;
 }
@@ -238,12 +236,12 @@ size_t readSize(const Archive& file, const FrameOptions& options) {
 }  // namespace
 
 SavedFrame::SavedFrame(const Archive& file)
-    : options(file),
-      pixelCount(readSize(file, options.frame)),
+    : options(loadOptions(file)),
+      pixelCount(readSize(file, options)),
       modelId(file.value<uint64_t>("frame.model")),
       hostData(file.get<uint8_t>("frame.hostData")),
       pixelValues(file.get<float>("frame.pixelValues")),
-      schedule(options.frame),
+      schedule(options),
       vertexCounts(file.value<VertexCounts>("frame.vertexCounts")),
       pilotVertices(loadTiles(file, "frame.pilotVertices", pixelCount)),
       unguided(SavedVertexSamples::load(file, "frame.unguided", pixelCount)),
@@ -264,7 +262,7 @@ void SavedFrame::readPosition(const Archive& file) {
   // Who learns needs a builder.
   const bool learns = position.next != ODIS_PASS_GUIDED || position.done < schedule.lastRefinement();
   file.require(position.next <= ODIS_PASS_GUIDED && position.done <= schedule.mostRemaining() &&
-                   (position.builder ? options.frame.guided : !learns),
+                   (position.builder ? options.guided : !learns),
                "frame.position: is damaged");
   file.require(
       position.passEnd == schedule.passEnd(position.done) && position.spreadAfter == schedule.spreadAfter() &&
@@ -277,10 +275,10 @@ void SavedFrame::readPosition(const Archive& file) {
 
 // What is kept of pixels' samples; nothing where means are the host's and all is decided.
 void SavedFrame::readPixels(const Archive& file) {
-  const bool hasMeans = options.frame.keepPixelMeans;
+  const bool hasMeans = options.keepPixelMeans;
   if (hasMeans || position.next != ODIS_PASS_GUIDED || position.done == 0) {
-    pilot = keptOfPilot(options.frame, schedule);
-    later = keptOfLater(options.frame, schedule);
+    pilot = keptOfPilot(options, schedule);
+    later = keptOfLater(options, schedule);
   }
   const auto read = [&](PixelSamples& samples, const std::string& name) {
     std::vector<KeptSample> kept;
@@ -293,7 +291,7 @@ void SavedFrame::readPixels(const Archive& file) {
 
 // What the pass under way has already.
 void SavedFrame::readPass(const Archive& file) {
-  const size_t tiles = TileCollector(options.frame).tileCount();
+  const size_t tiles = tilesOf(options).tileCount();
   pass = std::make_unique<ResumedPass>();
   pass->tilesDone = file.get<uint8_t>("pass.tilesDone", tiles);
   pass->samples = SavedVertexSamples::load(file, "pass", pixelCount);
@@ -320,13 +318,13 @@ void Frame::Data::moveTo(const FramePosition& at) {
   finished = at.finished != 0;
 }
 
-Frame Frame::load(const Archive& file, OdisModel model, std::shared_ptr<const Tasks> tasks) {
+Frame Frame::load(const Archive& file, std::optional<Model> model, std::shared_ptr<const Tasks> tasks) {
   file.requireKind("frame");
   SavedFrame saved(file);
-  saved.options.guide.model = model;
+  saved.options.guide.model = std::move(model);
   std::unique_ptr<Frame> frame;
   try {
-    frame = std::make_unique<Frame>(saved.options.frame, std::move(tasks));
+    frame = std::make_unique<Frame>(saved.options, std::move(tasks));
   } catch (const std::invalid_argument& error) {
     file.require(false, error.what());
   }

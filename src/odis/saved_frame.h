@@ -19,21 +19,14 @@ struct FramePosition {
   uint32_t next, done, finished, builder, guidingGivenUp;
 };
 
-// The options of a saved frame, and what they point to.
-struct SavedOptions {
-  explicit SavedOptions(const Archive& file);
-  SavedOptions(const SavedOptions&) = delete;
-
-  FrameOptions frame;
-  GuideOptions guide;  // without a model
-  std::vector<OdisLightParts> lightParts;
-};
+// The options of a saved frame; those of its guide without a model. Throws FileError.
+FrameOptions loadOptions(const Archive& file);
 
 // All of a frame but what its builder has gathered. Throws FileError.
 struct SavedFrame {
   explicit SavedFrame(const Archive& file);
 
-  SavedOptions options;
+  FrameOptions options;
   size_t pixelCount;
   uint64_t modelId;
   std::vector<uint8_t> hostData;

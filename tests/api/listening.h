@@ -34,7 +34,7 @@ inline ContextOptions heardBy(Heard& heard) {
     to.held += change;
     to.most = std::max(to.most.load(), to.held.load());
   };
-  options.logUser = options.errorUser = options.memoryUser = &heard;
+  options.user = &heard;
   return options;
 }
 

@@ -45,7 +45,7 @@ TEST(CarryOver, WhatHasFadedAwayIsAsIfItHadNeverBeen) {
 // maps draw towards it.
 TEST(CarryOver, OldSamplesCountLess) {
   GuideOptions options;
-  options.model = options.model.withDirectionFormula();
+  options.set("guide=histogram");
   const PathVertex& first = apiVertices()[0];
   const Float3 oldSide{0.6f, 0, 0.8f}, newSide{-0.6f, 0, 0.8f};
   const auto lit = [&](const Float3& wi) {
@@ -177,7 +177,7 @@ std::vector<float> thirdFrame(uint64_t seed, bool carried) {
 TEST(CarryOver, FramesThatKnowEarlierOnesAreUnbiasedAndHaveLessNoise) {
   constexpr size_t kSeeds = 96;
   FrameOptions plain = toyOptions(32, 32, 64);
-  plain.guided = false;
+  plain.set("guided=off");
   const Estimate reference = estimate(plain, {}, 48, 9000);
   std::vector<std::vector<float>> with(kSeeds), without(kSeeds);
   core::libraryTasks()->forEach(kSeeds, [&](size_t i) {

@@ -40,7 +40,7 @@ TEST(ApiContext, TasksOfTheHostGiveTheSameGuide) {
   std::atomic<int> calls{0};
   ContextOptions backwards, threads, one, several;
   backwards.taskFunction = runBackwards;
-  backwards.taskUser = &calls;
+  backwards.user = &calls;
   threads.taskFunction = runByThreads;
   one.threads = 1;
   several.threads = 3;
@@ -114,13 +114,12 @@ TEST(ApiContext, MemoryThatEndsIsAnError) {
   std::atomic<int> calls{0};
   ContextOptions serial;
   serial.taskFunction = runBackwards;
-  serial.taskUser = &calls;
+  serial.user = &calls;
   const Context context(serial);
   FrameOptions options;
   options.width = options.height = 16;
   const OdisGuideOptions guide = options.guide.flat();
-  OdisFrameOptions flat = options;
-  flat.guide = &guide;
+  const OdisFrameOptions flat = options.flat(guide);
   const OdisPathVertex* vertices = apiVertices().data();  // made before memory ends
   int failures = 0;
   for (int n = 0;; n += 1 + n / 40) {
@@ -200,7 +199,7 @@ TEST(ApiContext, AMemoryLimitHoldsForFrames) {
     const Context context(options);
     FrameOptions frameOptions;
     frameOptions.width = frameOptions.height = 64;
-    frameOptions.guidedCost = 0;  // refined in any case
+    frameOptions.set("guided-cost=0");  // refined in any case
     Frame frame(frameOptions, context);
     EXPECT_TRUE(runFrame(frame.get(), 64 * 64));
     EXPECT_LE(uint64_t(heard.most), limit);

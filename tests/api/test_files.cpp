@@ -36,8 +36,8 @@ TEST(ApiFiles, AGuideIsReadAsItWasWritten) {
   const std::string path = folder.path("a.guide");
   GuideOptions options;
   options.lightGroups = 2;
-  options.cachedError = 0.5f;
-  options.cellsPerDiagonal = 2;  // so that each cell has vertices enough to be trusted
+  options.set("cached=on cached-error=0.5");
+  options.set("cells=2");  // so that each cell has vertices enough to be trusted
   GuideBuilder builder(options);
   std::vector<OdisPathVertex> vertices = apiVertices();
   for (size_t i = 0; i < vertices.size(); ++i) {
@@ -99,7 +99,7 @@ TEST(ApiFiles, ASavedFrameGoesOnWithTheSameBits) {
   for (const bool network : {true, false}) {
     FrameOptions options = toyOptions(40, 24, 8);
     options.seed = 5;
-    options.keepPilotVertices = true;
+    options.set("pilot-vertices=kept");
     if (!network) options.guide.model = makeModel(nullptr, nullptr);
     const uint32_t pixels = options.width * options.height;
     Frame expected(options);
@@ -136,7 +136,7 @@ TEST(ApiFiles, AFrameWithoutAGuideIsSavedToo) {
   const TemporaryFolder folder;
   const std::string path = folder.path("a.frame");
   FrameOptions options = toyOptions(20, 20, 8);
-  options.guided = false;
+  options.set("guided=off");
   Frame expected(options), frame(options);
   const ToyRoom room;
   runFrame(expected, options, room);

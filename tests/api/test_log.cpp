@@ -37,7 +37,7 @@ TEST(ApiLog, TellsWhyGuidingIsGivenUp) {
   ContextOptions context = heardBy(heard);
   context.logLevel = ODIS_LOG_INFO;
   FrameOptions options = toyOptions(64, 64, 6);
-  options.guidedCost = 50;
+  options.set("guided-cost=50");
   Frame frame(options, Context(context));
   runFrame(frame, options, {});
   const FrameStatistics statistics = frame.statistics();

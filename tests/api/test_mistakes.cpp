@@ -16,9 +16,9 @@ struct MistakenHost {
     contextOptions.logLevel = level;
     options.width = options.height = kSide;
     options.samplesPerPixel = 3;
-    options.pilotSamplesPerPixel = 1;
-    options.adaptive = false;
-    options.guidedCost = 0;
+    options.set("pilot-spp=1");
+    options.set("samples=even");
+    options.set("guided-cost=0");
     options.guide.lightGroups = 2;
   }
   Frame makeFrame() { return Frame(options, Context(contextOptions)); }
@@ -210,7 +210,7 @@ TEST(ApiMistakes, AnInterruptedPassMayLackSamples) {
 
 TEST(ApiMistakes, ASampleThatComesTwiceIsRefusedWithItsCall) {
   MistakenHost host;
-  host.options.pilotSamplesPerPixel = 2;
+  host.options.set("pilot-spp=2");
   Frame frame = host.makeFrame();
   frame.beginPass();
   const std::vector<FrameSample> samples = samplesOf(frame);

@@ -1,7 +1,10 @@
 // Every function with NULL, in the wrong order, with numbers that can't be: an error, no crash.
 #include <cstdlib>
+#include <fstream>
 #include <limits>
 #include <new>
+#include <regex>
+#include <sstream>
 
 #include "api/api_scene.h"
 
@@ -36,7 +39,6 @@ TEST(ApiMisuse, NullIsAnError) {
   REFUSED(odisNewModel(nullptr));
   REFUSED(odisNewModelFromFile(nullptr, "x"));
   REFUSED(odisNewModelFromMemory(nullptr, "x", 1));
-  REFUSED(odisNewModelWithFormulas(nullptr, true, true));
   REFUSED(odisNewRecorder(nullptr));
   REFUSED(odisBeginPath(nullptr, nullptr) != UINT32_MAX);
   REFUSED(odisRecordSurface(nullptr, 0, &surface));
@@ -136,6 +138,88 @@ TEST(ApiMisuse, NullArgumentsOfObjectsAreErrors) {
   EXPECT_EQ(takeError(), ODIS_ERROR_NONE);
 }
 
+TEST(ApiMisuse, WhatStandsForNothingIsHarmless) {
+  odisRetainContext(nullptr);
+  odisRetainModel(nullptr);
+  odisRetainRecorder(nullptr);
+  odisRetainFrame(nullptr);
+  odisRetainGuideBuilder(nullptr);
+  odisRetainGuide(nullptr);
+  EXPECT_EQ(odisGetMemoryUse(nullptr), 0u);
+  EXPECT_EQ(odisGetError(nullptr), ODIS_ERROR_NONE);
+  EXPECT_STREQ(odisGetErrorName(OdisError(99)), "unknown error");
+  EXPECT_EQ(odisGetVersion(), uint32_t(ODIS_VERSION));
+  EXPECT_NE(std::string(odisGetVersionText()).find('.'), std::string::npos);
+  EXPECT_EQ(odisGetMixturePdf(0.5f, 0.5f, 1, 1, 7), 0.5f) << "no draw follows the map";
+}
+
+TEST(ApiMisuse, StructsOfAnotherSizeAreRefused) {
+  ContextOptions context;
+  OdisFrameOptions frame;
+  OdisGuideOptions guide;
+  OdisSurfaceEvent surface;
+  OdisEmissionEvent emission;
+  OdisLightEvent light;
+  OdisBounceEvent bounce;
+  OdisPathVertex vertex;
+  OdisPathVertices vertices;
+  for (const size_t size : {size_t(0), size_t(3), size_t(4096)}) {
+    odisInitContextOptions(&context, size);
+    REFUSED(false);
+    odisInitFrameOptions(&frame, size);
+    REFUSED(false);
+    odisInitGuideOptions(&guide, size);
+    REFUSED(false);
+    odisInitSurfaceEvent(&surface, size);
+    REFUSED(false);
+    odisInitEmissionEvent(&emission, size);
+    REFUSED(false);
+    odisInitLightEvent(&light, size);
+    REFUSED(false);
+    odisInitBounceEvent(&bounce, size);
+    REFUSED(false);
+    odisInitPathVertex(&vertex, size);
+    REFUSED(false);
+    odisInitPathVertices(&vertices, size);
+    REFUSED(false);
+    context.size = size;
+    REFUSED(odisNewContext(&context));
+  }
+}
+
+TEST(ApiMisuse, SettingsThatThereAreNotAreRefused) {
+  OdisSetting setting;
+  REFUSED(odisGetSetting(0, nullptr));
+  REFUSED(odisGetSetting(odisGetSettingCount(), &setting));
+  REFUSED(odisReadSetting("", nullptr));
+  REFUSED(odisReadSetting(nullptr, "cels"));
+  REFUSED(odisReadSetting("cells=-1", "refine"));
+  REFUSED(odisReadSetting("cells", "cells"));
+  EXPECT_STREQ(odisReadSetting(nullptr, "cells"), "32");
+  setting.size = 3;
+  REFUSED(odisGetSetting(0, &setting));
+}
+
+// All of the interface is tried in this file.
+TEST(ApiMisuse, IsTriedOfEveryFunction) {
+  const auto textOf = [](const std::string& path) {
+    std::ifstream file(path);
+    std::ostringstream text;
+    text << file.rdbuf();
+    return text.str();
+  };
+  const std::string tests = textOf(ODIS_SOURCE "/tests/api/test_misuse.cpp"),
+                    interface = textOf(ODIS_SOURCE "/src/odis/api/abi.txt");
+  const std::regex functionLine("function [^(]*?(odis\\w+)\\(");
+  int functions = 0;
+  for (std::sregex_iterator i(interface.begin(), interface.end(), functionLine), end; i != end; ++i) {
+    const std::string name = (*i)[1];
+    EXPECT_NE(tests.find(name + "("), std::string::npos) << name;
+    ++functions;
+  }
+  EXPECT_GT(functions, 80);
+}
+
 TEST(ApiMisuse, LookUpsWithoutAGuideAnswerThatThereIsNone) {
   const OdisPlace place;
   const OdisFloat3 up{0, 0, 1};
@@ -212,14 +296,14 @@ TEST(ApiMisuse, NumbersThatCannotBeAreRefused) {
   refuses([](Options& o, Guides&) { o.width = 0; });
   refuses([](Options& o, Guides&) { o.width = o.height = UINT32_MAX; });
   refuses([](Options& o, Guides&) { o.size = 0; });
-  refuses([](Options& o, Guides&) { o.pilotWeight = NAN; });
-  refuses([](Options& o, Guides&) { o.pilotSamplesPerPixel = INFINITY; });
-  refuses([](Options& o, Guides&) { o.builtCellCost = -1; });
-  refuses([](Options& o, Guides&) { o.recordedRayCost = INFINITY; });
+  refuses([](Options& o, Guides&) { o.settings = "pilot-weight=nan"; });
+  refuses([](Options& o, Guides&) { o.settings = "pilot-spp=inf"; });
+  refuses([](Options& o, Guides&) { o.settings = "built-cell-cost=-1"; });
+  refuses([](Options& o, Guides&) { o.settings = "recorded-ray-cost=1e999"; });
   refuses([](Options&, Guides& g) { g.size = 1; });
-  refuses([](Options&, Guides& g) { g.clamp = 0; });
-  refuses([](Options&, Guides& g) { g.cellsPerDiagonal = -3; });
-  refuses([](Options&, Guides& g) { g.priorSamples[2] = NAN; });
+  refuses([](Options&, Guides& g) { g.settings = "map-clamp=0"; });
+  refuses([](Options&, Guides& g) { g.settings = "cells=-3"; });
+  refuses([](Options&, Guides& g) { g.settings = "prior-samples=1:1:nan:1"; });
   refuses([](Options&, Guides& g) { g.lightPartCount = 2; });
   refuses([](Options&, Guides& g) {
     static const OdisLightParts beyond{1, 2};

@@ -48,8 +48,8 @@ TEST(Arguments, MethodOfAComparison) {
   const RenderOptions options =
       parseMethod("--integrator odis --set guide-bounces=3 --set pilot-spp=0.25 --sampler independent");
   EXPECT_EQ(options.integrator, IntegratorKind::odis);
-  EXPECT_EQ(options.guideBounces, 3);
-  EXPECT_EQ(options.pilotSpp, 0.25);
+  EXPECT_EQ(options.setting("guide-bounces"), "3");
+  EXPECT_EQ(options.setting("pilot-spp"), "0.25");
   EXPECT_EQ(options.sampler, SamplerKind::independent);
   EXPECT_EQ(parseMethod("--integrator path").integrator, IntegratorKind::path);
   EXPECT_THROW(parseMethod("--integrator bdpt"), UsageError);

@@ -33,55 +33,34 @@ std::string complaintAbout(const std::string& text) {
 TEST(Settings, LaterOnesWin) {
   RenderOptions options;
   applySettings(options, {"guide-bounces=2", "cells=64", "guide-bounces=5"});
-  EXPECT_EQ(options.guideBounces, 5);
-  EXPECT_EQ(options.guideOptions.cellsPerDiagonal, 64);
+  EXPECT_EQ(options.setting("guide-bounces"), "5");
+  EXPECT_EQ(options.setting("cells"), "64");
 }
 
 TEST(Settings, ReachTheOptions) {
   RenderOptions o;
-  applySettings(o, {"samples=even",        "guide=oracle",
-                    "oracle-spp=8",        "lights=formula",
-                    "roulette=throughput", "ended-paths=nothing",
-                    "cached-error=0.2",    "shadow-rays=all",
-                    "pilot-spp=0.25",      "refine=0",
-                    "pilot-weight=0.5",    "guided-cost=1.5",
-                    "built-cell-cost=90",  "recorded-ray-cost=0.25",
-                    "bsdf-fraction=0.3",   "prior-samples=1:2:3.5:0",
-                    "map-floor=0.1",       "ppg-threshold=500",
-                    "ppg-flux=0.5",        "ppg-directional=nearest",
-                    "ppg-combine=last",    "restir-neighbours=7",
-                    "pixel-maps=oracle",   "pixel-network=fast",
-                    "pixel-tile=3",        "pixel-share=0.5",
-                    "map-cosine=off",      "pixel-light=without-direct"});
-  EXPECT_EQ(o.samples, odis::render::SampleSpread::even);
-  EXPECT_EQ(o.guide, odis::render::GuideKind::oracle);
-  EXPECT_EQ(o.oracleSpp, 8);
-  EXPECT_EQ(o.lights, odis::render::LightChoiceKind::formula);
-  EXPECT_EQ(o.roulette, odis::render::RouletteKind::throughput);
-  EXPECT_FALSE(o.guideOptions.controlVariate);
-  EXPECT_EQ(o.guideOptions.cachedError, 0.2f);
-  EXPECT_EQ(o.shadowRays, odis::render::ShadowRayKind::all);
-  EXPECT_EQ(o.pilotSpp, 0.25);
-  EXPECT_EQ(o.refineSpp, 0);
-  EXPECT_EQ(o.pilotWeight, 0.5);
-  EXPECT_EQ(o.costs.guidedRay, 1.5f);
-  EXPECT_EQ(o.costs.builtCell, 90);
-  EXPECT_EQ(o.costs.recordedRay, 0.25f);
-  EXPECT_EQ(o.guideOptions.fixedBsdfFraction, 0.3f);
-  const float expected[] = {1, 2, 3.5f, 0};
-  EXPECT_TRUE(std::equal(expected, expected + 4, o.guideOptions.priorSamples));
-  EXPECT_EQ(o.guideOptions.floor, 0.1f);
-  EXPECT_EQ(o.guideOptions.pixelMaps, ODIS_PIXEL_MAPS_ORACLE);
-  EXPECT_EQ(o.pixelNetwork, "fast");
-  EXPECT_EQ(o.guideOptions.pixelTile, 3u);
-  EXPECT_EQ(o.guideOptions.pixelShare, 0.5f);
-  EXPECT_FALSE(o.guideOptions.cosineProduct);
-  EXPECT_FALSE(o.guideOptions.pixelDirectLight);
+  const std::vector<std::string> ofLibrary = {"samples=even", "guide=oracle", "prior-samples=1:2:3.5:0"};
+  std::vector<std::string> all = ofLibrary;
+  for (const char* text : {"ppg-threshold=500", "ppg-flux=0.5", "ppg-directional=nearest", "ppg-combine=last",
+                           "restir-neighbours=7"})
+    all.push_back(text);
+  applySettings(o, all);
+  for (const std::string& text : ofLibrary) {
+    const size_t equals = text.find('=');
+    EXPECT_EQ(o.setting(text.substr(0, equals)), text.substr(equals + 1));
+  }
+  EXPECT_EQ(o.setting("cells"), "32");
   EXPECT_EQ(o.ppg.threshold, 500);
   EXPECT_EQ(o.ppg.flux, 0.5f);
   EXPECT_EQ(o.ppg.directional, odis::render::QuadtreeFilter::nearest);
   EXPECT_EQ(o.ppg.combine, odis::render::PpgOptions::Combine::last);
   EXPECT_EQ(o.restir.neighbours, 7);
+}
+
+TEST(Settings, ThatAreOptionsAreRefused) {
+  EXPECT_EQ(complaintAbout("cached=on"), "--set cached: expected --cached");
+  EXPECT_EQ(complaintAbout("max-depth=4"), "--set max-depth: expected --max-depth");
+  EXPECT_EQ(complaintAbout("preset=paper"), "--set preset: expected --preset");
 }
 
 TEST(Settings, AnUnknownKeyIsAnsweredWithANearOne) {
@@ -137,6 +116,7 @@ TEST(Settings, AWordThatIsNoChoiceIsRefused) {
 // A default that the program tells must be the one that it has: to set it changes nothing.
 TEST(Settings, DefaultsAreValues) {
   for (const Setting& setting : allSettings()) {
+    if (!setting.option.empty()) continue;
     const std::string value = setting.defaultValue.substr(0, setting.defaultValue.find(';'));
     EXPECT_EQ(complaintAbout(setting.key + "=" + value), "");
   }
@@ -146,30 +126,8 @@ TEST(Settings, DefaultsAreThoseOfTheOptions) {
   const RenderOptions expected;
   RenderOptions o;
   for (const Setting& setting : allSettings())
-    setting.set(o, setting.defaultValue.substr(0, setting.defaultValue.find(';')));
-  EXPECT_EQ(o.samples, expected.samples);
-  EXPECT_EQ(o.guideBounces, expected.guideBounces);
-  EXPECT_EQ(o.guide, expected.guide);
-  EXPECT_EQ(o.oracleSpp, expected.oracleSpp);
-  EXPECT_EQ(o.lights, expected.lights);
-  EXPECT_EQ(o.roulette, expected.roulette);
-  EXPECT_EQ(o.guideOptions.controlVariate, expected.guideOptions.controlVariate);
-  EXPECT_EQ(o.guideOptions.cachedError, expected.guideOptions.cachedError);
-  EXPECT_EQ(o.shadowRays, expected.shadowRays);
-  EXPECT_EQ(o.pilotSpp, expected.pilotSpp);
-  EXPECT_EQ(o.refineSpp, expected.refineSpp);
-  EXPECT_EQ(o.pilotWeight, expected.pilotWeight);
-  EXPECT_EQ(o.guideOptions.fixedBsdfFraction, expected.guideOptions.fixedBsdfFraction);
-  EXPECT_EQ(o.guideOptions.cellsPerDiagonal, expected.guideOptions.cellsPerDiagonal);
-  for (int level = 0; level < odis::kCellLevels; ++level)
-    EXPECT_EQ(o.guideOptions.priorSamples[level], expected.guideOptions.priorSamples[level]);
-  EXPECT_EQ(o.guideOptions.floor, expected.guideOptions.floor);
-  EXPECT_EQ(o.guideOptions.pixelMaps, expected.guideOptions.pixelMaps);
-  EXPECT_EQ(o.pixelNetwork, expected.pixelNetwork);
-  EXPECT_EQ(o.guideOptions.pixelTile, expected.guideOptions.pixelTile);
-  EXPECT_EQ(o.guideOptions.pixelShare, expected.guideOptions.pixelShare);
-  EXPECT_EQ(o.guideOptions.cosineProduct, expected.guideOptions.cosineProduct);
-  EXPECT_EQ(o.guideOptions.pixelDirectLight, expected.guideOptions.pixelDirectLight);
+    if (setting.option.empty())
+      setting.set(o, setting.defaultValue.substr(0, setting.defaultValue.find(';')));
   EXPECT_EQ(o.ppg.threshold, expected.ppg.threshold);
   EXPECT_EQ(o.ppg.flux, expected.ppg.flux);
   EXPECT_EQ(o.ppg.spatial, expected.ppg.spatial);
@@ -216,12 +174,36 @@ TEST(Settings, ThePageHasTheProgramsTable) {
   EXPECT_LE(lines, 200u);
 }
 
+// Words name=value of the page's text on presets.
+TEST(Settings, ThePageHasThePresets) {
+  std::ifstream file(ODIS_SOURCE "/docs/settings.md");
+  std::ostringstream page;
+  page << file.rdbuf();
+  std::string text = page.str();
+  const size_t begin = text.find("- `preset`:"), end = text.find("- `pixel-maps` and", begin);
+  ASSERT_NE(end, std::string::npos);
+  text = text.substr(begin, end - begin);
+  std::string paper, fast, *preset = &paper;
+  std::replace(text.begin(), text.end(), '`', ' ');
+  std::istringstream words(text);
+  for (std::string word; words >> word;) {
+    if (word == "paper-fast") preset = &fast;
+    if (word.find('=') != std::string::npos) *preset += " " + word;
+  }
+  for (const odis::Setting& setting : odis::settings()) {
+    if (setting.name == std::string("preset")) continue;
+    EXPECT_EQ(odis::readSetting("preset=paper", setting.name), odis::readSetting(paper, setting.name));
+    EXPECT_EQ(odis::readSetting("preset=paper-fast", setting.name),
+              odis::readSetting(paper + fast, setting.name));
+  }
+}
+
 TEST(Settings, HelpHasTheProgramsTable) {
   const std::string text = odis::app::settingsText();
   for (const Setting& setting : allSettings())
-    EXPECT_NE(text.find("\n  " + setting.key + " = " + setting.values +
-                        "\n      default: " + setting.defaultValue + "\n      " + setting.meaning + "\n"),
-              std::string::npos)
+    EXPECT_EQ(text.find("\n  " + setting.key + " = " + setting.values + "\n      default: " +
+                        setting.defaultValue + "\n      " + setting.meaning + "\n") != std::string::npos,
+              setting.option.empty())
         << setting.key;
 }
 

@@ -57,10 +57,10 @@ std::vector<odis::PathVertex> makeVertices() {
   return vertices;
 }
 
-void printGuide(const char* name, const odis::Model& model) {
+void printGuide(const char* name, const char* settings) {
   const std::vector<odis::PathVertex> vertices = makeVertices();
   odis::GuideOptions options;
-  options.model = model;
+  options.settings = settings;
   options.lightGroups = 2;
   odis::GuideBuilder builder(options);
   builder.add(vertices);
@@ -77,6 +77,6 @@ void printGuide(const char* name, const odis::Model& model) {
 }  // namespace
 
 int main() {
-  printGuide("networks", odis::Model());
-  printGuide("formulas", odis::Model().withDirectionFormula().withLightFormula());
+  printGuide("networks", "");
+  printGuide("formulas", "guide=histogram lights=formula");
 }

@@ -166,8 +166,8 @@ TEST_P(VarianceSplitRoom, AddsUp) {
   RenderOptions many = o;
   many.sampler = SamplerKind::independent;
   many.spp = 512;
-  many.refineSpp = 0;
-  many.pilotWeight = 0;  // the guided samples' variance
+  many.set("refine=0");
+  many.set("pilot-weight=0");  // the guided samples' variance
   many.variance = true;
   many.seed = 99;
   const RenderedImage frame = test::renderScene(*scene, many).image;
@@ -224,7 +224,7 @@ TEST(VarianceSplit, RefusesWhatHasNoSamples) {
   const auto scene = test::loadScene(test::indirectRoom(8));
   EXPECT_THROW(split(*scene, options(IntegratorKind::restir, 4), Rgb(1), 2), OptionError);
   RenderOptions o = options(IntegratorKind::odis, 4);
-  o.pilotSpp = o.spp;
+  o.set("pilot-spp=" + std::to_string(o.spp));
   EXPECT_THROW(split(*scene, o, Rgb(1), 2), OptionError);
   Progress quiet;
   EXPECT_THROW(splitVariance(*scene, options(IntegratorKind::path, 4), {1, 1, {Rgb(1)}}, 2, quiet),

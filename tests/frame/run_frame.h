@@ -58,8 +58,8 @@ inline FrameOptions toyOptions(uint32_t width, uint32_t height, uint32_t samples
   options.height = height;
   options.samplesPerPixel = samplesPerPixel;
   options.guide.lightGroups = 2;
-  options.guide.cellsPerDiagonal = 12;
-  options.guidedCost = 0;  // in so few pixels it would not pay to refine the guide
+  options.guide.set("cells=12");
+  options.set("guided-cost=0");  // in so few pixels it would not pay to refine the guide
   return options;
 }
 

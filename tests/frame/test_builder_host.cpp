@@ -72,7 +72,7 @@ TEST(BuilderHost, IsUnbiasedAndGuided) {
     guided.add(image.luminances, kBuilderSide);
   }
   FrameOptions options = toyOptions(kBuilderSide, kBuilderSide, kBuilderSamples);
-  options.guided = options.adaptive = false;
+  options.set("guided=off samples=even");
   const Estimate path = estimate(options, {}, 64, 1000);
   expectSameExpectation(guided, path);
   if (!kThreadSanitized) EXPECT_LT(guided.varianceOfMean(64), path.varianceOfMean(64));

@@ -74,7 +74,7 @@ TEST(Frame, AnyOrderOfDeliveryGivesTheSameBits) {
 TEST(Frame, AnImageOfAnySizeGetsAllItsSamples) {
   for (const auto& [width, height] : {std::pair{1u, 1u}, {3u, 70u}, {17u, 5u}, {16u, 16u}, {33u, 1u}}) {
     FrameOptions options = toyOptions(width, height, 5);
-    options.adaptive = false;
+    options.set("samples=even");
     Frame frame(options);
     runFrame(frame, options, {});
     for (uint32_t pixel = 0; pixel < width * height; ++pixel) {
@@ -140,8 +140,7 @@ TEST(Frame, WeightsOfAPixelAddUpToTheSamplesAskedFor) {
   for (const double pilot : {0.25, 1.0, 2.0})
     for (const bool guided : {true, false}) {
       FrameOptions options = toyOptions(40, 40, 8);
-      options.pilotSamplesPerPixel = pilot;
-      options.guided = guided;
+      options.set("pilot-spp=" + std::to_string(pilot) + (guided ? "" : " guided=off samples=adaptive"));
       Frame frame(options);
       const ToyHost host({}, 40, 40);
       std::vector<double> weights(40 * 40, 0.0);
@@ -213,7 +212,7 @@ TEST(Frame, TilesBeginBeforeTheImage) {
 
 TEST(Frame, PilotSamplesCountWhereThereAreNoOthers) {
   FrameOptions options = toyOptions(8, 8, 1);
-  options.pilotWeight = 0;
+  options.set("pilot-weight=0");
   Frame frame(options);
   runFrame(frame, options, {});
   EXPECT_EQ(frame.sampleWeight(5, 0), 1);
@@ -226,9 +225,8 @@ TEST(Frame, PilotSamplesCountWhereThereAreNoOthers) {
 TEST(Frame, BuildsNoGuideThatNothingIsGuidedBy) {
   FrameOptions options = toyOptions(24, 24, 1);
   for (const bool keeps : {false, true})
-    for (const uint32_t oracle : {0u, 2u}) {
-      options.keepPilotVertices = keeps;
-      options.oracleSamples = oracle;
+    for (const char* guide : {"network", "oracle"}) {
+      options.set(std::string(keeps ? "pilot-vertices=kept" : "pilot-vertices=dropped") + " guide=" + guide);
       Frame frame(options);
       const FramePass* pass = frame.beginPass();
       ASSERT_TRUE(pass);
@@ -248,7 +246,7 @@ TEST(Frame, EachGuideOfASmallFrameHasNumbersOfItsOwn) {
   for (const uint32_t side : {64u, 128u}) {
     FrameOptions options = toyOptions(side, side, 8);
     options.seed = 5;
-    options.adaptive = false;
+    options.set("samples=even");
     Frame frame(options);
     const ToyHost host({}, side, side);
     std::vector<uint64_t> seeds;
@@ -291,7 +289,7 @@ TEST(Frame, AnInterruptedPassKeepsItsSamplesAndIsTheLast) {
 
 TEST(Frame, UnguidedFramesAskForNoVertices) {
   FrameOptions options = toyOptions(20, 20, 3);
-  options.guided = false;
+  options.set("guided=off samples=adaptive");
   Frame frame(options);
   while (const FramePass* pass = frame.beginPass()) {
     EXPECT_FALSE(pass->wantsVertices);
@@ -325,7 +323,7 @@ TEST(Frame, ForeignVerticesAreCountedAndLeftOut) {
 
 TEST(Frame, WhatIsNotFiniteCountsAsBlack) {
   FrameOptions options = toyOptions(8, 8, 1);
-  options.guided = false;
+  options.set("guided=off samples=adaptive");
   Frame frame(options);
   frame.beginPass();
   std::vector<FrameSample> samples;
@@ -352,12 +350,12 @@ void expectError(OdisError code, const Call& call) {
 
 TEST(Frame, MisuseIsAnError) {
   FrameOptions options = toyOptions(16, 16, 2);
-  for (const auto spoil : {+[](FrameOptions& o) { o.width = 0; }, +[](FrameOptions& o) { o.height = 0; },
-                           +[](FrameOptions& o) { o.samplesPerPixel = 0; },
-                           +[](FrameOptions& o) { o.pilotSamplesPerPixel = -1; },
-                           +[](FrameOptions& o) { o.guide.cellsPerDiagonal = -1; },
-                           +[](FrameOptions& o) { o.guide.lightGroups = kMaxLightGroups + 1; },
-                           +[](FrameOptions& o) { o.guide.floor = NAN; }}) {
+  for (const auto spoil :
+       {+[](FrameOptions& o) { o.width = 0; }, +[](FrameOptions& o) { o.height = 0; },
+        +[](FrameOptions& o) { o.samplesPerPixel = 0; }, +[](FrameOptions& o) { o.set("pilot-spp=-1"); },
+        +[](FrameOptions& o) { o.guide.set("cells=-1"); },
+        +[](FrameOptions& o) { o.guide.lightGroups = kMaxLightGroups + 1; },
+        +[](FrameOptions& o) { o.guide.set("map-floor=nan"); }}) {
     FrameOptions bad = options;
     spoil(bad);
     expectError(ODIS_ERROR_INVALID_ARGUMENT, [&] { Frame frame(bad); });

@@ -3,6 +3,7 @@
 
 #include "frame/run_frame.h"
 #include "odis/image/guiding_gain.h"
+#include "odis/options.h"
 
 namespace odis::test {
 
@@ -129,14 +130,14 @@ std::vector<bool> guidedPasses(Frame& frame, const FrameOptions& options) {
 
 TEST(GuidingGain, FramesStopGuidingWhereItDoesNotPay) {
   FrameOptions options = toyOptions(64, 64, 16);
-  options.guidedCost = 0.01f;  // a gain by any means
+  options.set("guided-cost=0.01");  // a gain by any means
   Frame pays(options);
   const std::vector<bool> with = guidedPasses(pays, options);
   ASSERT_GT(with.size(), 3u);
   EXPECT_FALSE(with[0]);
   EXPECT_EQ(std::count(with.begin() + 1, with.end(), false), 0);
 
-  options.guidedCost = 1000;
+  options.set("guided-cost=1000");
   Frame doesNotPay(options);
   const std::vector<bool> without = guidedPasses(doesNotPay, options);
   EXPECT_TRUE(without[1]);
@@ -145,7 +146,7 @@ TEST(GuidingGain, FramesStopGuidingWhereItDoesNotPay) {
   EXPECT_TRUE(doesNotPay.guideIsFinal());
   EXPECT_NEAR(double(doesNotPay.statistics().samples), 64 * 64 * 16, 64 * 64 * 2);
 
-  options.guidedCost = 0;
+  options.set("guided-cost=0");
   Frame always(options);
   const std::vector<bool> unweighed = guidedPasses(always, options);
   EXPECT_EQ(std::count(unweighed.begin(), unweighed.end(), false), 1) << "the pilot";
@@ -154,10 +155,10 @@ TEST(GuidingGain, FramesStopGuidingWhereItDoesNotPay) {
 // Which frames stop is decided by their samples: by a half of them, here.
 TEST(GuidingGain, StoppingKeepsTheMean) {
   FrameOptions options = toyOptions(48, 48, 8);
-  options.pilotSamplesPerPixel = 1;
+  options.set("pilot-spp=1");
   FrameOptions path = options;
-  path.guided = false;
-  options.guidedCost = 3.5f;
+  path.set("guided=off samples=adaptive");
+  options.set("guided-cost=3.5");
   int stopped = 0;
   constexpr int kSeeds = 64;
   for (uint64_t seed = 0; seed < 16; ++seed) {
@@ -176,7 +177,7 @@ TEST(GuidingGain, StoppingKeepsTheMean) {
 // many paths as in those of real scenes.
 core::PossibleRefinement firstOf(double predictedRatio, double samplesPerPixel) {
   constexpr double kPixels = 640 * 360;
-  const FrameOptions usual;
+  const core::FrameOptions usual;
   return {predictedRatio,
           5,
           4000,
@@ -232,20 +233,21 @@ TEST(Refinement, IsLeftOutWhereItDoesNotPay) {
     return std::count(passes.begin(), passes.end(), true);
   };
   FrameOptions few = toyOptions(32, 32, 4), many = toyOptions(32, 32, 256);
-  few.guidedCost = many.guidedCost = 1;
+  few.set("guided-cost=1");
+  many.set("guided-cost=1");
   EXPECT_EQ(recorded(few), 1) << "the pilot";
   EXPECT_EQ(recorded(many), 4) << "and one and two more samples";
 
   FrameOptions shared = few, unweighed = few;
   shared.builder.emplace(few.guide);
-  unweighed.guidedCost = 0;
+  unweighed.set("guided-cost=0");
   EXPECT_EQ(recorded(shared), 2) << "others may learn from the builder";
   EXPECT_EQ(recorded(unweighed), 2);
 
   FrameOptions cells = many, recording = many, free = few;
-  cells.builtCellCost = 1e6;
-  recording.recordedRayCost = 1e6;
-  free.builtCellCost = free.recordedRayCost = 0;
+  cells.set("built-cell-cost=1e6");
+  recording.set("recorded-ray-cost=1e6");
+  free.set("built-cell-cost=0 recorded-ray-cost=0");
   EXPECT_EQ(recorded(cells), 1);
   EXPECT_EQ(recorded(recording), 1);
   EXPECT_EQ(recorded(free), 2);
@@ -254,10 +256,10 @@ TEST(Refinement, IsLeftOutWhereItDoesNotPay) {
 // Whether guides are refined is decided by the pilot: they are in a part of the frames, here.
 TEST(Refinement, KeepsTheMeanWhetherItPaysOrNot) {
   FrameOptions options = toyOptions(48, 48, 33);
-  options.pilotSamplesPerPixel = 1;
-  options.guidedCost = 1;
+  options.set("pilot-spp=1");
+  options.set("guided-cost=1");
   FrameOptions path = options;
-  path.guided = false;
+  path.set("guided=off samples=adaptive");
   int refined = 0;
   for (uint64_t seed = 0; seed < 16; ++seed) {
     FrameOptions own = options;

@@ -10,7 +10,7 @@ namespace {
 TEST(OwnFilm, WithABoxFilterIsTheMean) {
   for (const double pilot : {0.25, 1.0, 2.0}) {
     FrameOptions options = toyOptions(24, 24, 8);
-    options.pilotSamplesPerPixel = pilot;
+    options.set("pilot-spp=" + std::to_string(pilot));
     Frame frame(options);
     SplatFilm film(24, 24, kBox);
     const ToyHost host({}, 24, 24);
@@ -90,7 +90,7 @@ std::vector<WallColumn> renderWalls(FrameOptions options, bool weightOne) {
     SplatFilm film(kWallWidth, kWallHeight, kGaussian);
     renderInto(film, frame, kWallWidth * kWallHeight, traceWall, weightOne);
     const uint32_t middle = 4 * kWallWidth + kEdge;
-    const double least = options.pilotSamplesPerPixel == 0.25 ? 1.75 : 3;
+    const double least = readSetting(options.settings, "pilot-spp") == "0.250000" ? 1.75 : 3;
     EXPECT_LE(frame.sampleCount(middle - 1), options.samplesPerPixel * 0.65);
     EXPECT_GE(frame.sampleCount(middle), options.samplesPerPixel * least);
     for (uint32_t i = 0; i < 2; ++i) columns[i].add(film, kEdge - 1 + i, options.samplesPerPixel);
@@ -102,8 +102,7 @@ TEST(OwnFilm, SplatsAnEdgeBetweenFewSamplesAndMany) {
   const double significance = 1 - std::pow(0.99, 1.0 / 8);
   for (const double pilot : {0.0, 0.25, 1.0, 2.0}) {  // 0: nothing is guided
     FrameOptions options = toyOptions(kWallWidth, kWallHeight, 16);
-    options.guided = pilot > 0;
-    options.pilotSamplesPerPixel = pilot;
+    options.set(pilot > 0 ? "pilot-spp=" + std::to_string(pilot) : "guided=off samples=adaptive");
     for (const WallColumn& column : renderWalls(options, false)) {
       EXPECT_GT(std::erfc(std::abs(column.distance()) / std::sqrt(2.0)), significance)
           << column.truth << ", z = " << column.distance();
@@ -155,7 +154,7 @@ std::pair<double, double> meanOf(const Films& films, size_t value) {
 
 TEST(OwnFilm, OfGuidedSamplesHasTheExpectationOfUnguidedOnes) {
   FrameOptions guided = toyOptions(kToySide, kToySide, 16), path = guided;
-  path.guided = path.adaptive = false;
+  path.set("guided=off samples=even");
   path.samplesPerPixel = 64;
   const Films a = renderToyFilms(guided, 1), b = renderToyFilms(path, 1000);
   if (kThreadSanitized) return;

@@ -20,7 +20,7 @@ FrameOptions sizedOptions(uint32_t width, uint32_t height, uint32_t offsetX, uin
 TEST(TileGrid, HoldsEveryPixelOnceInTheOrderOfItsPlaces) {
   for (const auto& [width, height] : {std::pair{1u, 1u}, {16u, 16u}, {40u, 20u}, {3u, 70u}})
     for (const auto& [x, y] : {std::pair{0u, 0u}, {5u, 15u}, {15u, 0u}}) {
-      const TileGrid grid(sizedOptions(width, height, x, y));
+      const TileGrid grid(width, height, x, y);
       EXPECT_EQ(grid.columns(), (x + width + 15) / 16);
       EXPECT_EQ(grid.rows(), (y + height + 15) / 16);
       std::vector<uint32_t> found(width * height, 0);
@@ -40,7 +40,7 @@ TEST(TileGrid, HoldsEveryPixelOnceInTheOrderOfItsPlaces) {
 
 // A block of 4 x 4 pixels after another, and rows of blocks.
 TEST(TileGrid, OrdersNeighboursTogether) {
-  const TileGrid grid(sizedOptions(32, 32, 0, 0));
+  const TileGrid grid(32, 32);
   EXPECT_EQ(grid.placeInTile(0), 0u);
   EXPECT_EQ(grid.placeInTile(3), 3u);
   EXPECT_EQ(grid.placeInTile(32), 4u);
@@ -51,7 +51,7 @@ TEST(TileGrid, OrdersNeighboursTogether) {
 
 TEST(TileGrid, IsTheFrames) {
   const FrameOptions options = sizedOptions(40, 20, 5, 15);
-  const TileGrid grid(options);
+  const TileGrid grid(options.width, options.height, options.tileOffsetX, options.tileOffsetY);
   for (uint32_t tile = 0; tile < grid.tileCount(); ++tile) {
     Frame frame(options);
     frame.beginPass();
@@ -90,7 +90,7 @@ size_t runRecorded(Frame& frame, uint32_t pixels, bool all) {
 // More samples than a guide learns from: a pilot of 1.4 million.
 TEST(WantsVertices, LeavesOutThoseThatAreNotLearnedFrom) {
   FrameOptions options = toyOptions(150, 150, 66);
-  options.pilotSamplesPerPixel = 64;
+  options.set("pilot-spp=64");
   options.guide.model = makeModel(nullptr, nullptr);
   Frame everything(options), wanted(options);
   const size_t all = runRecorded(everything, 150 * 150, true), some = runRecorded(wanted, 150 * 150, false);
@@ -103,7 +103,7 @@ TEST(WantsVertices, LeavesOutThoseThatAreNotLearnedFrom) {
 
 TEST(WantsVertices, IsTrueNowhereWhereNothingIsLearned) {
   FrameOptions options = toyOptions(20, 20, 3);
-  options.guided = false;
+  options.set("guided=off samples=adaptive");
   Frame frame(options);
   frame.beginPass();
   EXPECT_FALSE(frame.wantsVertices(0));

@@ -53,7 +53,7 @@ class UnbiasedFrame : public ::testing::Test {
  protected:
   static void SetUpTestSuite() {
     FrameOptions options = toyOptions(kSide, kSide, 32);
-    options.guided = false;
+    options.set("guided=off samples=adaptive");
     s_reference = estimate(options, {}, 24, 5000);
   }
   static void expectUnbiased(const FrameOptions& options, int seeds = 64,
@@ -63,7 +63,7 @@ class UnbiasedFrame : public ::testing::Test {
   static FrameOptions adversarial(WrongDirections::Kind kind) {
     FrameOptions options = toyOptions(kSide, kSide, 4);
     options.guide.model = makeModel(std::make_shared<WrongDirections>(kind), std::make_shared<WrongLights>());
-    options.guide.fixedBsdfFraction = 0.3f;
+    options.guide.set("bsdf-fraction=0.3");
     return options;
   }
   static inline Estimate s_reference;
@@ -82,21 +82,21 @@ TEST_F(UnbiasedFrame, ByFormulas) {
 TEST_F(UnbiasedFrame, WithManySamplesThatRefineTheGuideAndAreSpread) {
   FrameOptions options = toyOptions(kSide, kSide, 12);
   options.guide.model = makeModel(nullptr, nullptr);
-  options.refinementSamples = 7;
+  options.set("refine=7");
   expectUnbiased(options, 32);
 }
 
 TEST_F(UnbiasedFrame, FromAPilotOfAQuarterOfASample) {
   FrameOptions options = toyOptions(kSide, kSide, 3);
   options.guide.model = makeModel(nullptr, nullptr);
-  options.pilotSamplesPerPixel = 0.25;
+  options.set("pilot-spp=0.25");
   expectUnbiased(options);
 }
 
 TEST_F(UnbiasedFrame, FromAnOracle) {
   FrameOptions options = toyOptions(kSide, kSide, 3);
   options.guide.model = makeModel(nullptr, nullptr);
-  options.oracleSamples = 4;
+  options.set("guide=oracle oracle-spp=4");
   expectUnbiased(options);
 }
 

@@ -87,8 +87,7 @@ TEST(WithoutMeans, FramesDecideTheSame) {
   for (const double pilot : {0.25, 1.0, 2.0, 3.0, 5.0})
     for (const float cost : {0.0f, 1.0f, 1000.0f}) {
       FrameOptions options = toyOptions(60, 50, 12);
-      options.pilotSamplesPerPixel = pilot;
-      options.guidedCost = cost;
+      options.set("pilot-spp=" + std::to_string(pilot) + " guided-cost=" + std::to_string(cost));
       FrameStatistics result;
       expectSameDecisions(options, false, &result);
       EXPECT_EQ(result.measuredCostRatio > 0, pilot >= 1 && cost > 0);
@@ -99,15 +98,14 @@ TEST(WithoutMeans, FramesDecideTheSame) {
 TEST(WithoutMeans, UnguidedFramesDecideTheSame) {
   for (const bool adaptive : {true, false}) {
     FrameOptions options = toyOptions(40, 24, 8);
-    options.guided = false;
-    options.adaptive = adaptive;
+    options.set(adaptive ? "guided=off samples=adaptive" : "guided=off samples=even");
     expectSameDecisions(options, false);
   }
 }
 
 TEST(WithoutMeans, FramesOfAnOracleDecideTheSame) {
   FrameOptions options = toyOptions(40, 24, 8);
-  options.oracleSamples = 2;
+  options.set("guide=oracle oracle-spp=2");
   expectSameDecisions(options, false);
 }
 
@@ -115,8 +113,7 @@ TEST(WithoutMeans, SavedFramesGoOnWithTheSameBits) {
   for (const bool guided : {true, false})
     for (const double pilot : {0.25, 1.0, 5.0}) {
       FrameOptions options = toyOptions(40, 24, 8);
-      options.pilotSamplesPerPixel = pilot;
-      options.guided = guided;
+      options.set("samples=adaptive pilot-spp=" + std::to_string(pilot) + (guided ? "" : " guided=off"));
       expectSameDecisions(options, true);
     }
 }
@@ -146,7 +143,7 @@ BytesOfAPixel bytesOfAPixel(FrameOptions options) {
 
 TEST(WithoutMeans, FramesHoldAtMostFortyBytesOfAPixel) {
   FrameOptions options = toyOptions(64, 64, 8);
-  options.guided = false;  // so that there are no vertices
+  options.set("guided=off samples=adaptive");  // so that there are no vertices
   const BytesOfAPixel unguided = bytesOfAPixel(options);
   EXPECT_LE(unguided.first, 37);
   EXPECT_LE(unguided.last, 9);
@@ -155,10 +152,9 @@ TEST(WithoutMeans, FramesHoldAtMostFortyBytesOfAPixel) {
   const Frame means(options, context);
   EXPECT_GE(context.memoryUse(), 112u * 64 * 64);
   // Guided samples bring vertices, and a builder; a refined guide is done with them in the end.
-  options.guided = true;
+  options.set("guided=on");
   for (const double pilot : {0.25, 1.0}) {
-    options.pilotSamplesPerPixel = pilot;
-    options.refinementSamples = 0;
+    options.set("refine=0 pilot-spp=" + std::to_string(pilot));
     const BytesOfAPixel guided = bytesOfAPixel(options);
     EXPECT_GE(guided.first, 32);
     EXPECT_LE(guided.first, 40);

@@ -9,8 +9,7 @@ namespace {
 struct Kind {
   std::string name;
   IntegratorKind integrator;
-  GuideKind guide;
-  float bsdfFraction;
+  std::string settings;
 };
 
 // What a failure prints.
@@ -23,9 +22,7 @@ class AnalyticTest : public ::testing::TestWithParam<Kind> {
   RenderOptions options(int spp) const {
     RenderOptions o;
     o.integrator = GetParam().integrator;
-    o.guide = GetParam().guide;
-    o.guideOptions.fixedBsdfFraction = GetParam().bsdfFraction;
-    o.oracleSpp = 4;
+    o.set(GetParam().settings);
     o.spp = spp;
     return o;
   }
@@ -156,15 +153,14 @@ TEST_P(AnalyticTest, PanesAreSeenThroughWithoutNoise) {
     for (int x = 30; x < 34; ++x) EXPECT_NEAR(luminance(result.image.color[size_t(y * 64 + x)]), 500, 0.01);
 }
 
-INSTANTIATE_TEST_SUITE_P(Integrators, AnalyticTest,
-                         ::testing::Values(Kind{"path", IntegratorKind::path, GuideKind::histogram, 0},
-                                           Kind{"odis", IntegratorKind::odis, GuideKind::histogram, 0},
-                                           Kind{"odisMostlyMap", IntegratorKind::odis, GuideKind::histogram,
-                                                0.15f},
-                                           Kind{"ppg", IntegratorKind::ppg, GuideKind::histogram, 0},
-                                           Kind{"restir", IntegratorKind::restir, GuideKind::histogram, 0},
-                                           Kind{"oracle", IntegratorKind::odis, GuideKind::oracle, 0}),
-                         [](const auto& info) { return info.param.name; });
+INSTANTIATE_TEST_SUITE_P(
+    Integrators, AnalyticTest,
+    ::testing::Values(Kind{"path", IntegratorKind::path, ""},
+                      Kind{"odis", IntegratorKind::odis, "guide=histogram"},
+                      Kind{"odisMostlyMap", IntegratorKind::odis, "guide=histogram bsdf-fraction=0.15"},
+                      Kind{"ppg", IntegratorKind::ppg, ""}, Kind{"restir", IntegratorKind::restir, ""},
+                      Kind{"oracle", IntegratorKind::odis, "guide=oracle oracle-spp=4"}),
+    [](const auto& info) { return info.param.name; });
 
 }  // namespace
 }  // namespace odis::render

@@ -18,7 +18,7 @@ double meanOf(const RenderedImage& image) {
 
 RenderOptions cachedOptions(int spp, uint64_t seed = 0) {
   RenderOptions options;
-  options.cached = true;
+  options.set("cached=on");
   options.spp = spp;
   options.seed = seed;
   return options;
@@ -52,7 +52,7 @@ TEST(Cached, KeepsTheEnergyOfARoom) {
     difference.add(meanOf(cached.image) / path - 1);
     cachedRays += cached.stats.rays + cached.stats.shadowRays;
     options.integrator = IntegratorKind::odis;
-    options.cached = false;
+    options.set("cached=off");
     options.spp = 4;
     const RenderResult unbiased = test::renderScene(*scene, options);
     rays += unbiased.stats.rays + unbiased.stats.shadowRays;
@@ -72,7 +72,7 @@ TEST(Cached, KeepsTheEnergyOfAFiniteDepth) {
     RenderOptions options = cachedOptions(32);
     options.maxDepth = 32;
     options.rrDepth = rrDepth;
-    options.costs.guidedRay = 0;
+    options.set("guided-cost=0");
     test::Average brightness;
     for (int seed = 0; seed < images; ++seed) {
       options.seed = uint64_t(seed);
@@ -100,7 +100,7 @@ TEST(Cached, LeavesShallowPathsAsTheyAre) {
   RenderOptions options = cachedOptions(8);
   options.maxDepth = 3;
   const RenderResult cached = test::renderScene(*scene, options);
-  options.cached = false;
+  options.set("cached=off");
   EXPECT_TRUE(test::sameBits(cached.image.color, test::renderScene(*scene, options).image.color));
 }
 
@@ -113,9 +113,9 @@ TEST(Cached, OnlyRoughMetalEndsPaths) {
                           std::string(alpha) + "\"/></bsdf>",
                       32));
     RenderOptions options = cachedOptions(16);
-    options.costs.guidedRay = 0;  // guiding does not pay in a furnace
+    options.set("guided-cost=0");  // guiding does not pay in a furnace
     const RenderResult cached = test::renderScene(*scene, options);
-    options.cached = false;
+    options.set("cached=off");
     EXPECT_EQ(test::sameBits(cached.image.color, test::renderScene(*scene, options).image.color), !ends)
         << alpha;
   }

@@ -24,8 +24,8 @@ RenderOptions withFeatures() {
 TEST(GuideFeatures, SayWhatWasDecided) {
   const auto scene = test::loadScene(test::indirectRoom(32));
   RenderOptions options = withFeatures();
-  options.guideOptions.fixedBsdfFraction = 0.4f;
-  options.guideOptions.floor = 1;
+  options.set("bsdf-fraction=0.4");
+  options.set("map-floor=1");
   const RenderResult result = test::renderScene(*scene, options);
   const RenderedImage& frame = result.image;
   ASSERT_EQ(frame.guideCell.size(), 1024u);

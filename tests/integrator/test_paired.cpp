@@ -51,14 +51,14 @@ constexpr ChangeOptions kIntegral = nullptr;
 // Maps, the choice of lights and refinement change where most paths go: they are compared with the integral.
 // So the images of "everything" are those of "refinement" at 4 samples per pixel, and those of "maps" at 2.
 const Decision kDecisions[] = {
-    {"pilot weight", [](RenderOptions& o) { o.pilotWeight = 1; }, 200, 0.006},
-    {"ended paths", [](RenderOptions& o) { o.guideOptions.controlVariate = false; }, 200, 0.001},
-    {"shadow rays", [](RenderOptions& o) { o.shadowRays = ShadowRayKind::all; }, 200, 0.001, true},
+    {"pilot weight", [](RenderOptions& o) { o.set("pilot-weight=1"); }, 200, 0.006},
+    {"ended paths", [](RenderOptions& o) { o.set("ended-paths=nothing"); }, 200, 0.001},
+    {"shadow rays", [](RenderOptions& o) { o.set("shadow-rays=all"); }, 200, 0.001, true},
     {"lights", kIntegral, 400, 0.035, true},
-    {"roulette", [](RenderOptions& o) { o.roulette = RouletteKind::throughput; }, 200, 0.015},
+    {"roulette", [](RenderOptions& o) { o.set("roulette=throughput"); }, 200, 0.015},
     {"maps", kIntegral, 400, 0.018},
     {"refinement", kIntegral, 1000, 0.022, false, true},
-    {"samples", [](RenderOptions& o) { o.samples = SampleSpread::even; }, 1000, 0.005, false, true},
+    {"samples", [](RenderOptions& o) { o.set("samples=even"); }, 1000, 0.005, false, true},
     {"everything", kIntegral, 1000, 0.022, false, true},
 };
 
@@ -79,10 +79,10 @@ struct PairedCase {
     options.spp = spp;
     options.sampler = sampler;
     options.seed = seed;
-    options.costs.guidedRay = 0;  // in so few pixels it would not pay to refine the guide
+    options.set("guided-cost=0");  // in so few pixels it would not pay to refine the guide
     if (oneGuide()) {
-      options.samples = SampleSpread::even;
-      options.refineSpp = 0;
+      options.set("samples=even");
+      options.set("refine=0");
     }
     return options;
   }

@@ -40,7 +40,7 @@ TEST_P(Pictures, ShowAllAndChangeNothing) {
   RenderOptions options;
   options.integrator = GetParam();
   options.spp = 6;
-  options.pilotSpp = 0.25;
+  options.set("pilot-spp=0.25");
   options.threads = 1;
   const RenderResult quiet = test::renderScene(*scene, options);
   ShowAlways progress;

@@ -36,19 +36,19 @@ class PixelMapsTest : public test::AgainstPath<PixelRoom> {
   // What --preset paper sets up, with a histogram.
   static RenderOptions pixelOptions() {
     RenderOptions options = guidedOptions();
-    options.guideOptions.pixelMaps = ODIS_PIXEL_MAPS_HISTOGRAM;
-    options.guideOptions.cosineProduct = false;
-    options.guideOptions.fixedBsdfFraction = 0.5f;
-    options.guideOptions.cellsPerDiagonal = 0;
-    options.guideBounces = 1;
-    options.roulette = RouletteKind::throughput;
-    options.lights = LightChoiceKind::hierarchy;
-    options.shadowRays = ShadowRayKind::all;
-    options.samples = SampleSpread::even;
-    options.refineSpp = 0;
-    options.pilotSpp = 1;
-    options.pilotWeight = 1;
-    options.costs.guidedRay = 0;
+    options.set("pixel-maps=histogram");
+    options.set("map-cosine=off");
+    options.set("bsdf-fraction=0.5");
+    options.set("cells=0");
+    options.set("guide-bounces=1");
+    options.set("roulette=throughput");
+    options.set("lights=hierarchy");
+    options.set("shadow-rays=all");
+    options.set("samples=even");
+    options.set("refine=0");
+    options.set("pilot-spp=1");
+    options.set("pilot-weight=1");
+    options.set("guided-cost=0");
     return options;
   }
 };
@@ -61,38 +61,38 @@ TEST_F(PixelMapsTest, Histogram) {
 
 TEST_F(PixelMapsTest, TilesTimesCosine) {
   RenderOptions options = pixelOptions();
-  options.guideOptions.pixelTile = 4;
-  options.guideOptions.cosineProduct = true;
-  options.guideOptions.pixelDirectLight = false;
+  options.set("pixel-tile=4");
+  options.set("map-cosine=on");
+  options.set("pixel-light=without-direct");
   options.sampler = SamplerKind::independent;
   expectUnbiased(options, 96, kPixelTests);
 }
 
 TEST_F(PixelMapsTest, Oracle) {
   RenderOptions options = pixelOptions();
-  options.guideOptions.pixelMaps = ODIS_PIXEL_MAPS_ORACLE;
-  options.oracleSpp = 8;
+  options.set("pixel-maps=oracle");
+  options.set("oracle-spp=8");
   expectUnbiased(options, 96, kPixelTests);
 }
 
 TEST_F(PixelMapsTest, BesideCellsAndAllOtherDecisions) {
   RenderOptions options = guidedOptions();
-  options.guideOptions.pixelMaps = ODIS_PIXEL_MAPS_HISTOGRAM;
-  options.guideOptions.pixelShare = 0.5f;
+  options.set("pixel-maps=histogram");
+  options.set("pixel-share=0.5");
   expectUnbiased(options, 96, kPixelTests);
 }
 
 TEST_F(PixelMapsTest, AdversarialMaps) {
   RenderOptions options = pixelOptions();
-  options.guideOptions.pixelMaps = ODIS_PIXEL_MAPS_NETWORK;
+  options.set("pixel-maps=network");
   options.model = test::makeModel(nullptr, nullptr, std::make_shared<AdversarialPixels>());
   expectUnbiased(options, 192, kPixelTests);
 }
 
 TEST_F(PixelMapsTest, AdversarialMapsBesideCells) {
   RenderOptions options = guidedOptions();
-  options.guideOptions.pixelMaps = ODIS_PIXEL_MAPS_NETWORK;
-  options.guideOptions.pixelTile = 2;
+  options.set("pixel-maps=network");
+  options.set("pixel-tile=2");
   options.model = test::makeModel(core::Model::builtIn().directions, core::Model::builtIn().lights,
                                   std::make_shared<AdversarialPixels>());
   expectUnbiased(options, 192, kPixelTests);

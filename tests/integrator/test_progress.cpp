@@ -41,13 +41,12 @@ std::unique_ptr<Scene> unevenRoom() {
 
 TEST(Stages, EndWithAllTheirSamples) {
   const auto scene = unevenRoom();
-  for (const SampleSpread spread : {SampleSpread::even, SampleSpread::adaptive})
+  for (const std::string spread : {"even", "adaptive"})
     for (const IntegratorKind integrator : {IntegratorKind::path, IntegratorKind::odis})
       for (const double pilot : {0.25, 2.0}) {
         RenderOptions options;
         options.integrator = integrator;
-        options.samples = spread;
-        options.pilotSpp = pilot;
+        options.set("samples=" + spread + " pilot-spp=" + std::to_string(pilot));
         options.spp = 24;
         Stages progress;
         const RenderResult result = render(*scene, options, progress);
@@ -77,7 +76,7 @@ TEST(Interrupted, IsWhatLacksSamples) {
   for (const IntegratorKind integrator : {IntegratorKind::path, IntegratorKind::odis, IntegratorKind::ppg}) {
     RenderOptions options;
     options.integrator = integrator;
-    options.samples = SampleSpread::even;
+    options.set("samples=even");
     options.threads = 1;
     options.spp = 6;
     const uint64_t samples = 40 * 24 * 6;
@@ -95,7 +94,7 @@ TEST(Interrupted, TellsTheFewestSamplesOfAPixel) {
        {IntegratorKind::path, IntegratorKind::odis, IntegratorKind::ppg, IntegratorKind::restir}) {
     RenderOptions options;
     options.integrator = integrator;
-    options.samples = SampleSpread::even;
+    options.set("samples=even");
     options.threads = 1;
     options.spp = 2;
     CancelAt never(uint64_t(1) << 40), first(16);
@@ -107,8 +106,8 @@ TEST(Interrupted, TellsTheFewestSamplesOfAPixel) {
   // A pilot sample that weighs nothing says nothing of the noise.
   RenderOptions options;
   options.spp = 2;
-  options.pilotSpp = 1;
-  options.pilotWeight = 0;
+  options.set("pilot-spp=1");
+  options.set("pilot-weight=0");
   EXPECT_EQ(test::renderScene(*scene, options).stats.fewestSamples, 1u);
 }
 

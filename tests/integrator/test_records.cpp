@@ -12,7 +12,7 @@ TEST(Records, FirstVerticesAddUpToTheImage) {
   const auto scene = test::loadScene(test::indirectRoom());
   RenderOptions options;
   options.spp = 2;
-  options.pilotSpp = 2;
+  options.set("pilot-spp=2");
   options.records = true;
   const RenderResult result = test::renderScene(*scene, options);
   std::vector<Rgb> sum = result.pilotEmitted;
@@ -90,8 +90,8 @@ TEST(Repeatable, ReplaysOfGuidedPathsAreTheirPixel) {
   const auto scene = test::loadScene(test::indirectRoom());
   RenderOptions options;
   options.spp = 5;
-  options.pilotWeight = 0;
-  options.guideOptions.controlVariate = false;
+  options.set("pilot-weight=0");
+  options.set("ended-paths=nothing");
   options.features = options.guideFeatures = true;  // they tell how many samples a pixel has
   const RenderResult result = test::renderScene(*scene, options);
   int kept = 0;  // vertices that roulette might have ended
@@ -128,8 +128,7 @@ TEST(Samples, EveryPixelGetsWhatWasAskedFor) {
     for (const int spp : {1, 4, 11}) {
       RenderOptions options;
       options.spp = spp;
-      options.pilotSpp = pilot;
-      options.samples = SampleSpread::even;
+      options.set("samples=even pilot-spp=" + std::to_string(pilot));
       const RenderResult result = test::renderScene(*scene, options);
       EXPECT_EQ(result.stats.samples, uint64_t(24 * 24 * spp));
     }
@@ -141,9 +140,9 @@ TEST(Samples, AreSpreadForAboutAsManyRays) {
     RenderOptions options;
     options.integrator = kind;
     options.spp = 16;
-    options.samples = SampleSpread::even;
+    options.set("samples=even");
     const RenderResult even = test::renderScene(*scene, options);
-    options.samples = SampleSpread::adaptive;
+    options.set("samples=adaptive");
     options.features = options.guideFeatures = true;
     const RenderResult adaptive = test::renderScene(*scene, options);
     EXPECT_NEAR(double(adaptive.stats.rays) / double(even.stats.rays), 1, 0.05);

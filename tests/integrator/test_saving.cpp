@@ -76,7 +76,7 @@ TEST_F(Saving, AnInterruptedRenderingGoesOnToTheSameBits) {
                                          {IntegratorKind::odis, FilmKind::splat},
                                          {IntegratorKind::odis, FilmKind::pixels}}) {
     RenderOptions options = everything(integrator, film);
-    options.samples = SampleSpread::adaptive;
+    options.set("samples=adaptive");
     const RenderResult expected = test::renderScene(*m_scene, options);
     options.saving.file = file();
     options.saving.everySeconds = 1e9;
@@ -94,11 +94,9 @@ TEST_F(Saving, AnInterruptedRenderingGoesOnToTheSameBits) {
 }
 
 TEST_F(Saving, MapsAtPixelsGoOnToTheSameBits) {
-  for (const OdisPixelMaps maps : {ODIS_PIXEL_MAPS_HISTOGRAM, ODIS_PIXEL_MAPS_ORACLE}) {
+  for (const std::string maps : {"histogram", "oracle"}) {
     RenderOptions options = everything(IntegratorKind::odis);
-    options.guideOptions.pixelMaps = maps;
-    options.guideOptions.pixelShare = 0.5f;
-    options.oracleSpp = 3;
+    options.set("pixel-share=0.5 oracle-spp=3 pixel-maps=" + maps);
     const RenderResult expected = test::renderScene(*m_scene, options);
     options.saving.file = file();
     options.saving.everySeconds = 1e9;

@@ -37,9 +37,10 @@ TEST_P(SplatRoom, HasTheExpectationOfIndependentPixels) {
   RenderOptions pixels = splatting(IntegratorKind::path, 256);
   pixels.film = FilmKind::pixels;
   const test::PixelStatistics expected = test::renderSeeds(*scene, pixels, 32, 1000);
-  for (const SampleSpread samples : {SampleSpread::even, SampleSpread::adaptive}) {
+  for (const std::string samples : {"samples=even", "samples=adaptive"}) {
     RenderOptions odis = splatting(IntegratorKind::odis, 64), path = splatting(IntegratorKind::path, 64);
-    odis.samples = path.samples = samples;
+    odis.set(samples);
+    path.set(samples);
     test::expectSameExpectation(expected, test::renderSeeds(*scene, path, 32, 1), 20);
     test::expectSameExpectation(expected, test::renderSeeds(*scene, odis, 32, 1), 20);
   }
@@ -131,7 +132,7 @@ TEST(Splat, VarianceIsThatBetweenImages) {
   for (const IntegratorKind integrator : {IntegratorKind::path, IntegratorKind::odis}) {
     RenderOptions options = splatting(integrator, 16);
     options.sampler = SamplerKind::independent;
-    options.samples = SampleSpread::even;
+    options.set("samples=even");
     options.variance = true;
     test::PixelStatistics images;
     constexpr int seeds = 48;

@@ -65,21 +65,21 @@ TEST_F(UnbiasedTest, Histogram) {
 
 TEST_F(UnbiasedTest, FirstBounceOnly) {
   RenderOptions options = guidedOptions();
-  options.guideBounces = 1;
+  options.set("guide-bounces=1");
   expectUnbiased(options, 96, kTests);
 }
 
 TEST_F(UnbiasedTest, FractionalPilotAndIndependentSamples) {
   RenderOptions options = guidedOptions();
-  options.pilotSpp = 0.25;
+  options.set("pilot-spp=0.25");
   options.sampler = SamplerKind::independent;
   expectUnbiased(options, 96, kTests);
 }
 
 TEST_F(UnbiasedTest, Oracle) {
   RenderOptions options = guidedOptions();
-  options.guide = GuideKind::oracle;
-  options.oracleSpp = 4;
+  options.set("guide=oracle");
+  options.set("oracle-spp=4");
   expectUnbiased(options, 96, kTests);
 }
 
@@ -88,8 +88,8 @@ TEST_F(UnbiasedTest, AdversarialMaps) {
   for (const Kind kind : {Kind::random, Kind::oneHot, Kind::zero, Kind::notANumber, Kind::inverted}) {
     RenderOptions options = guidedOptions();
     options.model = test::makeModel(std::make_shared<AdversarialModel>(kind), core::Model::builtIn().lights);
-    options.guideOptions.fixedBsdfFraction = 0.3f;
-    options.refineSpp = 1;
+    options.set("bsdf-fraction=0.3");
+    options.set("refine=1");
     // Twice as many seeds as elsewhere: where a map hardly looks at the light, tails are heavy.
     expectUnbiased(options, 192, kTests);
   }
@@ -97,40 +97,40 @@ TEST_F(UnbiasedTest, AdversarialMaps) {
 
 TEST_F(UnbiasedTest, AsManySamplesEverywhere) {
   RenderOptions options = guidedOptions();
-  options.samples = SampleSpread::even;
+  options.set("samples=even");
   expectUnbiased(options, 96, kTests);
 }
 
 TEST_F(UnbiasedTest, AdaptivePathTracing) {
   RenderOptions options = guidedOptions();
   options.integrator = IntegratorKind::path;
-  options.samples = SampleSpread::adaptive;
+  options.set("samples=adaptive");
   options.sampler = SamplerKind::independent;
   expectUnbiased(options, 192, kTests);
 }
 
 TEST_F(UnbiasedTest, NeverRefined) {
   RenderOptions options = guidedOptions();
-  options.refineSpp = 0;
+  options.set("refine=0");
   expectUnbiased(options, 96, kTests);
 }
 
 TEST_F(UnbiasedTest, RouletteByThroughput) {
   RenderOptions options = guidedOptions();
-  options.roulette = RouletteKind::throughput;
+  options.set("roulette=throughput");
   options.rrDepth = 2;
   expectUnbiased(options, 96, kTests);
 }
 
 TEST_F(UnbiasedTest, NothingForEndedPaths) {
   RenderOptions options = guidedOptions();
-  options.guideOptions.controlVariate = false;
+  options.set("ended-paths=nothing");
   expectUnbiased(options, 96, kTests);
 }
 
 TEST_F(UnbiasedTest, EveryShadowRay) {
   RenderOptions options = guidedOptions();
-  options.shadowRays = ShadowRayKind::all;
+  options.set("shadow-rays=all");
   expectUnbiased(options, 96, kTests);
 }
 
@@ -138,8 +138,8 @@ TEST_F(UnbiasedTest, EveryShadowRay) {
 // decide twice by the same number.
 TEST_F(UnbiasedTest, RouletteWhereCellsAreMissing) {
   RenderOptions options = guidedOptions();
-  options.guideOptions.cellsPerDiagonal = 300;
-  options.refineSpp = 0;
+  options.set("cells=300");
+  options.set("refine=0");
   options.rrDepth = 1;
   expectUnbiased(options, 192, kTests);
 }

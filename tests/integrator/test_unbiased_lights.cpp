@@ -127,7 +127,7 @@ class UnbiasedLights : public test::AgainstPath<Scene> {
   static constexpr int kTests = 8;
   static RenderOptions guidedOptions() {
     RenderOptions options = test::AgainstPath<Scene>::guidedOptions();
-    options.guideOptions.cellsPerDiagonal = 3;  // so that the few samples are enough to be believed
+    options.set("cells=3");  // so that the few samples are enough to be believed
     return options;
   }
   static void expectLearnedUnbiased() {
@@ -136,14 +136,14 @@ class UnbiasedLights : public test::AgainstPath<Scene> {
   static void expectAdversarialUnbiased() {
     RenderOptions options = guidedOptions();
     options.model = test::makeModel(core::Model::builtIn().directions, std::make_shared<AdversarialLights>());
-    options.refineSpp = 1;
+    options.set("refine=1");
     test::AgainstPath<Scene>::expectUnbiased(options, 256, kTests);
   }
   static void expectStubbornUnbiased() {
     RenderOptions options = guidedOptions();
     options.model = test::makeModel(core::Model::builtIn().directions, std::make_shared<StubbornLights>());
-    options.refineSpp = 1;
-    options.pilotWeight = 0;
+    options.set("refine=1");
+    options.set("pilot-weight=0");
     test::AgainstPath<Scene>::expectUnbiased(options, 256, kTests);
   }
 };
@@ -157,7 +157,7 @@ TEST_F(UnbiasedLightsTest, Learned) {
 
 TEST_F(UnbiasedLightsTest, Hierarchy) {
   RenderOptions options = guidedOptions();
-  options.lights = LightChoiceKind::hierarchy;
+  options.set("lights=hierarchy");
   expectUnbiased(options, 128, kTests);
 }
 

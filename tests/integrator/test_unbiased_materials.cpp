@@ -61,7 +61,7 @@ TEST_F(UnbiasedMaterials, Guided) {
 
 TEST_F(UnbiasedMaterials, GuidedMuch) {
   RenderOptions options = guidedOptions();
-  options.guideOptions.fixedBsdfFraction = 0.2f;
+  options.set("bsdf-fraction=0.2");
   expectUnbiased(options, 96, 2);
 }
 

@@ -107,7 +107,7 @@ TEST(Inspect, FurnaceIsEven) {
       test::furnace("<bsdf type=\"diffuse\"><rgb name=\"reflectance\" value=\"0.5\"/></bsdf>"));
   render::RenderOptions options;
   options.spp = 64;
-  options.pilotSpp = 32;
+  options.set("pilot-spp=32");
   const auto seen = look(*scene, atPixel(4, 4), options);
   ASSERT_TRUE(seen);
   EXPECT_NEAR(seen->outgoing.y, 1, 0.05);  // 0.5 * 2
@@ -147,7 +147,7 @@ TEST(Inspect, LevelsAreTheGuides) {
   // The guide that renders is the pilot's if nothing refines it.
   render::RenderOptions options;
   options.features = options.guideFeatures = true;
-  options.refineSpp = 0;
+  options.set("refine=0");
   const render::RenderResult image = test::renderScene(*scene, options);
   EXPECT_EQ(image.image.guideCell[20 * 24 + 4], float(seen->levels[0].cell));
   EXPECT_NEAR(image.image.guideBsdfFraction[20 * 24 + 4], seen->bsdfFraction, 1e-6);

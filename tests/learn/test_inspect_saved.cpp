@@ -89,7 +89,7 @@ core::FrameOptions frameOptions(uint32_t width, uint32_t height, const core::Gui
   core::FrameOptions options;
   options.width = width;
   options.height = height;
-  options.guide = &guide;
+  options.guide = guide;
   return options;
 }
 
@@ -249,13 +249,12 @@ TEST(InspectSaved, AFrameWithinAPassHasItsWholeTiles) {
   EXPECT_EQ(guided.frame->image[32 * 16].x, 1);
   const nlohmann::ordered_json json = toJson(guided);
   EXPECT_EQ(json["frame"]["tilesDone"], 2);
-  EXPECT_EQ(json["frame"]["options"]["pilotWeight"], "0.5");
+  EXPECT_EQ(json["frame"]["options"]["pilot-weight"], "0.5");
 }
 
 TEST(InspectSaved, AFrameNeedsNoModel) {
-  static OdisModelImpl formulas{core::Model()};
   core::GuideOptions guide = guideOptions(8);
-  guide.model = &formulas;
+  guide.model = core::Model();
   const SavedInspection seen = look(savedFrame(frameOptions(20, 20, guide), 2));
   EXPECT_EQ(seen.frame->model, "formulas");
   EXPECT_GT(seen.guide->cells[0], 0u);
@@ -331,10 +330,9 @@ TEST(InspectSaved, AFrameOfAnotherOrderOfSamplesIsRefused) {
 // What the fuzzer begins from (fuzz/saved.cpp), as small as can be. Where what is saved has changed,
 // ODIS_WRITE_SEEDS=1 makes the files anew.
 TEST(InspectSaved, SeedsOfTheFuzzerAreRead) {
-  static OdisModelImpl formulas{core::Model()};
   const core::GuideOptions networks = guideOptions(1);
   core::GuideOptions simple = networks;
-  simple.model = &formulas;
+  simple.model = core::Model();
   const core::FrameOptions guided = frameOptions(4, 4, networks), formula = frameOptions(4, 4, simple);
   const std::pair<std::string, std::string> seeds[] = {
       {"guide", savedGuide(networks, litFloor(50))},       {"vertices", savedVertices(litFloor(4))},

@@ -11,7 +11,6 @@
 
 #include "odis/floor_under_patch.h"
 #include "odis/same_guide.h"
-#include "support/models.h"
 
 namespace odis::core {
 namespace {
@@ -117,28 +116,22 @@ void deliverByThreads(Frame& frame, std::vector<TracedSample> samples) {
   for (std::thread& thread : threads) thread.join();
 }
 
-// The options of a frame, and those of its guide that they point to.
-struct AnyOrderOptions : FrameOptions {
-  GuideOptions guideOptions;
-};
-
-AnyOrderOptions anyOrderOptions(OdisModel model) {
-  AnyOrderOptions options;
+FrameOptions anyOrderOptions(const std::optional<Model>& model) {
+  FrameOptions options;
   options.width = kFrameWidth;
   options.height = kFrameHeight;
   options.samplesPerPixel = 8;
   options.pilotSamplesPerPixel = 3;  // sums of two do not depend on their order
   options.keepPilotVertices = true;
-  options.guideOptions.model = model;
-  options.guideOptions.lightGroups = 3;
-  options.guideOptions.cellsPerDiagonal = 16;
+  options.guide.model = model;
+  options.guide.lightGroups = 3;
+  options.guide.cellsPerDiagonal = 16;
   return options;
 }
 
 // Takes two frames from the first sample to the last, one delivered at once and in order; expects the same
 // guide before every pass, and the same image in the end.
-void expectSameFrames(AnyOrderOptions options, const Delivery& delivery) {
-  options.guide = &options.guideOptions;
+void expectSameFrames(const FrameOptions& options, const Delivery& delivery) {
   Frame expected(options), frame(options);
   bool first = true;
   uint32_t guides = 0;
@@ -194,16 +187,17 @@ struct NamedDelivery {
 class AnyOrder : public ::testing::TestWithParam<NamedDelivery> {};
 
 TEST_P(AnyOrder, GivesTheSameGuidesWithNetworks) {
-  expectSameFrames(anyOrderOptions(nullptr), GetParam().deliver);
+  expectSameFrames(anyOrderOptions(std::nullopt), GetParam().deliver);
 }
 
 TEST_P(AnyOrder, GivesTheSameGuidesWithFormulas) {
-  expectSameFrames(anyOrderOptions(test::formulas()), GetParam().deliver);
+  expectSameFrames(anyOrderOptions(Model()), GetParam().deliver);
 }
 
 TEST_P(AnyOrder, GivesTheSameGuidesFromAnOracle) {
-  AnyOrderOptions options = anyOrderOptions(test::formulas());
-  options.oracleSamples = 2;
+  FrameOptions options = anyOrderOptions(Model());
+  options.guide.guide = GuideKind::oracle;
+  options.oracleSpp = 2;
   expectSameFrames(options, GetParam().deliver);
 }
 
@@ -219,7 +213,7 @@ TEST(GuideBuilder, PartsOfOneOrderGiveOneGuide) {
   const std::vector<PathVertex> first = floorUnderPatch(kBright, 20000, 6),
                                 later = floorUnderPatch({-0.6f, 0, 0.8f}, 40000, 7);
   const ArrayView<const PathVertex> all(later);
-  for (const OdisModel model : {test::formulas(), OdisModel(nullptr)}) {
+  for (const std::optional<Model>& model : {std::optional(Model()), std::optional<Model>()}) {
     GuideOptions options;
     options.model = model;
     GuideBuilder whole(options), parts(options), taken(options);

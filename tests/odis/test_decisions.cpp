@@ -10,7 +10,6 @@
 #include "odis/models/lights.h"
 #include "odis/models/returned_light.h"
 #include "odis/models/second_moments.h"
-#include "support/models.h"
 
 namespace odis::core {
 namespace {
@@ -181,7 +180,7 @@ TEST(Lights, PartsOfALightAreToldApartWhereThatGainsMuch) {
 // none where nothing is known.
 std::vector<float> learnedOfTwoLights(const std::vector<PathVertex>& vertices) {
   GuideOptions options;
-  options.model = test::formulas();
+  options.model = Model();
   options.lightGroups = 2;
   GuideBuilder builder(options);
   builder.add(vertices);

@@ -9,7 +9,6 @@
 #include "odis/floor_under_patch.h"
 #include "odis/models/fraction_samples.h"
 #include "odis/same_guide.h"
-#include "support/models.h"
 
 namespace odis::core {
 namespace {
@@ -17,7 +16,7 @@ namespace {
 // The options of most tests here: formulas decide.
 GuideOptions byFormula() {
   GuideOptions options;
-  options.model = test::formulas();
+  options.model = Model();
   return options;
 }
 

@@ -42,7 +42,7 @@ TEST(NumberTypes, OctahedralMap) {
 
 TEST(NumberTypes, MapsAndDecisions) {
   GuideOptions options;
-  options.model = test::formulas();
+  options.model = Model();
   GuideBuilder builder(options);
   const std::vector<PathVertex> vertices = floorUnderPatch(kBright, 20000, 7);
   builder.add(vertices);

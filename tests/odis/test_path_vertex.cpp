@@ -9,14 +9,13 @@
 #include "odis/models/second_moments.h"
 #include "odis/record/vertex_check.h"
 #include "odis/same_guide.h"
-#include "support/models.h"
 
 namespace odis::core {
 namespace {
 
-GuideOptions withModel(OdisModel model) {
+GuideOptions withFormulas() {
   GuideOptions options;
-  options.model = model;
+  options.model = Model();
   return options;
 }
 
@@ -104,7 +103,7 @@ TEST(VertexCounts, EachReasonIsCountedByBuilders) {
   for (const Defect& defect : defects()) {
     std::vector<PathVertex> vertices(10, leastVertex());
     for (const size_t spoiled : {2, 3, 7}) defect.spoil(vertices[spoiled]);
-    GuideBuilder builder(withModel(test::formulas()));
+    GuideBuilder builder(withFormulas());
     builder.add(vertices);
     const VertexCounts counts = builder.vertexCounts();
     EXPECT_EQ(counts.accepted, 7u) << "defect " << i;
@@ -149,7 +148,7 @@ TEST(VertexCounts, AreNothingBeforeAnythingIsAdded) {
 
 TEST(VertexCounts, RefusedVerticesTeachNothing) {
   std::vector<PathVertex> vertices = floorUnderPatch(kBright, 5000, 1);
-  GuideBuilder without(withModel(nullptr)), with(withModel(nullptr));
+  GuideBuilder without, with;
   without.add(vertices);
   const Guide expected = without.build(vertices);
   // All have a place and a cell, so that nothing but their defects can keep them out.
@@ -171,8 +170,7 @@ TEST(VertexCounts, FramesCountWhatThePassDidNotAskFor) {
   FrameOptions options;
   options.width = options.height = 4;
   options.pilotSamplesPerPixel = 1;
-  const GuideOptions guide = withModel(test::formulas());
-  options.guide = &guide;
+  options.guide = withFormulas();
   Frame frame(options);
   const FramePass* pass = frame.beginPass();
   ASSERT_NE(pass, nullptr);
@@ -204,8 +202,7 @@ TEST(PathVertexTest, VeryLargeImagesAreLearnedFromInSomePixels) {
   options.height = 1000;
   options.samplesPerPixel = 2;
   options.pilotSamplesPerPixel = 1;
-  const GuideOptions guide = withModel(test::formulas());
-  options.guide = &guide;
+  options.guide = withFormulas();
   for (const bool keepsAll : {false, true}) {
     options.keepPilotVertices = keepsAll;
     Frame frame(options);
@@ -247,12 +244,12 @@ TEST(Fallbacks, StandInForUnknownContributions) {
       {&PathVertex::light},
       {&PathVertex::raysAfter},
       {&PathVertex::indirect, &PathVertex::emission, &PathVertex::light, &PathVertex::raysAfter}};
-  for (const OdisModel model : {test::formulas(), OdisModel(nullptr)})
+  for (const GuideOptions& options : {withFormulas(), GuideOptions()})
     for (const std::vector<Field>& fields : unknown) {
       std::vector<PathVertex> vertices = floorUnderPatch(kBright, 5000, 1);
       for (PathVertex& v : vertices)
         for (const Field field : fields) v.*field = kUnknown;
-      GuideBuilder builder(withModel(model));
+      GuideBuilder builder(options);
       builder.add(vertices);
       EXPECT_EQ(builder.vertexCounts().accepted, vertices.size());
       expectFallbacks(builder.build(vertices), kFallbackBsdfFraction);
@@ -289,7 +286,7 @@ TEST(Fallbacks, AreThoseOfVerticesWithNothingButWhatIsRequired) {
 TEST(Fallbacks, GiveWayToAFixedFraction) {
   std::vector<PathVertex> vertices = floorUnderPatch(kBright, 5000, 1);
   for (PathVertex& v : vertices) v.indirect = kUnknown;
-  GuideOptions options = withModel(test::formulas());
+  GuideOptions options = withFormulas();
   options.fixedBsdfFraction = 0.3f;
   GuideBuilder builder(options);
   builder.add(vertices);
@@ -299,7 +296,7 @@ TEST(Fallbacks, GiveWayToAFixedFraction) {
 TEST(Fallbacks, AreNotAskedWhereSomeVerticesKnow) {
   std::vector<PathVertex> vertices = floorUnderPatch(kBright, 20000, 1);
   for (size_t i = 0; i < vertices.size(); i += 2) vertices[i].light = kUnknown;
-  GuideBuilder builder(withModel(test::formulas()));
+  GuideBuilder builder(withFormulas());
   builder.add(vertices);
   const Guide guide = builder.build(vertices);
   const GuideView view = guide.view();
@@ -316,7 +313,7 @@ TEST(Fallbacks, StandInForUnknownDensitiesAndCosines) {
   const std::vector<PathVertex> known = floorUnderPatch(kBright, 5000, 1);
   std::vector<PathVertex> unknown = known;
   for (PathVertex& v : unknown) v.guidablePdf = v.guidableProbability = v.cosine = kUnknown;
-  GuideBuilder one(withModel(nullptr)), other(withModel(nullptr));
+  GuideBuilder one, other;
   one.add(known);
   other.add(unknown);
   EXPECT_TRUE(sameGuide(one.build(known), other.build(unknown)));

@@ -234,6 +234,7 @@ class PixelGuide : public ::testing::Test {
  protected:
   PixelGuide() {
     m_options.lightGroups = 2;
+    m_options.cached = true;
     m_options.cachedError = 0.5f;
     GuideBuilder builder(m_options);
     const std::vector<PathVertex> vertices = manyVertices();
@@ -328,10 +329,11 @@ TEST_F(PixelGuide, MapsWithoutCosineAreThemselves) {
 TEST(PixelOptions, MistakesAreRefused) {
   GuideOptions options;
   for (const auto spoil :
-       {+[](GuideOptions& o) { o.pixelMaps = 4; }, +[](GuideOptions& o) { o.pixelMaps = -1; },
-        +[](GuideOptions& o) { o.pixelTile = 0; }, +[](GuideOptions& o) { o.pixelTile = 17; },
-        +[](GuideOptions& o) { o.pixelShare = 1.5f; }, +[](GuideOptions& o) { o.pixelShare = NAN; },
-        +[](GuideOptions& o) { o.pixelMaps = ODIS_PIXEL_MAPS_NETWORK; }}) {
+       {+[](GuideOptions& o) { o.pixelMaps = PixelMapKind(4); },
+        +[](GuideOptions& o) { o.pixelMaps = PixelMapKind(-1); }, +[](GuideOptions& o) { o.pixelTile = 0; },
+        +[](GuideOptions& o) { o.pixelTile = 17; }, +[](GuideOptions& o) { o.pixelShare = 1.5f; },
+        +[](GuideOptions& o) { o.pixelShare = NAN; },
+        +[](GuideOptions& o) { o.pixelMaps = PixelMapKind::network; }}) {
     GuideOptions bad = options;
     spoil(bad);
     EXPECT_THROW(GuideBuilder{bad}, std::invalid_argument);

@@ -10,7 +10,6 @@
 #include "odis/cells/statistics.h"
 #include "odis/floor_under_patch.h"
 #include "odis/guide.h"
-#include "support/models.h"
 
 namespace odis::core {
 namespace {
@@ -247,7 +246,7 @@ TEST(PlaceGrid, GuidesKnowTheFloorAndWhatLiesFarOut) {
   }
   std::shuffle(all.begin(), all.end(), draw.engine);
   GuideOptions options;
-  options.model = test::formulas();
+  options.model = Model();
   const auto build = [&](ArrayView<const PathVertex> vertices) {
     GuideBuilder builder(options);
     builder.add(vertices);
@@ -280,7 +279,7 @@ TEST(PlaceGrid, FewVerticesFarOutHaveTheMapsOfCoarserCells) {
   for (int i = 0; i < 50; ++i) addFar(4, {1e5f, 6e4f * float(i), 0});
   addFar(2000, {-1e5f, 3e4f, 0});
   GuideOptions options;
-  options.model = test::formulas();
+  options.model = Model();
   GuideBuilder builder(options);
   builder.add(vertices);
   const Guide guide = builder.build(vertices);

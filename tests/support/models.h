@@ -11,8 +11,8 @@ namespace odis::test {
 inline Model makeModel(std::shared_ptr<const core::DirectionModel> directions,
                        std::shared_ptr<const core::LightModel> lights,
                        std::shared_ptr<const core::PixelModel> pixels = nullptr) {
-  return Model(new core::ContextModel(Context::shared().get(),
-                                      {std::move(directions), std::move(lights), std::move(pixels)}));
+  return Model(new OdisModelImpl(Context::shared().get(),
+                                 {std::move(directions), std::move(lights), std::move(pixels)}));
 }
 
 // A model without networks.

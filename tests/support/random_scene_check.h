@@ -26,11 +26,11 @@ inline std::string failureOf(const render::Scene& scene, const Rendering& render
   render::RenderOptions options;
   options.integrator = rendering.integrator;
   options.spp = rendering.spp;
-  options.cached = rendering.cached;
+  if (rendering.cached) options.set("cached=on");
   options.maxDepth = scene.integrator().maxDepth;
   options.rrDepth = scene.integrator().rrDepth;
   options.threads = 1;
-  options.costs.guidedRay = 0;  // guides and refines, however little it gains
+  options.set("guided-cost=0");  // guides and refines, however little it gains
   options.variance = options.features = options.guideFeatures = true;
   render::Progress quiet;
   const render::RenderResult result = render::render(scene, options, quiet);

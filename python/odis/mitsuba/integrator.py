@@ -23,7 +23,6 @@ from .materials import make_material_table
 from .parameters import read_parameters
 from .progress import default_progress
 from .random_numbers import generator_of, hash_seed
-from .settings import LEAST_CACHED_MAX_DEPTH
 
 # Vertices are recorded by so many paths at once at most, into so many rows; paths that need more come in smaller parts.
 RECORDED_PATHS = 1 << 17
@@ -246,9 +245,10 @@ def make_integrator():
             """The image as the film stores it: colours, alpha if it has it, and weights."""
             film = make_film(self.film, sensor.film())
             width, height = film.size
-            cached = self.cached and not 0 <= self.settings.max_depth < LEAST_CACHED_MAX_DEPTH
+            cached = self.cached and not 0 <= self.settings.max_depth < odis.LEAST_CACHED_MAX_DEPTH
             self.frame = frame = odis.Frame(
-                self.given.frame_options((width, height), spp, seed, self.known.lights, cached, self.settings.max_depth))
+                self.given.frame_options((width, height), spp, seed, self.known.lights, cached,
+                                         self.settings.max_depth))
             pixels_per_recorded = PIXELS_PER_RECORDED_IF_CACHED if cached else PIXELS_PER_RECORDED
             progress, traced, self.rays = checks.progress(self.progress or default_progress()), 0, 0
             progress(0)

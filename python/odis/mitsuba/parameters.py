@@ -30,7 +30,7 @@ def read_parameters(props):
     flag = lambda name: of_type(name, props.get(name, False), bool, "true or false")
     settings = path.Settings(
         whole_number("max_depth", props.get("max_depth", -1), -1, expected="-1 (no limit) or a whole number from 0"),
-        whole_number("rr_depth", props.get("rr_depth", 5), 1), flag("hide_emitters"), **given.path)
+        whole_number("rr_depth", props.get("rr_depth", 5), 1), flag("hide_emitters"), **given.of_paths())
     cached = flag("cached")
     if cached and mi.is_spectral:
         raise ValueError(f"odis: cached: expected a variant in rgb, found {mi.variant()}")

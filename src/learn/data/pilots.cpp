@@ -97,7 +97,7 @@ ViewFrame frameOf(std::span<const Pilot> pilots) {
     pixels += pilot.image.size();
   }
   core::CellStore cells(INFINITY);
-  cells.add(parts, OdisGuideOptions().cellsPerDiagonal);
+  cells.add(parts, core::GuideOptions().cellsPerDiagonal);
   ViewFrame frame{cells.grid().origin(), cells.grid().finestEdge(), 1};
   const double mean = sum / double(std::max<size_t>(pixels, 1));
   if (mean > 0 && std::isfinite(mean)) frame.unit = float(mean);

@@ -4,57 +4,30 @@
 
 #include "learn/inspect/summaries.h"
 #include "odis/models/model.h"
+#include "odis/settings.h"
 
 namespace odis::learn {
 
 namespace {
 
-template <class T>
-void noteOption(std::vector<ChosenOption>& options, const std::string& name, const T& value, const T& usual) {
-  if (value != usual) options.push_back({name, fmt::format("{}", value)});
-}
-
-std::vector<ChosenOption> chosenOptions(const core::SavedOptions& saved) {
-  const core::FrameOptions frame;
-  const core::GuideOptions guide;
+// What differs from the defaults.
+std::vector<ChosenOption> chosenOptions(const core::FrameOptions& saved) {
+  const core::FrameOptions usual;
   std::vector<ChosenOption> chosen;
-  const auto ofFrame = [&](const char* name, auto member) {
-    noteOption(chosen, name, saved.frame.*member, frame.*member);
+  const auto note = [&](const std::string& name, const auto& value, const auto& usualValue) {
+    if (value != usualValue) chosen.push_back({name, fmt::format("{}", value)});
   };
-  const auto ofGuide = [&](const char* name, auto member) {
-    noteOption(chosen, name, saved.guide.*member, guide.*member);
-  };
-  ofFrame("samplesPerPixel", &core::FrameOptions::samplesPerPixel);
-  ofFrame("refinementSamples", &core::FrameOptions::refinementSamples);
-  ofFrame("seed", &core::FrameOptions::seed);
-  ofFrame("pilotSamplesPerPixel", &core::FrameOptions::pilotSamplesPerPixel);
-  ofFrame("pilotWeight", &core::FrameOptions::pilotWeight);
-  ofFrame("oracleSamples", &core::FrameOptions::oracleSamples);
-  ofFrame("guided", &core::FrameOptions::guided);
-  ofFrame("adaptive", &core::FrameOptions::adaptive);
-  ofFrame("guidedCost", &core::FrameOptions::guidedCost);
-  ofFrame("builtCellCost", &core::FrameOptions::builtCellCost);
-  ofFrame("recordedRayCost", &core::FrameOptions::recordedRayCost);
-  ofFrame("keepPilotVertices", &core::FrameOptions::keepPilotVertices);
-  ofFrame("keepPixelMeans", &core::FrameOptions::keepPixelMeans);
-  ofFrame("tileOffsetX", &core::FrameOptions::tileOffsetX);
-  ofFrame("tileOffsetY", &core::FrameOptions::tileOffsetY);
-  ofGuide("cellsPerDiagonal", &core::GuideOptions::cellsPerDiagonal);
-  for (size_t level = 0; level < kCellLevels; ++level)
-    noteOption(chosen, fmt::format("priorSamples[{}]", level), saved.guide.priorSamples[level],
-               guide.priorSamples[level]);
-  ofGuide("floor", &core::GuideOptions::floor);
-  ofGuide("clamp", &core::GuideOptions::clamp);
-  ofGuide("fixedBsdfFraction", &core::GuideOptions::fixedBsdfFraction);
-  ofGuide("controlVariate", &core::GuideOptions::controlVariate);
-  ofGuide("cachedError", &core::GuideOptions::cachedError);
-  ofGuide("pixelMaps", &core::GuideOptions::pixelMaps);
-  ofGuide("pixelTile", &core::GuideOptions::pixelTile);
-  ofGuide("pixelShare", &core::GuideOptions::pixelShare);
-  ofGuide("pixelDirectLight", &core::GuideOptions::pixelDirectLight);
-  ofGuide("cosineProduct", &core::GuideOptions::cosineProduct);
-  ofGuide("lightGroups", &core::GuideOptions::lightGroups);
-  ofGuide("lightPartCount", &core::GuideOptions::lightPartCount);
+  note("samplesPerPixel", saved.samplesPerPixel, usual.samplesPerPixel);
+  note("seed", saved.seed, usual.seed);
+  note("keepPixelMeans", saved.keepPixelMeans, usual.keepPixelMeans);
+  note("tileOffsetX", saved.tileOffsetX, usual.tileOffsetX);
+  note("tileOffsetY", saved.tileOffsetY, usual.tileOffsetY);
+  note("lightGroups", saved.guide.lightGroups, usual.guide.lightGroups);
+  note("lightParts", saved.guide.lightParts.size(), usual.guide.lightParts.size());
+  const std::string settings = core::settingsText(saved), usualSettings = core::settingsText(usual);
+  for (const OdisSetting& setting : core::allSettings())
+    note(setting.name, core::readSetting(settings, setting.name),
+         core::readSetting(usualSettings, setting.name));
   return chosen;
 }
 
@@ -75,7 +48,7 @@ std::string stateText(const core::SavedFrame& saved) {
   const std::string where = saved.pass ? "within " : "before ";
   if (at.next == ODIS_PASS_PILOT) return where + "the pilot";
   if (at.next == ODIS_PASS_ORACLE)
-    return where + fmt::format("one of {} passes of the oracle", saved.options.frame.oracleSamples);
+    return where + fmt::format("one of {} passes of the oracle", saved.options.oracleSamples());
   return where + fmt::format("a guided pass: samples {} to {} of at most {} after the pilot", at.done + 1,
                              saved.schedule.passEnd(at.done), all);
 }
@@ -107,7 +80,7 @@ BuilderSummary summarizeBuilder(const core::Archive& file) {
 void addImage(FrameSummary& result, const core::SavedFrame& saved) {
   const auto pixels = uint32_t(saved.pixelCount);
   result.samples = saved.position.pilotSamplesTaken + saved.position.laterSamplesTaken;
-  result.hasMeans = saved.options.frame.keepPixelMeans;
+  result.hasMeans = saved.options.keepPixelMeans;
   if (!result.hasMeans) {
     result.image.resize(pixels, render::Rgb(0, 0, 0));
     return;
@@ -116,7 +89,7 @@ void addImage(FrameSummary& result, const core::SavedFrame& saved) {
   for (uint32_t pixel = 0; pixel < pixels; ++pixel) {
     const PixelSums &pilot = saved.pilot.sums()[pixel], &later = saved.later.sums()[pixel];
     const WeightedSums parts[] = {
-        {&pilot, core::pilotWeight(saved.options.frame, saved.schedule, pixel, later.count)}, {&later, 1}};
+        {&pilot, core::pilotWeight(saved.options, saved.schedule, pixel, later.count)}, {&later, 1}};
     const Float3 color = weightedMean({parts, 2}).color;
     result.image.emplace_back(color.x, color.y, color.z);
     result.luminance += luminance(color) / double(pixels);
@@ -131,10 +104,10 @@ void addImage(FrameSummary& result, const core::SavedFrame& saved) {
 
 FrameSummary summarizeFrame(const core::SavedFrame& saved, const core::Archive& file) {
   FrameSummary result;
-  result.width = saved.options.frame.width;
-  result.height = saved.options.frame.height;
+  result.width = saved.options.width;
+  result.height = saved.options.height;
   result.options = chosenOptions(saved.options);
-  result.model = saved.options.frame.guided ? modelText(saved.modelId) : "none";
+  result.model = saved.options.guided ? modelText(saved.modelId) : "none";
   result.state = stateText(saved);
   if (saved.pass) {
     result.tiles = saved.pass->tilesDone.size();

@@ -13,6 +13,7 @@
 #include "odis/cells/shrinkage.h"
 #include "odis/maps/pack.h"
 #include "odis/maps/texel_directions.h"
+#include "odis/settings.h"
 #include "render/integrators/pilot_pass.h"
 
 namespace odis::learn {
@@ -68,6 +69,12 @@ std::vector<Rgb> imageOf(const PilotPass& pilot, const render::Crop& crop) {
   return image;
 }
 
+core::GuideOptions guideOptionsOf(const render::RenderOptions& options) {
+  core::FrameOptions result;
+  core::applySettings(result, options.settings);
+  return result.guide;
+}
+
 class Inspector {
  public:
   Inspector(const render::Scene& scene, const render::RenderOptions& options, const InspectSettings& settings,
@@ -77,7 +84,8 @@ class Inspector {
         m_settings(settings),
         m_progress(progress),
         m_lights(scene.emitters()),
-        m_store(options.guideOptions.clamp) {}
+        m_guide(guideOptionsOf(options)),
+        m_store(m_guide.clamp) {}
 
   std::optional<Inspection> run() {
     // What is wrong with the pixel is found out before time is spent.
@@ -105,18 +113,18 @@ class Inspector {
 
   // The formula's guide and, if another model is chosen, that one's; the last one decides.
   void buildGuides() {
-    const auto build = [&](const std::string& name, const GuideOptions& options) {
-      GuideBuilder builder(options);
+    const auto build = [&](const std::string& name, const std::string& more) {
+      GuideBuilder builder(GuideOptions(m_pilot.guideOptions).set("cached=off" + more));
       builder.add(m_pilot.vertices);
       m_guides.push_back({name, builder.build(m_pilot.vertices, m_pilot.pixelValues)});
     };
-    GuideOptions formula = m_pilot.guideOptions;
-    formula.model = formula.model.withDirectionFormula();
-    build("formula", formula);
-    if (m_pilot.guideOptions.model.get()->model.directions) build("network", m_pilot.guideOptions);
+    build("formula", " guide=histogram");
+    const std::optional<Model>& model = m_options.model;
+    if (m_guide.guide == core::GuideKind::network && (!model || model->get()->model.directions))
+      build("network", "");
     // The statistics that they were made from: the builder's own, with the same numbers.
     const ArrayView<const PathVertex> vertices = m_pilot.vertices;
-    m_store.add(VertexParts(&vertices, 1), m_pilot.guideOptions.cellsPerDiagonal);
+    m_store.add(VertexParts(&vertices, 1), m_guide.cellsPerDiagonal);
     m_cells = m_store.rollUp();
   }
 
@@ -178,14 +186,14 @@ class Inspector {
             : 1;
     m_result.pixelValue = m_pilot.pixelValues[v.pixel];
     m_result.survival =
-        m_options.roulette != render::RouletteKind::throughput
+        m_options.setting("roulette") != "throughput"
             ? survivalProbability(guide().view().rules, m_result.cell.survivalFactor, 1 / m_result.pixelValue)
             : 1;
   }
 
   void describeLevels() {
     const VertexIntegral integral(m_place.start, m_truth);
-    const float floor = m_pilot.guideOptions.floor;
+    const float floor = m_guide.floor;
     const core::PackedMap converged = core::packedMap(integral.texels(), floor);
     for (uint32_t c = m_cell; c != kNoCell; c = m_cells[c].parent) {
       const core::CellStatistics& cell = m_cells[c];
@@ -194,7 +202,7 @@ class Inspector {
       const CellGrid& grid = m_store.grid();
       level.edge = grid.edge(grid.key(m_place.position, m_place.normal, cell.level));
       level.effective = core::effectiveSamples(cell.sum, cell.sumSquares);
-      level.own = core::ownWeight(level.effective, m_pilot.guideOptions.priorSamples[cell.level]);
+      level.own = core::ownWeight(level.effective, m_guide.priorSamples[size_t(cell.level)]);
       level.statistics = cell;
       level.histogram = squareOf(cell.histogram);
       level.judgement = integral.judge(mapOfHistogram(cell, floor), converged, m_result.bsdfFraction);
@@ -215,7 +223,7 @@ class Inspector {
   }
 
   void describeMaps() {
-    const float floor = m_pilot.guideOptions.floor, bsdfFraction = m_result.bsdfFraction;
+    const float floor = m_guide.floor, bsdfFraction = m_result.bsdfFraction;
     const VertexIntegral integral(m_place.start, m_truth);
     const core::PackedMap truth = core::packedMap(integral.texels(), floor);
     const auto fill = [&](MapView& view, const core::PackedMap& map) {
@@ -254,7 +262,7 @@ class Inspector {
       view.lights = m_lights.describe(group);
       reference.learned = {};
       view.unlearned = m_lights.groupProbability(reference, group);
-      if (m_options.lights != render::LightChoiceKind::hierarchy)
+      if (m_options.setting("lights") != "hierarchy")
         reference.learned = learnedLights(guide().view(), cellOf(guide()));
       view.learned = m_lights.groupProbability(reference, group);
       view.converged = m_truth.lights(group);
@@ -269,6 +277,7 @@ class Inspector {
   PilotPass m_pilot;
   std::span<const PathVertex> m_vertices;  // the pilot's
   std::vector<NamedGuide> m_guides;
+  core::GuideOptions m_guide;
   core::CellStore m_store;
   std::vector<core::CellStatistics> m_cells;
   InspectedPlace m_place;

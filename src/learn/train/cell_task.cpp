@@ -3,6 +3,7 @@
 #include "learn/train/validation.h"
 #include "odis/models/direction_formula.h"
 #include "odis/models/direction_network.h"
+#include "odis/options.h"
 
 namespace odis::learn {
 
@@ -43,7 +44,8 @@ class CellTask : public Task {
   // The predicted variance of the network, and of the formula beside it.
   std::vector<double> validate(const std::vector<std::string>& shardFiles) override {
     if (shardFiles != m_formulaOf) {
-      m_formula = predictedVariance(shardFiles, std::make_shared<core::DirectionFormula>(OdisGuideOptions()));
+      m_formula = predictedVariance(
+          shardFiles, std::make_shared<core::DirectionFormula>(core::GuideOptions().priorSamples));
       m_formulaOf = shardFiles;
     }
     const auto network = std::make_shared<core::DirectionNetwork>(core::Weights("", m_learner->tensors()));

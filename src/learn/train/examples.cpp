@@ -116,7 +116,7 @@ ViewExamples examplesOf(const ShardReader& shard, size_t view) {
     }
   }
   for (int variant = 0; variant < kInputVariants; ++variant) {
-    core::CellStore store(OdisGuideOptions().clamp, true);
+    core::CellStore store(core::GuideOptions().clamp, true);
     store.place(CellGrid(frame.origin, frame.edge));
     std::vector<ArrayView<const PathVertex>> parts;
     for (const size_t pilot : pilotsOf(variant, view, pilots.size()))

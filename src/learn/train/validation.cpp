@@ -48,9 +48,8 @@ double varianceOf(const ShardReader& shard, size_t view,
   const std::vector<Pilot> pilots = readPilots(shard, view);
   if (pilots.size() < 2) return 1;
   const std::vector<float> values = pixelValues(pilots, int(render::wholeNumber(header.at("width"))));
-  OdisModelImpl handle({model, nullptr, nullptr});
-  OdisGuideOptions options;
-  options.model = &handle;
+  core::GuideOptions options;
+  options.model = core::Model{model, nullptr, nullptr};
   core::GuideBuilder builder(options);
   std::vector<ArrayView<const PathVertex>> seen;
   for (size_t i = 0; i + 1 < pilots.size(); ++i) seen.emplace_back(pilots[i].vertices);

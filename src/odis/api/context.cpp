@@ -5,18 +5,18 @@ using odis::core::guarded;
 
 OdisContextImpl::OdisContextImpl(const OdisContextOptions& given)
     : options(given),
-      tasks(given.taskFunction ? odis::core::hostTasks(given.taskFunction, given.taskUser)
+      tasks(given.taskFunction ? odis::core::hostTasks(given.taskFunction, given.user)
                                : odis::core::libraryTasks(given.threads)) {}
 
 void OdisContextImpl::log(OdisLogLevel level, const std::string& message) {
   if (!hears(level)) return;
   const std::lock_guard lock(m_logMutex);
-  options.logFunction(options.logUser, level, message.c_str());
+  options.logFunction(options.user, level, message.c_str());
 }
 
 void OdisContextImpl::countMemory(int64_t change) {
   memory += change;
-  if (options.memoryFunction) options.memoryFunction(options.memoryUser, change);
+  if (options.memoryFunction) options.memoryFunction(options.user, change);
 }
 
 uint64_t OdisContextImpl::memoryLeft() const {
@@ -65,7 +65,8 @@ namespace {
 
 template <class MakeModel>
 OdisModel newModel(OdisContext context, const char* function, const MakeModel& make) {
-  return guardedFor(context, function, OdisModel(nullptr), [&] { return new ContextModel(context, make()); });
+  return guardedFor(context, function, OdisModel(nullptr),
+                    [&] { return new OdisModelImpl(context, make()); });
 }
 
 }  // namespace
@@ -85,20 +86,6 @@ OdisModel odisNewModelFromMemory(OdisContext context, const void* bytes, size_t 
   return odis::core::newModel(context, "odisNewModelFromMemory", [&] {
     odis::core::requireArgument(bytes, "odisNewModelFromMemory: bytes");
     return odis::core::Model::parse("weights in memory", {static_cast<const char*>(bytes), size});
-  });
-}
-OdisModel odisNewModelWithFormulas(OdisModel model, bool directions, bool lights) {
-  return odis::core::guardedFor(model, "odisNewModelWithFormulas", OdisModel(nullptr), [&] {
-    odis::core::Model changed = model->model;
-    if (directions) changed.directions = nullptr;
-    if (lights) changed.lights = nullptr;
-    return new odis::core::ContextModel(odis::core::contextOf(model), std::move(changed));
-  });
-}
-OdisModel odisNewModelWithPixelNetwork(OdisModel model, const char* name) {
-  return odis::core::guardedFor(model, "odisNewModelWithPixelNetwork", OdisModel(nullptr), [&] {
-    odis::core::requireArgument(name, "odisNewModelWithPixelNetwork: name");
-    return new odis::core::ContextModel(odis::core::contextOf(model), model->model.withPixelNetwork(name));
   });
 }
 void odisRetainModel(OdisModel model) {

@@ -25,7 +25,7 @@ void setError(OdisContext context, OdisError code, const char* message) noexcept
     std::snprintf(threadError.message, sizeof threadError.message, "%s", message);
   }
   if (context && context->options.errorFunction)
-    context->options.errorFunction(context->options.errorUser, code, message);
+    context->options.errorFunction(context->options.user, code, message);
 }
 
 void setErrorFromException(OdisContext context) noexcept {

@@ -24,7 +24,9 @@ OdisFrame odisLoadFrame(OdisContext context, const char* path, OdisModel model) 
   return guarded(context, OdisFrame(nullptr), [&] {
     requireArgument(context, "odisLoadFrame: context");
     requireArgument(path, "odisLoadFrame: path");
-    return new OdisFrameImpl(context, odis::core::Frame::load(Archive::load(path), model, context->tasks));
+    return new OdisFrameImpl(
+        context,
+        odis::core::Frame::load(Archive::load(path), odis::core::modelBehind(model), context->tasks));
   });
 }
 

@@ -1,24 +1,10 @@
 #include "odis/api/guard.h"
+#include "odis/api/options.h"
 #include "odis/api/vertices.h"
 
 namespace odis::core {
 
-OdisGuideOptions adoptGuideOptions(const OdisGuideOptions& given);
-
 namespace {
-
-// The options of a frame, and those of its guide that they point to.
-struct AdoptedFrameOptions {
-  explicit AdoptedFrameOptions(const OdisFrameOptions& given) : frame(adopt(given, "OdisFrameOptions")) {
-    if (frame.guide && frame.builder)
-      throw std::invalid_argument("OdisFrameOptions.guide: expected NULL, the builder has its own options");
-    if (frame.guide) guide = adoptGuideOptions(*frame.guide);
-    frame.guide = &guide;
-  }
-
-  OdisFrameOptions frame;
-  OdisGuideOptions guide;
-};
 
 // A function of a frame that is not on its way between two passes.
 template <class Result, class Body>
@@ -102,12 +88,12 @@ OdisFrame odisNewFrame(OdisContext context, const OdisFrameOptions* options) {
   return odis::core::guarded(context, OdisFrame(nullptr), [&] {
     odis::core::requireArgument(context, "odisNewFrame: context");
     odis::core::requireArgument(options, "odisNewFrame: options");
-    const odis::core::AdoptedFrameOptions adopted(*options);
-    const OdisGuideBuilder host = adopted.frame.builder;
+    const odis::core::FrameOptions given = odis::core::optionsOf(*options);
+    const OdisGuideBuilder host = odis::core::adopt(*options, "OdisFrameOptions").builder;
     // The frame's reference to the handle keeps its content alive.
     const std::shared_ptr<odis::core::GuideBuilder> builder(std::shared_ptr<void>(),
                                                             host ? &host->builder : nullptr);
-    return new OdisFrameImpl(context, Frame(adopted.frame, context->tasks, builder), host);
+    return new OdisFrameImpl(context, Frame(given, context->tasks, builder), host);
   });
 }
 void odisRetainFrame(OdisFrame frame) {

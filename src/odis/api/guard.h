@@ -27,7 +27,7 @@ inline OdisContext contextOf(OdisContext context) {
   return context;
 }
 inline OdisContext contextOf(OdisModel model) {
-  return static_cast<ContextModel*>(model)->context.get();
+  return model->context.get();
 }
 template <class Handle>
 OdisContext contextOf(Handle handle) {

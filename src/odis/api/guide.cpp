@@ -1,23 +1,16 @@
 #include "odis/api/guard.h"
+#include "odis/api/options.h"
 #include "odis/api/vertices.h"
 
 using odis::core::guardedFor;
 using odis::core::HostVertices;
-
-namespace odis::core {
-
-OdisGuideOptions adoptGuideOptions(const OdisGuideOptions& given) {
-  return adopt(given, "OdisGuideOptions");
-}
-
-}  // namespace odis::core
 
 OdisGuideImpl::OdisGuideImpl(OdisContext owner, odis::core::Guide content)
     : memory(owner), guide(std::move(content)) {
   memory.set(guide.bytes());
 }
 
-OdisGuideBuilderImpl::OdisGuideBuilderImpl(OdisContext owner, const OdisGuideOptions& options)
+OdisGuideBuilderImpl::OdisGuideBuilderImpl(OdisContext owner, const odis::core::GuideOptions& options)
     : memory(owner), builder(options, owner->tasks) {}
 
 void OdisGuideBuilderImpl::takeStock() {
@@ -39,7 +32,7 @@ OdisGuideBuilder odisNewGuideBuilder(OdisContext context, const OdisGuideOptions
   return odis::core::guarded(context, OdisGuideBuilder(nullptr), [&] {
     odis::core::requireArgument(context, "odisNewGuideBuilder: context");
     return new OdisGuideBuilderImpl(context,
-                                    options ? odis::core::adoptGuideOptions(*options) : OdisGuideOptions());
+                                    options ? odis::core::optionsOf(*options) : odis::core::GuideOptions());
   });
 }
 void odisRetainGuideBuilder(OdisGuideBuilder builder) {

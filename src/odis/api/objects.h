@@ -85,14 +85,19 @@ class MemoryUse {
 
 }  // namespace odis::core
 
+struct OdisModelImpl : odis::core::Object {
+  OdisModelImpl(OdisContext owner, odis::core::Model content) : context(owner), model(std::move(content)) {}
+
+  odis::core::Ref<OdisContextImpl> context;
+  odis::core::Model model;
+};
+
 namespace odis::core {
 
-// The models that handles of hosts stand for.
-struct ContextModel : OdisModelImpl {
-  ContextModel(OdisContext owner, Model content) : OdisModelImpl(std::move(content)), context(owner) {}
-
-  Ref<OdisContextImpl> context;
-};
+// Nothing for NULL.
+inline std::optional<Model> modelBehind(OdisModel handle) {
+  return handle ? std::optional(handle->model) : std::nullopt;
+}
 
 }  // namespace odis::core
 
@@ -127,7 +132,7 @@ class MemoryWarnings {
 }  // namespace odis::core
 
 struct OdisGuideBuilderImpl : odis::core::Object {
-  OdisGuideBuilderImpl(OdisContext owner, const OdisGuideOptions& options);
+  OdisGuideBuilderImpl(OdisContext owner, const odis::core::GuideOptions& options);
 
   // Notes what the builder holds after it has learned.
   void takeStock();

@@ -44,6 +44,9 @@ class ArchiveWriter {
   void add(const std::string& name, const std::vector<T>& elements) {
     add(name, std::span<const T>(elements));
   }
+  void addText(const std::string& name, const std::string& text) {
+    add(name, std::span<const char>(text.data(), text.size()));
+  }
   template <class T>
   void addValue(const std::string& name, const T& value) {
     add(name, std::span<const T>(&value, 1));
@@ -90,6 +93,10 @@ class Archive {
     std::vector<T> elements = get<T>(name);
     require(elements.size() == count, name + ": has another number of elements than expected");
     return elements;
+  }
+  std::string text(const std::string& name) const {
+    const std::vector<char> bytes = get<char>(name);
+    return {bytes.begin(), bytes.end()};
   }
   template <class T>
   T value(const std::string& name) const {

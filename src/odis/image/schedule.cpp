@@ -26,7 +26,7 @@ uint64_t mixBits(uint64_t x) {
   return x ^ (x >> 33);
 }
 
-double pilotSamplesPerPixel(const OdisFrameOptions& options) {
+double pilotSamplesPerPixel(const FrameOptions& options) {
   if (options.pilotSamplesPerPixel > 0) return std::max(options.pilotSamplesPerPixel, 1e-3);
   const size_t pixels = size_t(options.width) * options.height;
   return pixels >= kManyPixels && options.samplesPerPixel < kManySamples ? 0.25 : 1.0;
@@ -34,7 +34,7 @@ double pilotSamplesPerPixel(const OdisFrameOptions& options) {
 
 // The pixels of a pilot of less than a sample per pixel: one of each square of 1 / pilotSpp pixels (of the
 // next whole side), which is chosen by a hash of the square and the seed.
-std::vector<uint8_t> pixelsInPilot(const OdisFrameOptions& options, double pilotSpp) {
+std::vector<uint8_t> pixelsInPilot(const FrameOptions& options, double pilotSpp) {
   std::vector<uint8_t> isInPilot(size_t(options.width) * options.height, 0);
   const uint32_t side = uint32_t(std::lround(1 / std::sqrt(pilotSpp)));
   for (uint32_t y = 0; y < options.height; y += side)
@@ -49,7 +49,7 @@ std::vector<uint8_t> pixelsInPilot(const OdisFrameOptions& options, double pilot
 
 }  // namespace
 
-Schedule::Schedule(const OdisFrameOptions& options)
+Schedule::Schedule(const FrameOptions& options)
     : m_pixels(uint64_t(options.width) * options.height),
       m_spp(options.samplesPerPixel),
       m_mostRemaining(options.samplesPerPixel) {
@@ -61,11 +61,11 @@ Schedule::Schedule(const OdisFrameOptions& options)
     else
       m_isInPilot = pixelsInPilot(options, pilotSpp);
     m_mostRemaining -= m_pilotEverywhere;
-    if (options.oracleSamples == 0)
+    if (options.oracleSamples() == 0)
       m_lastRefinement = std::bit_floor(std::min(options.refinementSamples, m_mostRemaining / 2) + 1) - 1;
   }
   // Two samples of a pixel tell how much they differ; a pilot's may be the first.
-  if (options.adaptive && m_spp >= kFewestToSpread && pilotSpp + 2 < m_spp)
+  if (options.adaptive() && m_spp >= kFewestToSpread && pilotSpp + 2 < m_spp)
     m_spreadAfter = options.guided ? 1 : 2;
   m_decided = std::max(m_lastRefinement, m_spreadAfter);
 }

@@ -5,7 +5,7 @@
 #include <utility>
 #include <vector>
 
-#include "odis/structs.h"
+#include "odis/options.h"
 
 namespace odis::core {
 
@@ -16,7 +16,7 @@ using SampleRange = OdisSampleRange;
 // byte a pixel where not all are in the pilot, and 4 once counts are settled.
 class Schedule {
  public:
-  explicit Schedule(const OdisFrameOptions& options);
+  explicit Schedule(const FrameOptions& options);
 
   // How many samples of the pixel belong to the pilot.
   uint32_t pilotCount(uint32_t pixel) const {

@@ -22,8 +22,8 @@ constexpr size_t kTilesForThreads = 5, kWorkForThreads = 16384;
 
 }  // namespace
 
-TileCollector::TileCollector(const OdisFrameOptions& image, std::shared_ptr<const Tasks> tasks)
-    : m_grid(image), m_tiles(std::make_unique<Tile[]>(tileCount())), m_tasks(std::move(tasks)) {}
+TileCollector::TileCollector(const TileGrid& grid, std::shared_ptr<const Tasks> tasks)
+    : m_grid(grid), m_tiles(std::make_unique<Tile[]>(tileCount())), m_tasks(std::move(tasks)) {}
 
 SamplesDue TileCollector::samplesDue(uint32_t tile) const {
   SamplesDue due;

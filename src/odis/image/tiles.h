@@ -30,7 +30,7 @@ class TileCollector {
 
   // Collects for an image of this size with these tiles. The tiles of a large call are shared out as `tasks`;
   // null: they are taken one after another.
-  explicit TileCollector(const OdisFrameOptions& image, std::shared_ptr<const Tasks> tasks = nullptr);
+  explicit TileCollector(const TileGrid& grid, std::shared_ptr<const Tasks> tasks = nullptr);
   uint32_t tileCount() const { return m_grid.tileCount(); }
 
   void beginPass(Due due, Sink sink);

@@ -5,9 +5,8 @@
 
 namespace odis::core {
 
-DirectionFormula::DirectionFormula(const OdisGuideOptions& options) {
-  std::copy_n(options.priorSamples, kCellLevels, m_priorSamples);
-}
+DirectionFormula::DirectionFormula(const std::array<float, kCellLevels>& priorSamples)
+    : m_priorSamples(priorSamples) {}
 
 DirectionDistribution DirectionFormula::predict(const CellChain& chain,
                                                 const DirectionDistribution* parent) const {
@@ -24,7 +23,8 @@ DirectionDistribution DirectionFormula::predict(const CellChain& chain,
     priorSum += prior[t];
   }
 
-  const float own = float(ownWeight(effectiveSamples(cell.sum, cell.sumSquares), m_priorSamples[cell.level]));
+  const float own =
+      float(ownWeight(effectiveSamples(cell.sum, cell.sumSquares), m_priorSamples[size_t(cell.level)]));
   const float perSample = cell.sum > 0 ? own / float(cell.sum) : 0;
   for (int t = 0; t < kMapTexels; ++t) {
     result.probability[t] =

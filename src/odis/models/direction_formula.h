@@ -9,11 +9,12 @@ namespace odis::core {
 // lobe.
 class DirectionFormula : public DirectionModel {
  public:
-  explicit DirectionFormula(const OdisGuideOptions& options);
+  // As GuideOptions::priorSamples.
+  explicit DirectionFormula(const std::array<float, kCellLevels>& priorSamples);
   DirectionDistribution predict(const CellChain& chain, const DirectionDistribution* parent) const override;
 
  private:
-  float m_priorSamples[kCellLevels];
+  std::array<float, kCellLevels> m_priorSamples;
 };
 
 }  // namespace odis::core

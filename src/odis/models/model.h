@@ -8,7 +8,6 @@
 #include "odis/models/direction_model.h"
 #include "odis/models/lights.h"
 #include "odis/pixels/pixel_model.h"
-#include "odis/work/object.h"
 
 namespace odis::core {
 
@@ -37,22 +36,6 @@ inline uint64_t idOf(const Model& model) {
   const uint64_t networks = (model.directions ? kDirectionNetwork : 0) | (model.lights ? kLightNetwork : 0) |
                             (model.pixels ? kPixelNetwork : 0);
   return networks | (networks > 0 ? model.checksum : 0);
-}
-
-}  // namespace odis::core
-
-// What a handle of a model points to.
-struct OdisModelImpl : odis::core::Object {
-  explicit OdisModelImpl(odis::core::Model content) : model(std::move(content)) {}
-
-  odis::core::Model model;
-};
-
-namespace odis::core {
-
-// The model of some options; NULL stands for the one that comes with the library.
-inline Model modelOf(OdisModel handle) {
-  return handle ? handle->model : Model::builtIn();
 }
 
 }  // namespace odis::core

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <odis/tiles.h>
+#include <odis/odis.hpp>
 
 #include <cassert>
 
@@ -19,12 +20,13 @@ class SampledTiles {
       : m_sampled(sampled),
         m_offset(kind == FilmKind::splat ? Vec2i(behindMultiple(sampled.x), behindMultiple(sampled.y))
                                          : Vec2i(0, 0)),
-        m_grid(asFrame()) {}
+        m_grid(uint32_t(sampled.width), uint32_t(sampled.height), uint32_t(m_offset.x),
+               uint32_t(m_offset.y)) {}
 
   const Crop& sampled() const { return m_sampled; }
   // The image that a frame of the library is asked for.
-  OdisFrameOptions asFrame() const {
-    OdisFrameOptions image;
+  FrameOptions asFrame() const {
+    FrameOptions image;
     image.width = uint32_t(m_sampled.width);
     image.height = uint32_t(m_sampled.height);
     image.tileOffsetX = uint32_t(m_offset.x);

@@ -20,21 +20,21 @@ const char* stageName(const FramePass& pass) {
 // Lets paths use what the guide has learned, as far as the options allow.
 void useGuide(PathSettings& settings, const GuideView& guide, const RenderOptions& options) {
   settings.guide = &guide;
-  settings.learnedLights = options.lights != LightChoiceKind::hierarchy;
-  settings.shadowRoulette = options.shadowRays == ShadowRayKind::roulette;
-  settings.learnedRoulette = options.roulette != RouletteKind::throughput;
+  settings.learnedLights = options.setting("lights") != "hierarchy";
+  settings.shadowRoulette = options.setting("shadow-rays") == "roulette";
+  settings.learnedRoulette = options.setting("roulette") != "throughput";
 }
 
 }  // namespace
 
 FrameOptions frameOptions(const RenderJob& job) {
   const RenderOptions& options = job.options();
-  FrameOptions frame{job.tiles().asFrame(), {}};
+  FrameOptions frame = job.tiles().asFrame();
   frame.keepPixelMeans = job.film() == FilmKind::pixels;
   frame.samplesPerPixel = uint32_t(options.spp);
   frame.seed = options.seed;
-  frame.guided = false;
-  frame.adaptive = options.samples == SampleSpread::adaptive;
+  frame.settings = options.settings;
+  frame.set("max-depth=" + std::to_string(std::max(options.maxDepth, 0)));
   return frame;
 }
 
@@ -169,9 +169,10 @@ void FrameIntegrator::finish(RenderResult& result) {
     fillPixels(result, *m_film);
   } else {
     const ArrayView<const PixelSums> pilot = m_frame.pilotImage();
+    const bool pilotWeighs = m_job.options().settingNumber("pilot-weight") > 0;
     fillPixels(result, m_job.options(), [&](uint32_t pixel) {
       const uint32_t samples = m_frame.sampleCount(pixel), later = samples - pilot[pixel].count;
-      const bool pilotCounts = m_job.options().pilotWeight > 0 || later == 0;
+      const bool pilotCounts = pilotWeighs || later == 0;
       return MeanOfSamples{m_frame.mean(pixel), pilotCounts ? samples : later};
     });
   }

@@ -37,7 +37,7 @@ class FrameIntegrator : public Integrator {
   bool m_guideIsNew = false;      // that the next pass has
 };
 
-// What a frame of the job's image is asked for, without a guide.
+// What a frame of the job's image is asked for, without the scene's lights.
 FrameOptions frameOptions(const RenderJob& job);
 
 }  // namespace odis::render

@@ -36,7 +36,7 @@ Pass RenderJob::pass() {
   pass.path.lights = &m_lights;
   pass.path.maxDepth = m_options.maxDepth;
   pass.path.rrDepth = m_options.rrDepth;
-  pass.path.guideBounces = m_options.guideBounces;
+  pass.path.guideBounces = int(m_options.settingNumber("guide-bounces"));
   pass.path.features = m_options.features;
   pass.path.guideFeatures = m_options.guideFeatures;
   pass.sampler = m_options.sampler;

@@ -1,8 +1,5 @@
 // odis: path tracing guided by what a pilot saw (docs/guiding.md). The library decides what is traced and
-// what samples weigh; here it is told of the scene's lights and of the options.
-#include <algorithm>
-#include <cmath>
-
+// what samples weigh.
 #include "render/integrators/frame_integrator.h"
 #include "render/integrators/pilot_pass.h"
 
@@ -10,49 +7,16 @@ namespace odis::render {
 
 namespace {
 
-// A pixel's noise falls with the root of its number of samples, and so does how far off cached radiance may
-// be.
-float cachedError(const RenderOptions& options) {
-  if (!isCaching(options)) return 0;
-  if (options.guideOptions.cachedError > 0) return options.guideOptions.cachedError;
-  constexpr float kOfOneSample = 0.6f;
-  return kOfOneSample / std::sqrt(float(options.spp));
-}
-
-// What guides are built with: the scene's lights, and the networks where they are asked for.
-GuideOptions guideOptions(const RenderJob& job) {
-  const RenderOptions& options = job.options();
-  GuideOptions guide = options.guideOptions;
-  if (options.lights != LightChoiceKind::hierarchy && job.lights().groupCount() > 1) {
-    guide.lightGroups = job.lights().groupCount();
-    guide.lightParts = job.lights().dividedLights();
-  }
-  guide.cachedError = cachedError(options);
-  guide.maxDepth = uint32_t(std::max(options.maxDepth, 0));
-  guide.model = options.model;
-  if (options.guide != GuideKind::network) guide.model = guide.model.withDirectionFormula();
-  if (options.lights != LightChoiceKind::network) guide.model = guide.model.withLightFormula();
-  if (guide.pixelMaps == ODIS_PIXEL_MAPS_NETWORK && !options.pixelNetwork.empty())
-    guide.model = guide.model.withPixelNetwork(options.pixelNetwork);
-  return guide;
-}
-
+// What a frame is asked for with a guide: with the scene's lights, and the networks that were chosen.
 FrameOptions guidedFrameOptions(const RenderJob& job) {
   const RenderOptions& options = job.options();
   FrameOptions frame = frameOptions(job);
-  frame.guided = true;
-  frame.adaptive = options.samples != SampleSpread::even;
-  frame.pilotSamplesPerPixel = options.pilotSpp;
-  frame.pilotWeight = float(options.pilotWeight);
-  frame.guidedCost = options.costs.guidedRay;
-  frame.builtCellCost = options.costs.builtCell;
-  frame.recordedRayCost = options.costs.recordedRay;
-  frame.refinementSamples = uint32_t(options.refineSpp);
-  const bool oracle =
-      options.guide == GuideKind::oracle || options.guideOptions.pixelMaps == ODIS_PIXEL_MAPS_ORACLE;
-  frame.oracleSamples = oracle ? uint32_t(options.oracleSpp) : 0;
-  frame.keepPilotVertices = options.records;
-  frame.guide = guideOptions(job);
+  if (options.records) frame.set("pilot-vertices=kept");
+  if (options.setting("lights") != "hierarchy" && job.lights().groupCount() > 1) {
+    frame.guide.lightGroups = job.lights().groupCount();
+    frame.guide.lightParts = job.lights().dividedLights();
+  }
+  frame.guide.model = options.model;
   return frame;
 }
 
@@ -117,7 +81,7 @@ PilotPass renderPilot(const Scene& scene, const RenderOptions& options, Progress
   const ThreadLimit limit(options.threads);
   RenderJob job(scene, options, progress);
   FrameOptions frame = guidedFrameOptions(job);
-  frame.keepPilotVertices = true;
+  frame.set("pilot-vertices=kept");
   FrameIntegrator integrator(job, frame);
   integrator.tracePilot();
   const ArrayView<const PixelSums> image = integrator.frame().pilotImage();
@@ -125,7 +89,7 @@ PilotPass renderPilot(const Scene& scene, const RenderOptions& options, Progress
   return {{image.begin(), image.end()},
           integrator.frame().pilotVertices(),
           {values.begin(), values.end()},
-          frame.guide,
+          frame.guide.set(frame.settings),
           job.stop()};
 }
 

@@ -5,7 +5,7 @@
 namespace odis::render {
 
 std::unique_ptr<Integrator> makePathIntegrator(RenderJob& job) {
-  return std::make_unique<FrameIntegrator>(job, frameOptions(job));
+  return std::make_unique<FrameIntegrator>(job, frameOptions(job).set("guided=off"));
 }
 
 }  // namespace odis::render

@@ -9,15 +9,14 @@
 namespace odis::render {
 
 bool isGuiding(const RenderOptions& options) {
-  const GuideOptions& guide = options.guideOptions;
   return options.integrator == IntegratorKind::odis &&
-         (guide.cellsPerDiagonal > 0 || guide.pixelMaps != ODIS_PIXEL_MAPS_NONE);
+         (options.settingNumber("cells") > 0 || options.setting("pixel-maps") != "none");
 }
 
 bool isCaching(const RenderOptions& options) {
-  return options.cached && options.integrator == IntegratorKind::odis &&
-         options.guideOptions.cellsPerDiagonal > 0 &&
-         (options.maxDepth < 0 || options.maxDepth >= kLeastCachedMaxDepth);
+  return options.integrator == IntegratorKind::odis && options.setting("cached") == "on" &&
+         options.settingNumber("cells") > 0 &&
+         (options.maxDepth < 0 || options.maxDepth >= ODIS_LEAST_CACHED_MAX_DEPTH);
 }
 
 // Fills in the features of the crop's pixels.
@@ -61,7 +60,7 @@ void renderSamples(const Scene& scene, const RenderOptions& options, Progress& p
   const ThreadLimit limit(options.threads);
   RenderJob job(scene, options, progress);
   const std::unique_ptr<Integrator> integrator = makeIntegrator(job);
-  if (integrator->hasPilot() && options.pilotSpp >= options.spp)
+  if (integrator->hasPilot() && options.settingNumber("pilot-spp") >= options.spp)
     throw OptionError("--set pilot-spp: all samples are the pilot's, expected fewer");
   Pass pass = integrator->passBefore(0, uint32_t(options.spp) - 1);
   use([&](uint32_t sample, Purposes redrawn) {

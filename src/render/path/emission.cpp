@@ -101,7 +101,6 @@ bool scattersEvenly(const Arrival& arrival) {
 
 void endInCache(const PathSettings& settings, Batch& batch, Bounces& bounces) {
   if (!settings.guide || !settings.guide->cached) return;
-  if (settings.maxDepth >= 0 && settings.maxDepth < kLeastCachedMaxDepth) return;
   for (Arrival& arrival : bounces.arriving()) {
     if (!arrival.scatters || bounces.depth == 1) continue;
     Path& path = *arrival.path;

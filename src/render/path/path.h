@@ -15,10 +15,6 @@
 
 namespace odis::render {
 
-// Nothing is cached with a smaller max_depth: there is little to gain, and how much comes from how many
-// bounces differs too much from place to place.
-inline constexpr int kLeastCachedMaxDepth = 8;
-
 // What every path of a pass shares.
 struct PathSettings {
   const Scene* scene = nullptr;
