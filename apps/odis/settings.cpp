@@ -61,13 +61,15 @@ Setting ofLibrary(const odis::Setting& setting) {
   const std::string key = setting.name, option = optionOf(setting.name);
   const auto set = [=](RenderOptions& options, const std::string& value) {
     if (!option.empty()) throw UsageError(fmt::format("--set {}: expected {}", key, option));
-    const std::string text = fmt::format("{}={}", key, value);
-    if (value.find_first_of(" \t\n\r") != std::string::npos)
-      throw UsageError(fmt::format("--set {}: found \"{}\", expected no blanks", key, value));
+    // The library's texts have a blank between two words: a value with one is none.
+    const bool isWord = value.find_first_of(" \t\n\r") == std::string::npos;
+    const std::string shown = isWord ? value : "?", text = key + "=" + shown;
     try {
       odis::readSetting(text, key);
     } catch (const odis::Error& error) {
-      throw UsageError(fmt::format("--set {}", error.what()));
+      std::string message = error.what();
+      message.replace(message.find('"' + shown + '"') + 1, shown.size(), value);
+      throw UsageError("--set " + message);
     }
     options.set(text);
   };

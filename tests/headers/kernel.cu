@@ -107,7 +107,7 @@ std::vector<odis::PathVertex> litFloor(uint32_t count) {
 int main() {
   const std::vector<odis::PathVertex> vertices = litFloor(50000);
   odis::GuideOptions options;
-  options.fixedBsdfFraction = 0.4f;
+  options.set("bsdf-fraction=0.4");
   odis::GuideBuilder builder(options);
   builder.add(vertices);
   const odis::Guide guide = builder.build(vertices);

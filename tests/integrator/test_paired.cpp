@@ -102,7 +102,8 @@ double renderMean(const Scene& scene, const RenderOptions& options) {
 
 // Takes so many guided samples in each pixel. The pilot keeps its share: the mean has the same expectation.
 void takeMany(int guided, RenderOptions& options) {
-  options.pilotWeight *= double(guided) / (options.spp - 1);
+  const double weight = options.settingNumber("pilot-weight") * guided / (options.spp - 1);
+  options.set("pilot-weight=" + std::to_string(weight));
   options.spp = 1 + guided;
 }
 
@@ -116,7 +117,8 @@ double pilotMean(const Scene& scene, RenderOptions options) {
 // The pilot's share in the mean of an image. It has to be a constant: one that depends on the pilot would
 // hide the bias of a weight that does.
 double pilotShare(const RenderOptions& options) {
-  return options.pilotWeight / (options.pilotWeight + options.spp - 1);
+  const double weight = options.settingNumber("pilot-weight");
+  return weight / (weight + options.spp - 1);
 }
 
 // A random number whose expectation is the difference that the decision makes to the image's mean.

@@ -222,10 +222,10 @@ TEST(InspectSaved, AFrameTellsWhereItIs) {
   EXPECT_FALSE(f.pilotVertices);
   EXPECT_EQ(f.hostBytes, 0u);
   const std::string text = savedText(between, "f");
-  for (const char* words : {"option samplesPerPixel   8", "option cellsPerDiagonal  8",
+  for (const char* words : {"option samplesPerPixel   8", "option cells             8",
                             "directions by a network", "finest cells"})
     EXPECT_NE(text.find(words), std::string::npos) << text;
-  EXPECT_EQ(text.find("option adaptive"), std::string::npos);
+  EXPECT_EQ(text.find("option samples "), std::string::npos);
 }
 
 // Rows of 16 pixels are a row of tiles: here, all but the last one are in.
