@@ -199,8 +199,7 @@ void forEachTile(const Settings& settings, const std::function<void(const std::v
 
 // Renders the image.
 void render(const Scene& scene, const Settings& settings, Image& image) {
-  odis::FrameOptions options;
-  options.width = settings.width, options.height = settings.height, options.seed = settings.seed;
+  odis::FrameOptions options{.width = settings.width, .height = settings.height, .seed = settings.seed};
   options.samplesPerPixel = settings.spp, options.guide.lightGroups = uint32_t(scene.lightCount());
   odis::Frame frame(options, odis::Context({.threads = settings.threads}));
   const odis::FramePass* pass;

@@ -145,12 +145,12 @@ class Model : public Handle<OdisModel, odisRetainModel, odisReleaseModel> {
 
 // OdisGuideOptions with owners in place of pointers.
 struct GuideOptions {
-  std::optional<Model> model;  // none: the networks that come with the library
+  std::optional<Model> model = {};  // none: the networks that come with the library
   uint32_t lightGroups = OdisGuideOptions().lightGroups;
-  std::vector<LightParts> lightParts;
+  std::vector<LightParts> lightParts = {};
   OdisProgressFunction progressFunction = nullptr;
   void* progressUser = nullptr;
-  std::string settings;
+  std::string settings = {};
 
   // Sets more by name; wins over what was set before.
   GuideOptions& set(const std::string& text) {
@@ -285,9 +285,9 @@ struct FrameOptions {
   uint64_t seed = OdisFrameOptions().seed;
   bool keepPixelMeans = OdisFrameOptions().keepPixelMeans;
   uint32_t tileOffsetX = 0, tileOffsetY = 0;
-  GuideOptions guide;                   // of a frame without a builder of the host's
-  std::optional<GuideBuilder> builder;  // with its own options: those of `guide` have no effect
-  std::string settings;
+  GuideOptions guide = {};                   // of a frame without a builder of the host's
+  std::optional<GuideBuilder> builder = {};  // with its own options: those of `guide` have no effect
+  std::string settings = {};
 
   // Sets more by name; wins over what was set before.
   FrameOptions& set(const std::string& text) {

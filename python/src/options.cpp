@@ -1,4 +1,4 @@
-// GuideOptions and FrameOptions, whose fields are keyword arguments and attributes, and the table of settings.
+// GuideOptions and FrameOptions, whose fields are keyword arguments and attributes; the table of settings.
 #include <nanobind/stl/optional.h>
 #include <nanobind/stl/pair.h>
 #include <nanobind/stl/string.h>

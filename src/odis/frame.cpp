@@ -5,8 +5,8 @@
 #include <stdexcept>
 
 #include "odis/models/model.h"
+#include "odis/options/settings.h"
 #include "odis/record/vertex_check.h"
-#include "odis/settings.h"
 
 namespace odis::core {
 
@@ -60,8 +60,8 @@ uint64_t bytesOf(const VertexTiles& tiles) {
   return bytes;
 }
 
-// The options of a frame's own guide. A pixel's noise falls with the root of its number of samples, and so does
-// how far off cached radiance may be.
+// The options of a frame's own guide. A pixel's noise falls with the root of its number of samples, and so
+// does how far off cached radiance may be.
 GuideOptions ownGuideOptions(const FrameOptions& options) {
   constexpr float kErrorOfOneSample = 0.6f;
   GuideOptions guide = options.guide;

@@ -12,12 +12,11 @@
 #include <vector>
 
 #include "odis/guide_view.h"
-#include "odis/options.h"
+#include "odis/options/options.h"
 #include "odis/path_vertex.h"
 #include "odis/work/tasks.h"
 
 namespace odis::core {
-
 
 class Archive;
 class ArchiveWriter;

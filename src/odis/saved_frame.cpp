@@ -9,8 +9,8 @@
 #include <stdexcept>
 
 #include "odis/guide_data.h"
+#include "odis/options/settings.h"
 #include "odis/saved_vertices.h"
-#include "odis/settings.h"
 
 namespace odis::core {
 

@@ -3,7 +3,7 @@
 
 #include "frame/run_frame.h"
 #include "odis/image/guiding_gain.h"
-#include "odis/options.h"
+#include "odis/options/options.h"
 
 namespace odis::test {
 

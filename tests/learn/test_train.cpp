@@ -383,7 +383,8 @@ TEST_F(Training, ValidationTellsGoodMapsFromBad) {
   };
   std::vector<std::string> files;
   for (const std::string& name : shardsIn(config().data)) files.push_back(shardFile(config().data, name));
-  const double formula = predictedVariance(files, std::make_shared<core::DirectionFormula>(core::GuideOptions().priorSamples));
+  const double formula =
+      predictedVariance(files, std::make_shared<core::DirectionFormula>(core::GuideOptions().priorSamples));
   const double inverted = predictedVariance(files, std::make_shared<Inverted>());
   EXPECT_LT(formula, 1);
   EXPECT_LT(formula, inverted);

@@ -1,5 +1,5 @@
 // The table of what is set by name.
-#include "odis/settings.h"
+#include "odis/options/settings.h"
 
 #include <gtest/gtest.h>
 

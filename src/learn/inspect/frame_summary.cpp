@@ -4,7 +4,7 @@
 
 #include "learn/inspect/summaries.h"
 #include "odis/models/model.h"
-#include "odis/settings.h"
+#include "odis/options/settings.h"
 
 namespace odis::learn {
 

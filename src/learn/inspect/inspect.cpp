@@ -13,7 +13,7 @@
 #include "odis/cells/shrinkage.h"
 #include "odis/maps/pack.h"
 #include "odis/maps/texel_directions.h"
-#include "odis/settings.h"
+#include "odis/options/settings.h"
 #include "render/integrators/pilot_pass.h"
 
 namespace odis::learn {

@@ -3,7 +3,7 @@
 #include "learn/train/validation.h"
 #include "odis/models/direction_formula.h"
 #include "odis/models/direction_network.h"
-#include "odis/options.h"
+#include "odis/options/options.h"
 
 namespace odis::learn {
 

@@ -1,7 +1,7 @@
 #include "odis/api/options.h"
 
 #include "odis/api/guard.h"
-#include "odis/settings.h"
+#include "odis/options/settings.h"
 
 namespace odis::core {
 

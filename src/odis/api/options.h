@@ -1,7 +1,7 @@
 // Options of the core from those of a host.
 #pragma once
 
-#include "odis/options.h"
+#include "odis/options/options.h"
 
 namespace odis::core {
 

@@ -5,7 +5,7 @@
 #include <utility>
 #include <vector>
 
-#include "odis/options.h"
+#include "odis/options/options.h"
 
 namespace odis::core {
 

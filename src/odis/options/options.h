@@ -1,5 +1,6 @@
 // What a frame and its guide are asked for. The first fields of each are those of OdisFrameOptions and
-// OdisGuideOptions; the others are set by name (odis/settings.h), and their defaults stand here alone.
+// OdisGuideOptions; the others are set by name (odis/options/settings.h), and their defaults stand here
+// alone.
 #pragma once
 
 #include <array>
@@ -37,13 +38,13 @@ struct GuideOptions {
   // Weight of the coarser level when the formula blends its map with a finer one's, in samples, for each
   // level, finest first; the last one is for the uniform map.
   std::array<float, kCellLevels> priorSamples{250, 250, 120, 30};
-  float floor = 0.03f;           // share of the uniform distribution in every map
-  float clamp = 20;              // a sample counts at most this many times its neighbourhood's mean in maps
-  float fixedBsdfFraction = 0;   // > 0: everywhere, in place of the one by variance and cost
-  bool controlVariate = true;    // whether the mean outgoing radiance stands in for paths that roulette ends
-  bool cached = false;           // whether paths may end with cached radiance
-  float cachedError = 0;         // how far off they may be then, over the pixel's value; 0: by the samples
-  uint32_t maxDepth = 0;         // of the host's paths; 0: none
+  float floor = 0.03f;          // share of the uniform distribution in every map
+  float clamp = 20;             // a sample counts at most this many times its neighbourhood's mean in maps
+  float fixedBsdfFraction = 0;  // > 0: everywhere, in place of the one by variance and cost
+  bool controlVariate = true;   // whether the mean outgoing radiance stands in for paths that roulette ends
+  bool cached = false;          // whether paths may end with cached radiance
+  float cachedError = 0;        // how far off they may be then, over the pixel's value; 0: by the samples
+  uint32_t maxDepth = 0;        // of the host's paths; 0: none
   PixelMapKind pixelMaps = PixelMapKind::none;
   std::string pixelNetwork;      // by name; empty: the model's
   uint32_t pixelTile = 1;        // a map for each square of so many pixels a side

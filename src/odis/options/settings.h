@@ -6,16 +6,16 @@
 #include <string_view>
 #include <vector>
 
-#include "odis/options.h"
+#include "odis/options/options.h"
 
 namespace odis::core {
 
 // All settings, in the order in which help shows them; valid for the whole of the program.
 const std::vector<OdisSetting>& allSettings();
 
-// Changes options by a text of words name=value with blanks between them, of which later ones win. Settings of
-// what the host's paths do are checked and change nothing here. Throws std::invalid_argument, with the nearest
-// name if there is none such.
+// Changes options by a text of words name=value with blanks between them, of which later ones win. Settings
+// of what the host's paths do are checked and change nothing here. Throws std::invalid_argument, with the
+// nearest name if there is none such.
 void applySettings(FrameOptions& options, std::string_view text);
 
 // The value that a text gives to a setting, or its default. Throws as above.

@@ -1,4 +1,4 @@
-#include "odis/settings.h"
+#include "odis/options/settings.h"
 
 #include <algorithm>
 #include <charconv>
@@ -175,102 +175,123 @@ std::vector<Row> rowsOfPaths() {
           "As many in each pixel, or more in noisy ones. auto: adaptive where guided.",
           [](auto& o) -> auto& { return o.samples; }))),
       guideBounces(),
-      choice<GuideKind>("guide",
-                        {{"network", GuideKind::network},
-                         {"histogram", GuideKind::histogram},
-                         {"oracle", GuideKind::oracle}},
-                        "What makes the maps: network, formula, or formula from an oracle.",
-                        [](auto& o) -> auto& { return o.guide.guide; }),
-      ofFrames(number<uint32_t>("oracle-spp", {1, 1 << 20},
-                                "Samples per pixel of the oracle, which are no part of the image.",
-                                [](auto& o) -> auto& { return o.oracleSpp; })),
-      choice<LightChoiceKind>("lights",
-                              {{"network", LightChoiceKind::network},
-                               {"formula", LightChoiceKind::formula},
-                               {"hierarchy", LightChoiceKind::hierarchy}},
-                              "How lights are chosen: network, formula, or hierarchy of lights.",
-                              [](auto& o) -> auto& { return o.guide.lights; }),
+      choice<GuideKind>(
+          "guide",
+          {{"network", GuideKind::network},
+           {"histogram", GuideKind::histogram},
+           {"oracle", GuideKind::oracle}},
+          "What makes the maps: network, formula, or formula from an oracle.",
+          [](auto& o) -> auto& { return o.guide.guide; }),
+      ofFrames(number<uint32_t>(
+          "oracle-spp", {1, 1 << 20}, "Samples per pixel of the oracle, which are no part of the image.",
+          [](auto& o) -> auto& { return o.oracleSpp; })),
+      choice<LightChoiceKind>(
+          "lights",
+          {{"network", LightChoiceKind::network},
+           {"formula", LightChoiceKind::formula},
+           {"hierarchy", LightChoiceKind::hierarchy}},
+          "How lights are chosen: network, formula, or hierarchy of lights.",
+          [](auto& o) -> auto& { return o.guide.lights; }),
       wordOfPaths("roulette", {{"formula", 0}, {"throughput", 0}},
                   "Ends guided paths by the light that comes back, or by throughput."),
-      choice<bool>("ended-paths", {{"mean", true}, {"nothing", false}},
-                   "What a path adds that roulette ends: the mean of its cell, or nothing.",
-                   [](auto& o) -> auto& { return o.guide.controlVariate; }),
-      forUsers(choice<bool>("cached", kOnOff, "Whether paths may end with cached radiance, which is biased.",
-                            [](auto& o) -> auto& { return o.guide.cached; })),
-      forUsers(number("cached-error", kCost,
-                      "How far off paths may be then, over the pixel's value. 0: by the samples.",
-                      [](auto& o) -> auto& { return o.guide.cachedError; })),
+      choice<bool>(
+          "ended-paths", {{"mean", true}, {"nothing", false}},
+          "What a path adds that roulette ends: the mean of its cell, or nothing.",
+          [](auto& o) -> auto& { return o.guide.controlVariate; }),
+      forUsers(choice<bool>(
+          "cached", kOnOff, "Whether paths may end with cached radiance, which is biased.",
+          [](auto& o) -> auto& { return o.guide.cached; })),
+      forUsers(number(
+          "cached-error", kCost, "How far off paths may be then, over the pixel's value. 0: by the samples.",
+          [](auto& o) -> auto& { return o.guide.cachedError; })),
       wordOfPaths("shadow-rays", {{"roulette", 0}, {"all", 0}},
                   "By roulette where the light would add little to the pixel, or all."),
-      forUsers(number<uint32_t>("max-depth", {0, UINT32_MAX}, "Depth at which all paths end; 0: none.",
-                                [](auto& o) -> auto& { return o.guide.maxDepth; })),
+      forUsers(number<uint32_t>(
+          "max-depth", {0, UINT32_MAX}, "Depth at which all paths end; 0: none.",
+          [](auto& o) -> auto& { return o.guide.maxDepth; })),
   };
 }
 
 std::vector<Row> rowsOfPilotAndCells() {
   return {
-      forUsers(ofFrames(choice<bool>("guided", kOnOff, "Whether there is a pilot and a guide.",
-                                     [](auto& o) -> auto& { return o.guided; }))),
-      ofFrames(number<double>("pilot-spp", {0, 1e6},
-                              "Samples per pixel of the pilot. 0: 0.25 in large images of few samples, else 1.",
-                              [](auto& o) -> auto& { return o.pilotSamplesPerPixel; })),
-      ofFrames(choice<bool>("pilot-vertices", {{"kept", true}, {"dropped", false}},
-                            "Whether the pilot's vertices stay when the guide is built.",
-                            [](auto& o) -> auto& { return o.keepPilotVertices; })),
-      ofFrames(number("refine", kSamples,
-                      "Guided samples per pixel that the guide learns from, too, after 1, 3, 7, ... of them.",
-                      [](auto& o) -> auto& { return o.refinementSamples; })),
-      ofFrames(number("pilot-weight", kCost, "Weight of a pilot sample; a guided one's is 1.",
-                      [](auto& o) -> auto& { return o.pilotWeight; })),
-      forUsers(ofFrames(number("guided-cost", kCost,
-                               "Time of a guided ray over another's. 0: guide and refine even if it does not pay.",
-                               [](auto& o) -> auto& { return o.guidedCost; }))),
-      forUsers(ofFrames(number("built-cell-cost", kCost,
-                               "Time to build a cell, over that of a ray, as odis bench measures it.",
-                               [](auto& o) -> auto& { return o.builtCellCost; }))),
-      forUsers(ofFrames(number("recorded-ray-cost", kCost, "Time to record what a ray brings, likewise.",
-                               [](auto& o) -> auto& { return o.recordedRayCost; }))),
-      number("bsdf-fraction", kShare,
-             "Probability that a guided draw stays with the BSDF. 0: by variance and cost.",
-             [](auto& o) -> auto& { return o.guide.fixedBsdfFraction; }),
-      number<int32_t>("cells", {0, 1 << 16},
-                      "Finest cells along the diagonal of what the pilot saw. 0: no cells.",
-                      [](auto& o) -> auto& { return o.guide.cellsPerDiagonal; }),
+      forUsers(ofFrames(choice<bool>(
+          "guided", kOnOff, "Whether there is a pilot and a guide.",
+          [](auto& o) -> auto& { return o.guided; }))),
+      ofFrames(number<double>(
+          "pilot-spp", {0, 1e6},
+          "Samples per pixel of the pilot. 0: 0.25 in large images of few samples, else 1.",
+          [](auto& o) -> auto& { return o.pilotSamplesPerPixel; })),
+      ofFrames(choice<bool>(
+          "pilot-vertices", {{"kept", true}, {"dropped", false}},
+          "Whether the pilot's vertices stay when the guide is built.",
+          [](auto& o) -> auto& { return o.keepPilotVertices; })),
+      ofFrames(number(
+          "refine", kSamples,
+          "Guided samples per pixel that the guide learns from, too, after 1, 3, 7, ... of them.",
+          [](auto& o) -> auto& { return o.refinementSamples; })),
+      ofFrames(number(
+          "pilot-weight", kCost, "Weight of a pilot sample; a guided one's is 1.",
+          [](auto& o) -> auto& { return o.pilotWeight; })),
+      forUsers(ofFrames(number(
+          "guided-cost", kCost,
+          "Time of a guided ray over another's. 0: guide and refine even if it does not pay.",
+          [](auto& o) -> auto& { return o.guidedCost; }))),
+      forUsers(ofFrames(number(
+          "built-cell-cost", kCost, "Time to build a cell, over that of a ray, as odis bench measures it.",
+          [](auto& o) -> auto& { return o.builtCellCost; }))),
+      forUsers(ofFrames(number(
+          "recorded-ray-cost", kCost, "Time to record what a ray brings, likewise.",
+          [](auto& o) -> auto& { return o.recordedRayCost; }))),
+      number(
+          "bsdf-fraction", kShare,
+          "Probability that a guided draw stays with the BSDF. 0: by variance and cost.",
+          [](auto& o) -> auto& { return o.guide.fixedBsdfFraction; }),
+      number<int32_t>(
+          "cells", {0, 1 << 16}, "Finest cells along the diagonal of what the pilot saw. 0: no cells.",
+          [](auto& o) -> auto& { return o.guide.cellsPerDiagonal; }),
       priorSamples("prior-samples", "Samples a coarser level is worth, finest first."),
-      number("map-floor", kShare, "Share of the uniform distribution in every map.",
-             [](auto& o) -> auto& { return o.guide.floor; }),
-      number<float>("map-clamp", {0.001f, 1e9f},
-                    "A sample counts at most this many times its neighbourhood's mean in maps.",
-                    [](auto& o) -> auto& { return o.guide.clamp; }),
+      number(
+          "map-floor", kShare, "Share of the uniform distribution in every map.",
+          [](auto& o) -> auto& { return o.guide.floor; }),
+      number<float>(
+          "map-clamp", {0.001f, 1e9f},
+          "A sample counts at most this many times its neighbourhood's mean in maps.",
+          [](auto& o) -> auto& { return o.guide.clamp; }),
   };
 }
 
 // The method of the paper.
 std::vector<Row> rowsOfPixels() {
   return {
-      choice<PixelMapKind>("pixel-maps",
-                           {{"none", PixelMapKind::none},
-                            {"histogram", PixelMapKind::histogram},
-                            {"network", PixelMapKind::network},
-                            {"oracle", PixelMapKind::oracle}},
-                           "What makes maps at pixels.", [](auto& o) -> auto& { return o.guide.pixelMaps; }),
-      choice<std::string>("pixel-network",
-                          {{"model", ""},
-                           {"paper", "paper"},
-                           {"paper-gan", "paper-gan"},
-                           {"fast", "fast"},
-                           {"fast-gan", "fast-gan"}},
-                          "Which network; model: that of the weights.",
-                          [](auto& o) -> auto& { return o.guide.pixelNetwork; }),
-      number<uint32_t>("pixel-tile", {1, 16}, "A map for each square of so many pixels a side.",
-                       [](auto& o) -> auto& { return o.guide.pixelTile; }),
-      number("pixel-share", kShare, "Share of a pixel's map; the rest is the map of its cell.",
-             [](auto& o) -> auto& { return o.guide.pixelShare; }),
-      choice<bool>("pixel-light", {{"all", true}, {"without-direct", false}},
-                   "Whether histogram and oracle at pixels hold direct light.",
-                   [](auto& o) -> auto& { return o.guide.pixelDirectLight; }),
-      choice<bool>("map-cosine", kOnOff, "Whether maps are multiplied by the cosine at a vertex.",
-                   [](auto& o) -> auto& { return o.guide.cosineProduct; }),
+      choice<PixelMapKind>(
+          "pixel-maps",
+          {{"none", PixelMapKind::none},
+           {"histogram", PixelMapKind::histogram},
+           {"network", PixelMapKind::network},
+           {"oracle", PixelMapKind::oracle}},
+          "What makes maps at pixels.", [](auto& o) -> auto& { return o.guide.pixelMaps; }),
+      choice<std::string>(
+          "pixel-network",
+          {{"model", ""},
+           {"paper", "paper"},
+           {"paper-gan", "paper-gan"},
+           {"fast", "fast"},
+           {"fast-gan", "fast-gan"}},
+          "Which network; model: that of the weights.",
+          [](auto& o) -> auto& { return o.guide.pixelNetwork; }),
+      number<uint32_t>(
+          "pixel-tile", {1, 16}, "A map for each square of so many pixels a side.",
+          [](auto& o) -> auto& { return o.guide.pixelTile; }),
+      number(
+          "pixel-share", kShare, "Share of a pixel's map; the rest is the map of its cell.",
+          [](auto& o) -> auto& { return o.guide.pixelShare; }),
+      choice<bool>(
+          "pixel-light", {{"all", true}, {"without-direct", false}},
+          "Whether histogram and oracle at pixels hold direct light.",
+          [](auto& o) -> auto& { return o.guide.pixelDirectLight; }),
+      choice<bool>(
+          "map-cosine", kOnOff, "Whether maps are multiplied by the cosine at a vertex.",
+          [](auto& o) -> auto& { return o.guide.cosineProduct; }),
   };
 }
 
@@ -292,7 +313,8 @@ std::vector<Row> makeRows() {
   std::vector<Row> rows;
   Words<int> names;
   for (const auto& [name, text] : presets()) names.emplace_back(name, 0);
-  Row preset = wordOfPaths(std::string(kPreset), names, "Settings to start from; paper: that of Bako et al. 2019.");
+  Row preset =
+      wordOfPaths(std::string(kPreset), names, "Settings to start from; paper: that of Bako et al. 2019.");
   preset.owner = ODIS_SETTING_OF_ALL;
   rows.push_back(forUsers(std::move(preset)));
   for (const auto more : {rowsOfPaths, rowsOfPilotAndCells, rowsOfPixels})
