@@ -1,6 +1,7 @@
 // A progressive host: there is an image after every pass, and the rendering may end after any of them and go
-// on another day, with the same bits as if it had not ended. --passes ends it, --save names the file that it
-// goes on from.
+// on another day, with the same bits as if it had not ended. It goes on in rounds of 1, 2, 4, ... samples per
+// pixel in all, up to --spp, after each of which the film is right; another day that may be more. --passes
+// ends it, --save names the file that it goes on from.
 #include "film.h"
 
 // A frame that was saved, with its film, or a new one.
@@ -17,24 +18,32 @@ int main(int count, char** arguments) try {
   const Settings settings = parseSettings(count, arguments);
   const Scene scene = makeScene(settings.scene);
   odis::FrameOptions options = frameOptions(settings, scene);
-  // The film is to be right after every pass: with even counts the weights so far are alike in all pixels.
-  options.set("samples=even");
+  options.samplesPerPixel = 1;
+  options.mostSamplesPerPixel = ODIS_UNLIMITED;
   Film film(wholeImage(settings));
   odis::Frame frame = openFrame(settings, options, film);
   const odis::TileGrid tiles(options.width, options.height);
   for (uint32_t passes = 0; passes < settings.passes; ++passes) {
     const odis::FramePass* pass = frame.beginPass();
-    if (!pass) break;
+    if (!pass) {  // a round is complete
+      const uint32_t asked = frame.statistics().samplesPerPixel;
+      if (asked >= settings.spp) break;
+      frame.extend(std::min(2 * asked, settings.spp));
+      pass = frame.beginPass();
+    }
+    const bool weightsLater = pass->weightsLater;
     std::vector<std::vector<Traced>> samples(tiles.tileCount());
     parallelFor(tiles.tileCount(), settings.threads, [&](uint32_t tile) {
       samples[tile] = traceTile(scene, settings, frame, *pass, tiles, tile);
     });
     // The library learns on a thread of its own while this one makes the image.
     frame.startEndPass();
+    if (weightsLater) frame.waitForPass();
     for (const std::vector<Traced>& ofTile : samples)
-      for (const Traced& s : ofTile) film.splat(s, s.weight);
+      for (const Traced& s : ofTile)
+        film.splat(s, weightsLater ? frame.sampleWeight(s.pixel, s.sample) : s.weight);
     film.write(settings.output);
-    frame.waitForPass();
+    if (!weightsLater) frame.waitForPass();
     frame.setHostData(film.bytes());
     if (!settings.save.empty()) frame.save(settings.save);
   }

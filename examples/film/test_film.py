@@ -71,6 +71,8 @@ def main():
         require(np.allclose(splat["light0"] + splat["light1"], splat["color"], rtol=1e-3, atol=1e-4),
                 "groups of lights add up"),
         require(same(whole, parts), "a rendering that ended goes on with the same bits"),
+        require(same(render("progressive", "more", spp=16), render("progressive", "parts", save=saved, spp=16)),
+                "it goes on to more samples than it was begun for"),
     ]
     scores = z_scores()
     significance = 1 - 0.99 ** (1 / len(scores))

@@ -186,11 +186,22 @@ ODIS_API bool odisEndPass(OdisFrame frame, bool interrupted);
 // else of this frame, which answers what odisEndPass would have.
 ODIS_API bool odisStartEndPass(OdisFrame frame, bool interrupted);
 ODIS_API bool odisWaitForPass(OdisFrame frame);
+// Asks for more samples per pixel, `samplesPerPixel` in all, between two passes; odisBeginPass begins the
+// passes that bring them. Up to OdisFrameOptions.mostSamplesPerPixel the frame is then, to the bit, what it
+// would be had it been asked for as many from the beginning; beyond, the guide and the pixels' shares stay as
+// they are. Without keepPixelMeans what is added is a round of its own: all of a pixel's new samples, of
+// which there is one at least, weigh the same, and as much together as samplesPerPixel grows by; so a film
+// goes on by adding. Such a round costs 4 bytes a pixel. An error where samplesPerPixel does not grow, or
+// beyond 2^28; within a pass or after an interrupted one; and before odisBeginPass answers false, if the
+// frame keeps no means or was asked for as many as mostSamplesPerPixel.
+ODIS_API bool odisExtendFrame(OdisFrame frame, uint32_t samplesPerPixel);
 // Whether all further samples will be guided by the guide of today.
 ODIS_API bool odisGuideIsFinal(OdisFrame frame);
 // Weight of a sample in the image: those of a pixel add up to OdisFrameOptions.samplesPerPixel, however many
 // it has, so that a film that splats may add all samples of all pixels by their weights (docs/own-film.md).
-// Known in the pass already (OdisSampleRange.weight), but for passes with weightsLater. Here and below, a
+// Known in the pass already (OdisSampleRange.weight), but for passes with weightsLater. An extended frame
+// without means answers what samples of its last round weigh, which add up to what samplesPerPixel has grown
+// by; one with means answers for all samples as if it had been asked for as many at once. Here and below, a
 // pixel outside of the frame is an error.
 ODIS_API float odisGetSampleWeight(OdisFrame frame, uint32_t pixel, uint32_t sample);
 // The weighted mean of the samples that a pixel has by now, and that mean's variance. An error without

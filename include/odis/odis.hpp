@@ -282,6 +282,7 @@ class GuideBuilder : public Handle<OdisGuideBuilder, odisRetainGuideBuilder, odi
 struct FrameOptions {
   uint32_t width = 0, height = 0;
   uint32_t samplesPerPixel = OdisFrameOptions().samplesPerPixel;
+  uint32_t mostSamplesPerPixel = 0;
   uint64_t seed = OdisFrameOptions().seed;
   bool keepPixelMeans = OdisFrameOptions().keepPixelMeans;
   uint32_t tileOffsetX = 0, tileOffsetY = 0;
@@ -300,6 +301,7 @@ struct FrameOptions {
     options.width = width;
     options.height = height;
     options.samplesPerPixel = samplesPerPixel;
+    options.mostSamplesPerPixel = mostSamplesPerPixel;
     options.seed = seed;
     options.keepPixelMeans = keepPixelMeans;
     options.tileOffsetX = tileOffsetX;
@@ -378,6 +380,10 @@ class Frame : public Handle<OdisFrame, odisRetainFrame, odisReleaseFrame> {
   }
   void waitForPass() {
     orThrow([&] { return odisWaitForPass(get()); });
+  }
+  // Asks for more samples per pixel, so many in all.
+  void extend(uint32_t samplesPerPixel) {
+    orThrow([&] { return odisExtendFrame(get(), samplesPerPixel); });
   }
   bool guideIsFinal() const {
     return checked(false, [&] { return odisGuideIsFinal(get()); });

@@ -33,6 +33,8 @@ typedef struct OdisFloat3 {
 // Side of the squares of pixels that frames take fastest; odis/tiles.h has their places and the order of the
 // pixels in one.
 #define ODIS_TILE_SIZE 16
+// No limit of OdisFrameOptions.mostSamplesPerPixel.
+#define ODIS_UNLIMITED 0xffffffffu
 // The most groups of lights that a host may tell apart for next-event estimation.
 #define ODIS_MAX_LIGHT_GROUPS 32
 // With a smaller setting `max-depth` (but 0) no path ends with cached radiance: how much light comes from how
@@ -126,6 +128,10 @@ typedef struct OdisFrameOptions {
   // Of the image, crop or tile in pixels; below 2^31 pixels.
   uint32_t width ODIS_DEFAULT(0), height ODIS_DEFAULT(0);
   uint32_t samplesPerPixel ODIS_DEFAULT(4);  // >= 1, pilot included
+  // How many samples per pixel odisExtendFrame may ask for later, with the same image as if they had been
+  // asked for at once: all decisions go by it. samplesPerPixel to 2^28, or ODIS_UNLIMITED, which decides as
+  // for very many; 0: samplesPerPixel. The pilot may have at most samplesPerPixel samples then.
+  uint32_t mostSamplesPerPixel ODIS_DEFAULT(0);
   // Chooses the pilot's pixels; the host draws its random numbers from OdisFramePass.seed.
   uint64_t seed ODIS_DEFAULT(0);
   // Whether the frame keeps sums over the samples of each pixel, of which odisGetPixelMean and
@@ -174,8 +180,9 @@ typedef enum OdisPassKind {
 // The samples [first, first + count) of a pixel.
 typedef struct OdisSampleRange {
   uint32_t first ODIS_DEFAULT(0), count ODIS_DEFAULT(0);
-  // The weight of each of them in the image (odisGetSampleWeight); 0 where it is not known yet
-  // (OdisFramePass.weightsLater) and in passes that are no part of the image.
+  // The weight of each of them in the image, or in the round that an extension of a frame without means is
+  // (odisGetSampleWeight); 0 where it is not known yet (OdisFramePass.weightsLater) and in passes that are no
+  // part of the image.
   float weight ODIS_DEFAULT(1);
 } OdisSampleRange;
 
@@ -211,7 +218,8 @@ typedef struct OdisFrameStatistics {
   uint64_t cells ODIS_DEFAULT(0);
   uint64_t guideBytes ODIS_DEFAULT(0);
   uint64_t buildingBytes ODIS_DEFAULT(0);  // held at most while guides were built
-  double pilotFraction ODIS_DEFAULT(0);    // of the pilot's samples in the mean of the image's weights
+  // Of the pilot's samples in the mean of the image's weights, rounds aside (odisExtendFrame).
+  double pilotFraction ODIS_DEFAULT(0);
   // Samples that passes asked for and did not get. Interrupted passes do not count.
   uint64_t missingSamples ODIS_DEFAULT(0);
   // Passes that wanted vertices and got none, though their samples have more rays than those of the camera:
@@ -223,7 +231,8 @@ typedef struct OdisFrameStatistics {
   // What the first guided samples show: their variance times their cost over that of the pilot's samples.
   // Above 1 guiding does not pay. 0: it was not measured.
   double measuredCostRatio ODIS_DEFAULT(0);
-  bool guidingGivenUp ODIS_DEFAULT(false);  // whether samples are not guided any more because of that
+  bool guidingGivenUp ODIS_DEFAULT(false);   // whether samples are not guided any more because of that
+  uint32_t samplesPerPixel ODIS_DEFAULT(0);  // that the frame is asked for by now (odisExtendFrame)
 } OdisFrameStatistics;
 
 // How many vertices were taken, and how many refused by reason.

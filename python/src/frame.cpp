@@ -92,6 +92,9 @@ class ImageFrame {
   void endPass(bool interrupted) {
     callAlone(m_calls, [&] { m_frame.endPass(interrupted); });
   }
+  void extend(uint32_t samplesPerPixel) {
+    callAlone(m_calls, [&] { m_frame.extend(samplesPerPixel); });
+  }
 
   // Lies in the frame, which `self` is; None before the pilot has ended.
   static std::optional<PixelValues> pixelValues(nb::pointer_and_handle<ImageFrame> self) {
@@ -176,6 +179,7 @@ void bindPass(nb::module_& module) {
       .def_ro("guide", &Pass::guide, "What guides the samples; without cells where nothing was learned.");
   nb::class_<FrameStatistics>(module, "FrameStatistics", "Numbers of a frame.")
       .def_ro("samples", &FrameStatistics::samples)
+      .def_ro("samples_per_pixel", &FrameStatistics::samplesPerPixel, "That are asked for by now.")
       .def_ro("pilot_samples", &FrameStatistics::pilotSamples)
       .def_ro("not_finite", &FrameStatistics::notFinite, "Samples that counted as black.")
       .def_ro("pilot_vertices", &FrameStatistics::pilotVertices)
@@ -218,7 +222,14 @@ A sample that the pass did not ask for, or that comes twice, raises Error.)")
            R"(Ends the pass: learns, builds the guide, settles what there is to settle.
 
 An interrupted pass may lack samples; nothing is learned from it, and it is the last one. So is a pass whose
-learning Ctrl-C calls off, which raises KeyboardInterrupt.)");
+learning Ctrl-C calls off, which raises KeyboardInterrupt.)")
+      .def("extend", &ImageFrame::extend, "samples_per_pixel"_a,
+           R"(Asks for more samples per pixel, so many in all, between two passes.
+
+Up to FrameOptions.most_samples_per_pixel the frame is then what it would be had it been asked for as many
+from the beginning; beyond, the guide and the pixels' shares stay as they are. Raises Error where it is no
+more than before or beyond 2^28 (INVALID_ARGUMENT), and within a pass, after an interrupted one, or before the
+last one if the frame was asked for most_samples_per_pixel (INVALID_OPERATION).)");
 }
 
 void bindResults(nb::class_<ImageFrame>& frame) {
@@ -236,10 +247,10 @@ Means are black where there are no samples, variances 0 where there are fewer th
       .def("sample_weights", &ImageFrame::sampleWeights, "pixel"_a, "sample"_a,
            R"(Weights of samples in the image: (count,), float32.
 
-pixel, sample: uint32 of shape (count,). Those of a pixel add up to samples_per_pixel, however many samples it
-has, so that a film that splats may add all samples of all pixels by their weights. Known in the pass already,
-but for passes with weights_later, and the same for all samples of a pixel in a pass. A pixel outside of the
-frame, or a sample that its pixel never has, raises Error (INVALID_ARGUMENT).)")
+pixel, sample: uint32 of shape (count,). Those of a pixel add up to the samples per pixel that are asked for
+by now, however many it has, so that a film that splats may add all samples of all pixels by their weights.
+Known in the pass already, but for passes with weights_later, and the same for all samples of a pixel in a
+pass. A pixel outside of the frame, or a sample that its pixel never has, raises Error (INVALID_ARGUMENT).)")
       .def_prop_ro("statistics", &ImageFrame::statistics, "FrameStatistics by now.")
       .def_prop_ro("vertex_counts", &ImageFrame::vertexCounts, "VertexCounts of the vertices learned from.")
       .def_prop_ro("guide", &ImageFrame::guide, "The Guide of today; without cells before one is built.")

@@ -38,6 +38,9 @@ constexpr const char* kFrameOptions = R"(How an image is made; all fields but th
 
 width, height: int, of the image in pixels; below 2^31 pixels
 samples_per_pixel: int >= 1 (4), pilot included
+most_samples_per_pixel: int (0): how many Frame.extend may ask for later, with the same image as if they had
+    been asked for at once: all decisions go by it; samples_per_pixel to 2^28, or UNLIMITED; 0:
+    samples_per_pixel
 seed: int (0), in [0, 2^64): chooses the pilot's pixels; the host's random numbers come from FramePass.seed
 tile_offset_x, tile_offset_y: int in [0, 15] (0): tiles of 16 x 16 pixels begin this many pixels before the
     image's first column and row: 5 and 0 for a crop that begins at column 37 and row 16, so that its tiles
@@ -73,13 +76,14 @@ void bindFrameOptions(nb::module_& module) {
   nb::class_<FrameOptions>(module, "FrameOptions", kFrameOptions)
       .def(
           "__init__",
-          [](FrameOptions* self, uint32_t width, uint32_t height, uint32_t samplesPerPixel, uint64_t seed,
-             uint32_t tileOffsetX, uint32_t tileOffsetY, const std::optional<GuideOptions>& guide,
-             std::string settings) {
+          [](FrameOptions* self, uint32_t width, uint32_t height, uint32_t samplesPerPixel,
+             uint32_t mostSamplesPerPixel, uint64_t seed, uint32_t tileOffsetX, uint32_t tileOffsetY,
+             const std::optional<GuideOptions>& guide, std::string settings) {
             new (self) FrameOptions();
             self->width = width;
             self->height = height;
             self->samplesPerPixel = samplesPerPixel;
+            self->mostSamplesPerPixel = mostSamplesPerPixel;
             self->seed = seed;
             self->tileOffsetX = tileOffsetX;
             self->tileOffsetY = tileOffsetY;
@@ -87,11 +91,13 @@ void bindFrameOptions(nb::module_& module) {
             self->settings = std::move(settings);
           },
           "width"_a, "height"_a, nb::kw_only(), "samples_per_pixel"_a = defaults.samplesPerPixel,
-          "seed"_a = defaults.seed, "tile_offset_x"_a = defaults.tileOffsetX,
-          "tile_offset_y"_a = defaults.tileOffsetY, "guide"_a = nb::none(), "settings"_a = "")
+          "most_samples_per_pixel"_a = defaults.mostSamplesPerPixel, "seed"_a = defaults.seed,
+          "tile_offset_x"_a = defaults.tileOffsetX, "tile_offset_y"_a = defaults.tileOffsetY,
+          "guide"_a = nb::none(), "settings"_a = "")
       .def_rw("width", &FrameOptions::width)
       .def_rw("height", &FrameOptions::height)
       .def_rw("samples_per_pixel", &FrameOptions::samplesPerPixel)
+      .def_rw("most_samples_per_pixel", &FrameOptions::mostSamplesPerPixel)
       .def_rw("seed", &FrameOptions::seed)
       .def_rw("tile_offset_x", &FrameOptions::tileOffsetX)
       .def_rw("tile_offset_y", &FrameOptions::tileOffsetY)
@@ -130,6 +136,7 @@ Raises Error (INVALID_ARGUMENT) if there is no such setting, or a value in the t
 
 void bindOptions(nb::module_& module) {
   bindSettings(module);
+  module.attr("UNLIMITED") = ODIS_UNLIMITED;
   bindGuideOptions(module);
   bindFrameOptions(module);
 }

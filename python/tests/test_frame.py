@@ -121,6 +121,24 @@ class Frames(unittest.TestCase):
         self.assertEqual(self.frame.vertex_counts.outside_frame, 0)
         self.assertGreaterEqual(self.frame.vertex_counts.accepted, WIDTH * HEIGHT)
 
+    def test_extension(self):
+        """A frame that is asked for more has the counts and weights of one that was asked for as many at once."""
+        at_once, _ = render(odis.FrameOptions(WIDTH, HEIGHT, samples_per_pixel=8, most_samples_per_pixel=odis.UNLIMITED,
+                                              adaptive=False))
+        frame, _ = render(odis.FrameOptions(WIDTH, HEIGHT, samples_per_pixel=1, most_samples_per_pixel=odis.UNLIMITED,
+                                            adaptive=False))
+        np.testing.assert_array_equal(frame.sample_counts(), 1)
+        for samples_per_pixel in (3, 8):
+            frame.extend(samples_per_pixel)
+            self.assertEqual(frame.statistics.samples_per_pixel, samples_per_pixel)
+            finish(frame)
+        np.testing.assert_array_equal(frame.sample_counts(), at_once.sample_counts())
+        pixel = np.arange(WIDTH * HEIGHT, dtype=np.uint32)
+        weights = [frame.sample_weights(pixel, 0 * pixel + sample) for sample in range(8)]
+        np.testing.assert_allclose(np.sum(weights, axis=0), 8, rtol=1e-5)
+        with self.assertRaises(odis.Error):
+            frame.extend(8)
+
     def test_weights(self):
         """Those of a pixel add up to the samples asked for; a film that splats them gives the pixels' means."""
         frame, splatted = odis.Frame(self.OPTIONS), np.zeros((WIDTH * HEIGHT, 4))

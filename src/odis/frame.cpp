@@ -65,8 +65,7 @@ uint64_t bytesOf(const VertexTiles& tiles) {
 GuideOptions ownGuideOptions(const FrameOptions& options) {
   constexpr float kErrorOfOneSample = 0.6f;
   GuideOptions guide = options.guide;
-  if (guide.cachedError == 0)
-    guide.cachedError = kErrorOfOneSample / std::sqrt(float(options.samplesPerPixel));
+  if (guide.cachedError == 0) guide.cachedError = kErrorOfOneSample / std::sqrt(float(options.most()));
   return guide;
 }
 
@@ -79,9 +78,16 @@ const FrameOptions& checkedOptions(const FrameOptions& o) {
   requireOption(uint64_t(o.width) * o.height < (uint64_t(1) << 31),
                 "width, height: expected less than 2^31 pixels");
   requireOption(o.samplesPerPixel > 0, "samplesPerPixel: expected at least 1");
+  requireOption(
+      o.mostSamplesPerPixel == 0 || o.mostSamplesPerPixel == ODIS_UNLIMITED ||
+          (o.mostSamplesPerPixel >= o.samplesPerPixel && o.mostSamplesPerPixel <= kMostSamplesPerPixel),
+      "mostSamplesPerPixel: expected 0, samplesPerPixel to 2^28, or ODIS_UNLIMITED");
   requireOption(o.tileOffsetX < kTileSize && o.tileOffsetY < kTileSize,
                 "tileOffsetX, tileOffsetY: expected 0 to 15");
   requireRanges(o);
+  requireOption(!o.guided || o.mostSamplesPerPixel <= o.samplesPerPixel ||
+                    std::round(o.pilotSamplesPerPixel) <= o.samplesPerPixel,
+                "settings: pilot-spp: expected at most samplesPerPixel, which is to be extended");
   return o;
 }
 
@@ -147,7 +153,7 @@ void Frame::Data::describePass() {
     end = schedule.passEnd(done);
     pass.stageSamples = schedule.remainingSamples();
     pass.wantsVertices = learns();
-    pass.weightsLater = done < schedule.spreadAfter();
+    pass.weightsLater = !schedule.countsAreKnown(done);
     if (pixels < kFewPixels) pass.seed ^= guidesBuilt * kGuideSeed;
     if (learns()) passSamples.resize(tiles.tileCount());
     pixelsPerLearned = pixelsPerLearnedIn(pixels * (end - done), kMostGuidedSamples);
@@ -288,7 +294,7 @@ void Frame::Data::resume() {
 void Frame::Data::endGuidedPass() {
   if (end == schedule.spreadAfter()) spreadSamples();
   const bool givesUp = guidingDoesNotPay();
-  if (!options.keepPixelMeans) {
+  if (!options.keepPixelMeans && end >= schedule.spreadAfter()) {
     pilot = PixelSamples();
     later = PixelSamples();
   }
@@ -328,7 +334,7 @@ const FramePass* Frame::beginPass() {
 
 bool Frame::isComplete() const {
   const Data& d = *m_data;
-  const bool isDone = d.next == ODIS_PASS_GUIDED && d.done >= d.schedule.mostRemaining();
+  const bool isDone = d.next == ODIS_PASS_GUIDED && d.done >= d.schedule.end();
   return !d.inPass && (d.finished || isDone);
 }
 
@@ -376,7 +382,7 @@ void Frame::endPass(bool interrupted) {
   const OdisPassKind kind = d.next;
   if (kind == ODIS_PASS_PILOT) d.endPilot();
   if (interrupted) return;
-  if (!d.needsGuide()) {
+  if (kind == ODIS_PASS_PILOT && !d.needsGuide()) {
     d.builder.reset();
     d.finished = false;
     return;
@@ -388,6 +394,21 @@ void Frame::endPass(bool interrupted) {
   else if (d.next == ODIS_PASS_GUIDED)
     d.buildGuide();
   d.finished = false;
+}
+
+void Frame::extend(uint32_t samplesPerPixel) {
+  Data& d = *m_data;
+  requireOrder(!d.inPass && !d.resumed, "odisExtendFrame: expected odisEndPass before");
+  requireOrder(!d.finished, "odisExtendFrame: expected a frame none of whose passes was interrupted");
+  if (samplesPerPixel <= d.schedule.samplesPerPixel() || samplesPerPixel > kMostSamplesPerPixel)
+    throw std::invalid_argument("odisExtendFrame: expected more samples per pixel than the " +
+                                std::to_string(d.schedule.samplesPerPixel()) +
+                                " of the frame, and at most 2^28, found " + std::to_string(samplesPerPixel));
+  const bool isRound = !d.options.keepPixelMeans;
+  requireOrder(isComplete() || (d.schedule.isExtendedAnywhere() && !isRound),
+               "odisExtendFrame: expected a frame whose passes are complete, since it keeps no means or was "
+               "asked for mostSamplesPerPixel");
+  d.done = d.schedule.extend(samplesPerPixel, d.done, isRound);
 }
 
 void Frame::setHostData(ArrayView<const uint8_t> bytes) {

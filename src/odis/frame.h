@@ -75,13 +75,22 @@ class Frame {
   void endPass(bool interrupted = false);
   // Whether there is no pass any more.
   bool isComplete() const;
+  // Asks for more samples per pixel, `samplesPerPixel` in all. Up to mostSamplesPerPixel the frame is then,
+  // to the bit, what it would be had it been asked for as many from the beginning; beyond, what was decided
+  // stays. Without keepPixelMeans what is added is a round of its own: all of a pixel's new samples, of which
+  // there is one at least, weigh the same, and as much together as samplesPerPixel grows by. Throws
+  // std::invalid_argument where it doesn't grow, or beyond 2^28, and std::logic_error within a pass, after an
+  // interrupted one, and before all passes are done where the frame keeps no means or was asked for
+  // mostSamplesPerPixel.
+  void extend(uint32_t samplesPerPixel);
   // Whether all further samples will be guided by the guide of today.
   bool guideIsFinal() const;
 
-  // Weight of a sample in the image: those of a pixel add up to samplesPerPixel, however many it has
-  // (docs/unbiasedness.md#films-that-splat). As it will be once the number of samples is settled, so after
-  // passes with weightsLater. Here and below std::out_of_range is thrown for a pixel outside of the frame,
-  // here for a sample that it never has, too.
+  // Weight of a sample in the image: those of a pixel add up to the samples per pixel that are asked for,
+  // however many it has (docs/unbiasedness.md#films-that-splat). As it will be once the number of samples is
+  // settled, so after passes with weightsLater. Here and below std::out_of_range is thrown for a pixel
+  // outside of the frame, here for a sample that it never has, and for one before the last extension that was
+  // a round, too.
   float sampleWeight(uint32_t pixel, uint32_t sample) const;
   // The weighted mean of the samples that a pixel has by now, and that mean's variance. Throws
   // std::logic_error without keepPixelMeans.

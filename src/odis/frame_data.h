@@ -91,6 +91,7 @@ struct Frame::Data {
 
   // Goes on with the pass that was under way when the frame was saved.
   void resume();
+  FramePosition position() const;
   void moveTo(const FramePosition& position);
 
   FrameOptions options;

@@ -16,7 +16,7 @@ void Frame::Data::spreadSamples() {
       noise[pixel] = noiseOf(sums);
     }
   });
-  schedule.spread(sampleCounts(*tasks, noise, int(options.width), options.samplesPerPixel));
+  schedule.spread(sampleCounts(*tasks, noise, int(options.width), schedule.most()));
 }
 
 // Whether the guide should be built once more, after as many more samples as were guided and one.
@@ -29,7 +29,7 @@ bool Frame::Data::nextRefinementPays() const {
   possible.cells = builder->visitedCells();
   possible.seen = std::min(pilotSamples, double(kMostPilotSamples)) + done * learnedInPass;
   possible.learned = (next - done) * learnedInPass;
-  possible.remaining = (options.samplesPerPixel - next) * pixels - pilotSamples;
+  possible.remaining = (schedule.most() - next) * pixels - pilotSamples;
   possible.builtCellCost = options.builtCellCost;
   possible.recordedRayCost = options.recordedRayCost;
   return refinementPays(possible);

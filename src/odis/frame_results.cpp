@@ -36,15 +36,17 @@ uint32_t Frame::Data::pilotTaken(uint32_t pixel) const {
   return next == ODIS_PASS_PILOT ? 0 : schedule.pilotCount(pixel);
 }
 uint32_t Frame::Data::laterTaken(uint32_t pixel) const {
-  return options.keepPixelMeans ? later.sums()[pixel].count : schedule.remaining(pixel, 0, done).count;
+  return options.keepPixelMeans ? later.sums()[pixel].count : schedule.doneIn(pixel, done);
 }
 
 float Frame::sampleWeight(uint32_t pixel, uint32_t sample) const {
   const Data& d = *m_data;
   d.requirePixel(pixel, "odisGetSampleWeight");
-  if (sample >= d.schedule.sampleCount(pixel))
-    throw std::out_of_range("odisGetSampleWeight: expected a sample of the pixel, found " +
-                            std::to_string(sample) + " of " + std::to_string(d.schedule.sampleCount(pixel)));
+  const uint32_t first = d.schedule.firstOfRound(pixel), end = d.schedule.sampleCount(pixel);
+  if (sample < first || sample >= end)
+    throw std::out_of_range("odisGetSampleWeight: expected a sample of the pixel from " +
+                            std::to_string(first) + " to below " + std::to_string(end) + ", found " +
+                            std::to_string(sample));
   return d.schedule.sampleWeight(pixel, sample < d.schedule.pilotCount(pixel), d.options.pilotWeight);
 }
 
@@ -94,6 +96,7 @@ FrameStatistics Frame::summary() const {
   result.predictedVarianceRatio = d.guide.predictedVarianceRatio();
   result.measuredCostRatio = d.measuredCostRatio;
   result.guidingGivenUp = d.guidingGivenUp;
+  result.samplesPerPixel = d.schedule.samplesPerPixel();
   return result;
 }
 

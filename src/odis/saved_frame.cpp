@@ -154,6 +154,7 @@ void saveOptions(ArchiveWriter& file, const FrameOptions& options) {
   file.addValue("frame.width", options.width);
   file.addValue("frame.height", options.height);
   file.addValue("frame.samplesPerPixel", options.samplesPerPixel);
+  file.addValue("frame.mostSamplesPerPixel", options.mostSamplesPerPixel);
   file.addValue("frame.seed", options.seed);
   file.addValue("frame.keepPixelMeans", uint8_t(options.keepPixelMeans));
   file.addValue("frame.tileOffsetX", options.tileOffsetX);
@@ -170,6 +171,7 @@ FrameOptions loadOptions(const Archive& file) {
   options.width = file.value<uint32_t>("frame.width");
   options.height = file.value<uint32_t>("frame.height");
   options.samplesPerPixel = file.value<uint32_t>("frame.samplesPerPixel");
+  options.mostSamplesPerPixel = file.value<uint32_t>("frame.mostSamplesPerPixel");
   options.seed = file.value<uint64_t>("frame.seed");
   options.keepPixelMeans = file.value<uint8_t>("frame.keepPixelMeans") != 0;
   options.tileOffsetX = file.value<uint32_t>("frame.tileOffsetX");
@@ -192,14 +194,10 @@ void Frame::save(ArchiveWriter& file) const {
   saveOptions(file, options);
   file.addValue("frame.model", d.modelId);
   file.add("frame.hostData", d.hostData);
-  file.addValue("frame.position",
-                FramePosition{d.guidesBuilt, d.notFinite, d.outsideFrame, d.twice, d.buildingBytes,
-                              d.pilotVertexCount, d.pilotSamplesTaken, d.laterSamplesTaken, d.missingSamples,
-                              d.passesWithoutVertices, d.measuredCostRatio, d.schedule.pilotSamples(),
-                              d.schedule.passEnd(d.done), d.schedule.spreadAfter(), uint32_t(d.next), d.done,
-                              d.finished, d.builder != nullptr, d.guidingGivenUp});
+  file.addValue("frame.position", d.position());
   file.addValue("frame.vertexCounts", d.vertexCounts);
   file.add("frame.counts", d.schedule.counts());
+  file.add("frame.before", d.schedule.before().done);
   file.add("frame.pilot", d.pilot.sums());
   file.add("frame.later", d.later.sums());
   if (!d.options.keepPixelMeans) {
@@ -258,10 +256,14 @@ SavedFrame::SavedFrame(const Archive& file)
 
 void SavedFrame::readPosition(const Archive& file) {
   position = file.value<FramePosition>("frame.position");
+  const std::vector<uint32_t> before = file.get<uint32_t>("frame.before");
+  file.require((before.empty() || before.size() == pixelCount) &&
+                   schedule.restore(position.samplesPerPixel, {position.samplesBefore, before}),
+               "frame.before: is damaged");
   if (position.next == ODIS_PASS_GUIDED && !position.builder) schedule.endRefinement();
   // Who learns needs a builder.
   const bool learns = position.next != ODIS_PASS_GUIDED || position.done < schedule.lastRefinement();
-  file.require(position.next <= ODIS_PASS_GUIDED && position.done <= schedule.mostRemaining() &&
+  file.require(position.next <= ODIS_PASS_GUIDED && position.done <= schedule.end() &&
                    (position.builder ? options.guided : !learns),
                "frame.position: is damaged");
   file.require(
@@ -276,7 +278,8 @@ void SavedFrame::readPosition(const Archive& file) {
 // What is kept of pixels' samples; nothing where means are the host's and all is decided.
 void SavedFrame::readPixels(const Archive& file) {
   const bool hasMeans = options.keepPixelMeans;
-  if (hasMeans || position.next != ODIS_PASS_GUIDED || position.done == 0) {
+  if (hasMeans || position.next != ODIS_PASS_GUIDED || position.done == 0 ||
+      position.done < schedule.spreadAfter()) {
     pilot = keptOfPilot(options, schedule);
     later = keptOfLater(options, schedule);
   }
@@ -297,6 +300,30 @@ void SavedFrame::readPass(const Archive& file) {
   pass->samples = SavedVertexSamples::load(file, "pass", pixelCount);
   const auto fits = [tiles](size_t size) { return size == 0 || size == tiles; };
   file.require(fits(pass->samples.size()) && fits(pilotVertices.size()), "pass.samples: are damaged");
+}
+
+FramePosition Frame::Data::position() const {
+  return {guidesBuilt,
+          notFinite,
+          outsideFrame,
+          twice,
+          buildingBytes,
+          pilotVertexCount,
+          pilotSamplesTaken,
+          laterSamplesTaken,
+          missingSamples,
+          passesWithoutVertices,
+          measuredCostRatio,
+          schedule.pilotSamples(),
+          schedule.passEnd(done),
+          schedule.spreadAfter(),
+          schedule.samplesPerPixel(),
+          schedule.before().samplesPerPixel,
+          uint32_t(next),
+          done,
+          finished,
+          builder != nullptr,
+          guidingGivenUp};
 }
 
 // Goes to the place between the first sample and the last where the frame was.

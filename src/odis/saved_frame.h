@@ -16,6 +16,8 @@ struct FramePosition {
   // here on.
   uint64_t pilotSamples;
   uint32_t passEnd, spreadAfter;
+  // What is asked for by now, and was before the last round.
+  uint32_t samplesPerPixel, samplesBefore;
   uint32_t next, done, finished, builder, guidingGivenUp;
 };
 

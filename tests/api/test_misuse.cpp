@@ -59,6 +59,7 @@ TEST(ApiMisuse, NullIsAnError) {
   REFUSED(odisEndPass(nullptr, false));
   REFUSED(odisStartEndPass(nullptr, false));
   REFUSED(odisWaitForPass(nullptr));
+  REFUSED(odisExtendFrame(nullptr, 8));
   REFUSED(odisGuideIsFinal(nullptr));
   REFUSED(odisGetSampleWeight(nullptr, 0, 0) != 0);
   REFUSED(odisGetPixelMean(nullptr, 0, &mean));
@@ -296,6 +297,7 @@ TEST(ApiMisuse, NumbersThatCannotBeAreRefused) {
   refuses([](Options& o, Guides&) { o.width = 0; });
   refuses([](Options& o, Guides&) { o.width = o.height = UINT32_MAX; });
   refuses([](Options& o, Guides&) { o.size = 0; });
+  refuses([](Options& o, Guides&) { o.mostSamplesPerPixel = o.samplesPerPixel - 1; });
   refuses([](Options& o, Guides&) { o.settings = "pilot-weight=nan"; });
   refuses([](Options& o, Guides&) { o.settings = "pilot-spp=inf"; });
   refuses([](Options& o, Guides&) { o.settings = "built-cell-cost=-1"; });

@@ -91,6 +91,22 @@ inline void renderInto(SplatFilm& film, Frame& frame, uint32_t pixels, const Tra
   }
 }
 
+// Renders a new frame into a film, in rounds: to each of these numbers of samples per pixel, and to that of
+// the options, which is the most.
+inline Frame renderRounds(SplatFilm& film, FrameOptions options, std::vector<uint32_t> rounds,
+                          const TraceForFilm& trace, bool weightOne = false) {
+  rounds.push_back(options.samplesPerPixel);
+  options.mostSamplesPerPixel = rounds.back();
+  options.samplesPerPixel = rounds.front();
+  options.keepPixelMeans = false;
+  Frame frame(options);
+  for (const uint32_t samplesPerPixel : rounds) {
+    if (samplesPerPixel > rounds.front()) frame.extend(samplesPerPixel);
+    renderInto(film, frame, options.width * options.height, trace, weightOne);
+  }
+  return frame;
+}
+
 // What the toy host sees.
 inline TraceForFilm toyTrace(const ToyHost& host) {
   return [&host](const FramePass& pass, ArrayView<const float> pixelValues, uint32_t pixel, uint32_t sample,

@@ -82,13 +82,14 @@ struct WallColumn {
   }
 };
 
-// Means of 64 images, for the columns at the left and at the right of the edge.
-std::vector<WallColumn> renderWalls(FrameOptions options, bool weightOne) {
+// Means of 64 images, for the columns at the left and at the right of the edge. The last of the samples per
+// pixel are those of the options; each other number begins a round.
+std::vector<WallColumn> renderWalls(FrameOptions options, bool weightOne,
+                                    const std::vector<uint32_t>& rounds = {}) {
   std::vector<WallColumn> columns(2);
   for (options.seed = 1; options.seed <= 64; ++options.seed) {
-    Frame frame(options);
     SplatFilm film(kWallWidth, kWallHeight, kGaussian);
-    renderInto(film, frame, kWallWidth * kWallHeight, traceWall, weightOne);
+    Frame frame = renderRounds(film, options, rounds, traceWall, weightOne);
     const uint32_t middle = 4 * kWallWidth + kEdge;
     const double least = readSetting(options.settings, "pilot-spp") == "0.250000" ? 1.75 : 3;
     EXPECT_LE(frame.sampleCount(middle - 1), options.samplesPerPixel * 0.65);
@@ -111,6 +112,22 @@ TEST(OwnFilm, SplatsAnEdgeBetweenFewSamplesAndMany) {
   }
 }
 
+// The first round ends with the pilot, before counts are settled, or after.
+TEST(OwnFilm, SplatsAnEdgeInRounds) {
+  const double significance = 1 - std::pow(0.99, 1.0 / 12);
+  for (const double pilot : {0.0, 0.25, 1.0})
+    for (const std::vector<uint32_t>& rounds : {std::vector<uint32_t>{8}, {1, 2, 4}}) {
+      FrameOptions options = toyOptions(kWallWidth, kWallHeight, 16);
+      options.guided = pilot > 0;
+      options.pilotSamplesPerPixel = pilot;
+      for (const WallColumn& column : renderWalls(options, false, rounds)) {
+        EXPECT_GT(std::erfc(std::abs(column.distance()) / std::sqrt(2.0)), significance)
+            << column.truth << ", z = " << column.distance();
+        EXPECT_NEAR(column.ratio(), column.truth, 0.01);
+      }
+    }
+}
+
 // The mistake that weights are there to avoid: a pixel that has many samples counts more in its neighbours.
 TEST(OwnFilm, IsWrongAtAnEdgeIfSamplesWeighAsMuch) {
   FrameOptions options = toyOptions(kWallWidth, kWallHeight, 16);
@@ -125,15 +142,15 @@ using Films = std::vector<std::vector<double>>;
 constexpr uint32_t kToySide = 16;
 constexpr SplatFilm::Layer kCompared[] = {SplatFilm::beauty, SplatFilm::lamp0, SplatFilm::lamp1};
 
-Films renderToyFilms(const FrameOptions& options, uint64_t firstSeed) {
+Films renderToyFilms(const FrameOptions& options, uint64_t firstSeed,
+                     const std::vector<uint32_t>& rounds = {}) {
   Films films(static_cast<size_t>(imagesToCompare(64)));
   core::libraryTasks()->forEach(films.size(), [&](size_t i) {
     FrameOptions own = options;
     own.seed = firstSeed + i;
-    Frame frame(own);
     const ToyHost host({}, kToySide, kToySide);
     SplatFilm film(kToySide, kToySide, kGaussian);
-    renderInto(film, frame, kToySide * kToySide, toyTrace(host));
+    renderRounds(film, own, rounds, toyTrace(host));
     for (const SplatFilm::Layer layer : kCompared)
       for (uint32_t pixel = 0; pixel < kToySide * kToySide; ++pixel)
         films[i].push_back(film.sum(pixel, layer) / options.samplesPerPixel);
@@ -152,11 +169,7 @@ std::pair<double, double> meanOf(const Films& films, size_t value) {
   return {mean, (squares / count - mean * mean) / (count - 1)};
 }
 
-TEST(OwnFilm, OfGuidedSamplesHasTheExpectationOfUnguidedOnes) {
-  FrameOptions guided = toyOptions(kToySide, kToySide, 16), path = guided;
-  path.set("guided=off samples=even");
-  path.samplesPerPixel = 64;
-  const Films a = renderToyFilms(guided, 1), b = renderToyFilms(path, 1000);
+void expectSameFilm(const Films& a, const Films& b) {
   if (kThreadSanitized) return;
   const double significance = 1 - std::pow(0.99, 1.0 / double(a[0].size()));
   for (size_t i = 0; i < a[0].size(); ++i) {
@@ -167,6 +180,15 @@ TEST(OwnFilm, OfGuidedSamplesHasTheExpectationOfUnguidedOnes) {
         << "layer " << i / (kToySide * kToySide) << ", pixel " << i % (kToySide * kToySide) << ": " << meanA
         << " and " << meanB << ", z = " << z;
   }
+}
+
+TEST(OwnFilm, OfGuidedSamplesHasTheExpectationOfUnguidedOnes) {
+  FrameOptions guided = toyOptions(kToySide, kToySide, 16), path = guided;
+  path.set("guided=off samples=even");
+  path.samplesPerPixel = 64;
+  const Films unguided = renderToyFilms(path, 1000);
+  expectSameFilm(renderToyFilms(guided, 1), unguided);
+  expectSameFilm(renderToyFilms(guided, 2000, {1, 3, 6, 7}), unguided);
 }
 
 }  // namespace

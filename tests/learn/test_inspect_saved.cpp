@@ -71,10 +71,11 @@ void tracePixels(core::Frame& frame, uint32_t pixels, float value) {
 }
 
 // A frame after some passes, and within the next one if some of its pixels are traced. The pilot's samples
-// are 1, all others 2.
+// are 1, all others 2. A frame that may go on is extended as soon as it is complete.
 std::string savedFrame(const core::FrameOptions& options, int passes, uint32_t pixelsOfNext = 0) {
   core::Frame frame(options);
   for (int pass = 0; pass <= passes; ++pass) {
+    if (frame.isComplete() && options.mostSamplesPerPixel > 0) frame.extend(20);
     if (pass == passes && pixelsOfNext == 0) break;
     const bool pilot = frame.beginPass()->kind == ODIS_PASS_PILOT;
     tracePixels(frame, pass < passes ? options.width * options.height : pixelsOfNext, pilot ? 1 : 2);
@@ -334,10 +335,15 @@ TEST(InspectSaved, SeedsOfTheFuzzerAreRead) {
   core::GuideOptions simple = networks;
   simple.model = core::Model();
   const core::FrameOptions guided = frameOptions(4, 4, networks), formula = frameOptions(4, 4, simple);
+  core::FrameOptions withoutMeans = guided, goesOn = formula;
+  withoutMeans.keepPixelMeans = goesOn.keepPixelMeans = false;
+  goesOn.samplesPerPixel = 1;
+  goesOn.mostSamplesPerPixel = ODIS_UNLIMITED;
   const std::pair<std::string, std::string> seeds[] = {
-      {"guide", savedGuide(networks, litFloor(50))},       {"vertices", savedVertices(litFloor(4))},
-      {"frame-in-pilot", savedFrame(formula, 0, 16)},      {"frame-guided", savedFrame(guided, 1)},
-      {"frame-in-guided-pass", savedFrame(guided, 1, 16)}, {"frame-by-formulas", savedFrame(formula, 2)}};
+      {"guide", savedGuide(networks, litFloor(50))},        {"vertices", savedVertices(litFloor(4))},
+      {"frame-in-pilot", savedFrame(formula, 0, 16)},       {"frame-guided", savedFrame(guided, 1)},
+      {"frame-in-guided-pass", savedFrame(guided, 1, 16)},  {"frame-by-formulas", savedFrame(formula, 2)},
+      {"frame-without-means", savedFrame(withoutMeans, 1)}, {"frame-extended", savedFrame(goesOn, 2)}};
   for (const auto& [name, bytes] : seeds) {
     const std::string path = ODIS_SAVED_SEEDS "/" + name;
     if (std::getenv("ODIS_WRITE_SEEDS")) std::ofstream(path, std::ios::binary) << bytes;

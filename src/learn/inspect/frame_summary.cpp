@@ -18,6 +18,7 @@ std::vector<ChosenOption> chosenOptions(const core::FrameOptions& saved) {
     if (value != usualValue) chosen.push_back({name, fmt::format("{}", value)});
   };
   note("samplesPerPixel", saved.samplesPerPixel, usual.samplesPerPixel);
+  note("mostSamplesPerPixel", saved.mostSamplesPerPixel, usual.mostSamplesPerPixel);
   note("seed", saved.seed, usual.seed);
   note("keepPixelMeans", saved.keepPixelMeans, usual.keepPixelMeans);
   note("tileOffsetX", saved.tileOffsetX, usual.tileOffsetX);
@@ -42,7 +43,7 @@ std::string modelText(uint64_t id) {
 // Where a frame is between its first sample and its last.
 std::string stateText(const core::SavedFrame& saved) {
   const core::FramePosition& at = saved.position;
-  const uint32_t all = saved.schedule.mostRemaining();
+  const uint32_t all = saved.schedule.end();
   if (at.finished) return "ended before it was complete";
   if (at.next == ODIS_PASS_GUIDED && at.done >= all) return "complete";
   const std::string where = saved.pass ? "within " : "before ";

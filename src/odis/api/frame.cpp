@@ -44,9 +44,9 @@ OdisFrameImpl::~OdisFrameImpl() {
   if (builder && builder->frame == this) builder->frame = nullptr;
 }
 
-void OdisFrameImpl::claimBuilder() {
+void OdisFrameImpl::claimBuilder(const char* function) {
   if (!builder) return;
-  builder->requireFree("odisBeginPass", this);
+  builder->requireFree(function, this);
   builder->frame = this;
 }
 
@@ -107,7 +107,7 @@ bool odisBeginPass(OdisFrame frame, OdisFramePass* pass) {
   return guardedForFrame(frame, "odisBeginPass", false, [&](Frame& f) {
     odis::core::requireArgument(pass, "odisBeginPass: pass");
     odis::core::fillIn(*pass, OdisFramePass(), "OdisFramePass");
-    frame->claimBuilder();
+    frame->claimBuilder("odisBeginPass");
     const OdisFramePass* begun = f.beginPass();
     if (begun) odis::core::fillIn(*pass, *begun, "OdisFramePass");
     return begun != nullptr;
@@ -169,6 +169,15 @@ bool odisWaitForPass(OdisFrame frame) {
     frame->ending.join();
     if (const std::exception_ptr failure = std::exchange(frame->failure, nullptr))
       std::rethrow_exception(failure);
+    return true;
+  });
+}
+
+bool odisExtendFrame(OdisFrame frame, uint32_t samplesPerPixel) {
+  return guardedForFrame(frame, "odisExtendFrame", false, [&](Frame& f) {
+    frame->claimBuilder("odisExtendFrame");
+    f.extend(samplesPerPixel);
+    frame->memory.set(f.bytes());
     return true;
   });
 }

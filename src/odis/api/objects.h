@@ -150,7 +150,7 @@ struct OdisFrameImpl : odis::core::Object {
   OdisFrameImpl(OdisContext owner, odis::core::Frame content, OdisGuideBuilder learnsInto = nullptr);
   ~OdisFrameImpl() override;
 
-  void claimBuilder();
+  void claimBuilder(const char* function);
   void endPass(bool interrupted);
   void requireNotEnding(const char* function) const;
   bool hasRoomFor(size_t vertices);

@@ -46,6 +46,7 @@ FrameOptions optionsOf(const OdisFrameOptions& host) {
   options.width = given.width;
   options.height = given.height;
   options.samplesPerPixel = given.samplesPerPixel;
+  options.mostSamplesPerPixel = given.mostSamplesPerPixel;
   options.seed = given.seed;
   options.keepPixelMeans = given.keepPixelMeans;
   options.tileOffsetX = given.tileOffsetX;

@@ -22,7 +22,6 @@ constexpr double kMostVariance = 20;
 constexpr double kLeastCost = 1e-3;
 // The share of the image's variance that blocks are taken to have which see no noise at all.
 constexpr double kLeastVariance = 0.001;
-constexpr double kLeastShare = 0.5, kGreatestShare = 3;
 // Exponent of variance over cost. For independent samples 1/2 leaves the least error; stratified ones gain
 // more where they vary little, and what pixels around have seen is but an estimate.
 constexpr double kExponent = 0.4;

@@ -11,6 +11,9 @@
 
 namespace odis::core {
 
+// A pixel has from half as many to three times as many samples (rounded) as are asked for.
+inline constexpr double kLeastShare = 0.5, kGreatestShare = 3;
+
 // What the first samples of a pixel tell of one more.
 struct PixelNoise {
   float value = 0;      // luminance of the samples' mean
@@ -20,8 +23,8 @@ struct PixelNoise {
 PixelNoise noiseOf(const PixelSums& sums);
 
 // Chooses the number of samples for each pixel of an image of `width` columns, so that all cost about as
-// much as `mean` samples in every pixel: from half as many to three times as many (rounded), the more the
-// larger their variance relative to the pixels' values squared and the smaller their cost.
+// much as `mean` samples in every pixel: the more the larger their variance relative to the pixels' values
+// squared and the smaller their cost.
 //
 // Blocks of 2 x 2 pixels are coloured like a chessboard, and the count of a white block is made of what the
 // black ones around it have seen, and the other way round. So, if samples of different pixels are

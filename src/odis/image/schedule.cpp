@@ -5,6 +5,8 @@
 #include <cmath>
 #include <numeric>
 
+#include "odis/image/sample_counts.h"
+
 namespace odis::core {
 
 namespace {
@@ -29,7 +31,13 @@ uint64_t mixBits(uint64_t x) {
 double pilotSamplesPerPixel(const FrameOptions& options) {
   if (options.pilotSamplesPerPixel > 0) return std::max(options.pilotSamplesPerPixel, 1e-3);
   const size_t pixels = size_t(options.width) * options.height;
-  return pixels >= kManyPixels && options.samplesPerPixel < kManySamples ? 0.25 : 1.0;
+  return pixels >= kManyPixels && options.most() < kManySamples ? 0.25 : 1.0;
+}
+
+// A fraction of 2^32 for each pixel, which differs much between those that are close: its numbers of samples
+// are rounded up where what is cut off is at least 1 minus that.
+uint32_t roundingOf(uint32_t x, uint32_t y) {
+  return x * 3242174889u + y * 2447445414u;  // Roberts' R2: powers of the plastic number's inverse
 }
 
 // The pixels of a pilot of less than a sample per pixel: one of each square of 1 / pilotSpp pixels (of the
@@ -51,13 +59,16 @@ std::vector<uint8_t> pixelsInPilot(const FrameOptions& options, double pilotSpp)
 
 Schedule::Schedule(const FrameOptions& options)
     : m_pixels(uint64_t(options.width) * options.height),
+      m_width(options.width),
       m_spp(options.samplesPerPixel),
-      m_mostRemaining(options.samplesPerPixel) {
+      m_most(options.most()),
+      m_inTheMean(m_spp < m_most),
+      m_mostRemaining(m_most) {
   double pilotSpp = 0;
   if (options.guided) {
     pilotSpp = pilotSamplesPerPixel(options);
     if (pilotSpp >= 1)
-      m_pilotEverywhere = uint32_t(std::min(std::round(pilotSpp), double(options.samplesPerPixel)));
+      m_pilotEverywhere = uint32_t(std::min(std::round(pilotSpp), double(m_most)));
     else
       m_isInPilot = pixelsInPilot(options, pilotSpp);
     m_mostRemaining -= m_pilotEverywhere;
@@ -65,9 +76,10 @@ Schedule::Schedule(const FrameOptions& options)
       m_lastRefinement = std::bit_floor(std::min(options.refinementSamples, m_mostRemaining / 2) + 1) - 1;
   }
   // Two samples of a pixel tell how much they differ; a pilot's may be the first.
-  if (options.adaptive() && m_spp >= kFewestToSpread && pilotSpp + 2 < m_spp)
+  if (options.adaptive() && m_most >= kFewestToSpread && pilotSpp + 2 < m_most)
     m_spreadAfter = options.guided ? 1 : 2;
   m_decided = std::max(m_lastRefinement, m_spreadAfter);
+  m_end = m_spp - m_pilotEverywhere;
 }
 
 uint64_t Schedule::pilotSamples() const {
@@ -76,31 +88,50 @@ uint64_t Schedule::pilotSamples() const {
 }
 
 uint64_t Schedule::remainingSamples() const {
-  const uint64_t all =
-      m_counts.empty() ? m_pixels * m_spp : std::accumulate(m_counts.begin(), m_counts.end(), uint64_t(0));
-  return all - pilotSamples();
+  if (m_counts.empty() && !m_inTheMean) return m_pixels * m_spp - pilotSamples();
+  uint64_t samples = 0;
+  for (uint32_t pixel = 0; pixel < m_pixels; ++pixel) samples += doneIn(pixel, m_end);
+  return samples;
 }
 
 SampleRange Schedule::remaining(uint32_t pixel, uint32_t begin, uint32_t end) const {
-  if (m_counts.empty()) {
-    const uint32_t pilot = pilotCount(pixel), first = std::min(pilot + begin, m_spp);
-    return {first, std::min(m_spp - first, end - begin)};
-  }
   const uint32_t first = doneIn(pixel, begin);
   return {pilotCount(pixel) + first, doneIn(pixel, end) - first};
 }
 
-uint32_t Schedule::doneIn(uint32_t pixel, uint32_t done) const {
-  const uint32_t all = sampleCount(pixel) - pilotCount(pixel), alike = std::min(m_decided, all);
-  if (done <= m_decided || done >= m_mostRemaining) return std::min(done, all);
-  return alike + uint32_t(uint64_t(all - alike) * (done - m_decided) / (m_mostRemaining - m_decided));
+uint32_t Schedule::doneIn(uint32_t pixel, uint32_t place) const {
+  const uint32_t done = shareIn(pixel, place);
+  if (m_before.done.empty()) return done;
+  return std::max(done, m_before.done[pixel] + (place >= m_end ? 1 : 0));
+}
+
+uint32_t Schedule::shareIn(uint32_t pixel, uint32_t place) const {
+  assert(m_counts.empty() || pixel < m_counts.size());
+  const uint32_t all = (m_counts.empty() ? m_most : m_counts[pixel]) - pilotCount(pixel);
+  if (place <= m_decided) return std::min(place, all);
+  const uint32_t alike = std::min(m_decided, all);
+  if (!m_inTheMean) {
+    if (m_counts.empty() || place >= m_mostRemaining) return std::min(place, all);
+    return alike + uint32_t(uint64_t(all - alike) * (place - m_decided) / (m_mostRemaining - m_decided));
+  }
+  const uint64_t decided = m_decided + lag(pixel);
+  if (place <= decided) return alike;
+  if (m_counts.empty()) return alike + uint32_t(place - decided);
+  const uint64_t whole = m_most - m_pilotEverywhere - decided;
+  const uint64_t rounding = whole * roundingOf(pixel % m_width, pixel / m_width) >> 32;
+  return alike + uint32_t(((all - alike) * (place - decided) + rounding) / whole);
+}
+
+uint32_t Schedule::evenRemaining(uint32_t pixel) const {
+  const uint32_t place = m_spp - m_pilotEverywhere;
+  return place <= m_decided ? place : std::max(m_decided, place - lag(pixel));
 }
 
 uint32_t Schedule::passEnd(uint32_t done) const {
-  if (done < m_lastRefinement) return done + 1;
-  if (done < m_spreadAfter) return m_spreadAfter;
+  if (done < m_lastRefinement) return std::min(m_end, done + 1);
+  if (done < m_spreadAfter) return std::min(m_end, m_spreadAfter);
   const uint32_t few = std::clamp(done, 1u, kSamplesPerPass);
-  if (m_counts.empty()) return std::min(m_mostRemaining, done + few);
+  if (m_counts.empty() || m_inTheMean) return std::min(m_end, done + few);
   // So many in the mean over the pixels.
   const double left = double(samplesAfter(done)) / double(m_counts.size());
   if (left <= kSamplesPerPass) return m_mostRemaining;
@@ -115,37 +146,60 @@ uint64_t Schedule::samplesAfter(uint32_t done) const {
 }
 
 void Schedule::spread(std::vector<uint32_t> counts) {
-  m_counts = std::move(counts);
-  m_mostRemaining = 0;
-  for (uint32_t pixel = 0; pixel < m_counts.size(); ++pixel) {
-    const uint32_t pilot = pilotCount(pixel);
-    m_counts[pixel] = std::max(m_counts[pixel], pilot + m_spreadAfter);
-    m_mostRemaining = std::max(m_mostRemaining, m_counts[pixel] - pilot);
-  }
+  for (uint32_t pixel = 0; pixel < counts.size(); ++pixel)
+    counts[pixel] = std::max(counts[pixel], pilotCount(pixel) + m_spreadAfter);
+  restore(std::move(counts));
 }
 
 bool Schedule::restore(std::vector<uint32_t> counts) {
   if (counts.empty()) return true;
+  if (m_spreadAfter == 0) return false;
   uint32_t most = 0;
   for (uint32_t pixel = 0; pixel < counts.size(); ++pixel) {
-    if (counts[pixel] < pilotCount(pixel)) return false;
+    if (counts[pixel] < pilotCount(pixel) || double(counts[pixel]) > kGreatestShare * m_most) return false;
     most = std::max(most, counts[pixel] - pilotCount(pixel));
   }
   m_counts = std::move(counts);
   m_mostRemaining = most;
+  if (!m_inTheMean) m_end = most;
+  return true;
+}
+
+uint32_t Schedule::extend(uint32_t samplesPerPixel, uint32_t done, bool asRound) {
+  if (asRound) {
+    std::vector<uint32_t> taken(m_pixels);
+    for (uint32_t pixel = 0; pixel < m_pixels; ++pixel) taken[pixel] = doneIn(pixel, done);
+    m_before = {m_spp, std::move(taken)};
+  }
+  if (!m_inTheMean) done = m_most - m_pilotEverywhere;
+  m_inTheMean = true;
+  m_spp = samplesPerPixel;
+  m_end = m_spp - m_pilotEverywhere;
+  return done;
+}
+
+bool Schedule::restore(uint32_t samplesPerPixel, Round before) {
+  if (samplesPerPixel == m_spp) return before.done.empty();
+  if (samplesPerPixel < m_spp || samplesPerPixel > kMostSamplesPerPixel) return false;
+  if (before.samplesPerPixel >= samplesPerPixel ||
+      std::any_of(before.done.begin(), before.done.end(), [](uint32_t done) { return done > INT32_MAX; }))
+    return false;
+  extend(samplesPerPixel, 0, false);
+  m_before = std::move(before);
   return true;
 }
 
 float Schedule::remainingRatio(uint32_t pixel) const {
-  const uint32_t pilot = pilotCount(pixel);
-  return float(sampleCount(pixel) - pilot) / float(m_spp - pilot);
+  return float(doneIn(pixel, m_end)) / float(evenRemaining(pixel));
 }
 
 float Schedule::sampleWeight(uint32_t pixel, bool ofPilot, double pilotWeight) const {
-  const uint32_t pilot = pilotCount(pixel), others = m_spp - pilot;
+  if (!m_before.done.empty())
+    return float(double(m_spp - m_before.samplesPerPixel) / (doneIn(pixel, m_end) - m_before.done[pixel]));
+  const uint32_t pilot = pilotCount(pixel), others = evenRemaining(pixel);
   if (others == 0 || (pilot == 0 && m_counts.empty())) return 1;
   const double all = pilotWeight * pilot + others;
-  return float(m_spp / all * (ofPilot ? pilotWeight : double(others) / (sampleCount(pixel) - pilot)));
+  return float(m_spp / all * (ofPilot ? pilotWeight : double(others) / doneIn(pixel, m_end)));
 }
 
 }  // namespace odis::core

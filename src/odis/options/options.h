@@ -61,6 +61,7 @@ struct GuideOptions {
 struct FrameOptions {
   uint32_t width = 0, height = 0;
   uint32_t samplesPerPixel = OdisFrameOptions().samplesPerPixel;
+  uint32_t mostSamplesPerPixel = 0;  // up to which the frame may be extended; 0: samplesPerPixel
   uint64_t seed = 0;
   bool keepPixelMeans = true;
   uint32_t tileOffsetX = 0, tileOffsetY = 0;
@@ -75,6 +76,12 @@ struct FrameOptions {
   bool keepPilotVertices = false;
   float guidedCost = 1, builtCellCost = 70, recordedRayCost = 0.15f;
 
+  // The number of samples per pixel that decisions go by; 2^20 if it is unlimited.
+  uint32_t most() const {
+    constexpr uint32_t kUnlimited = 1u << 20;
+    const uint32_t asked = mostSamplesPerPixel == ODIS_UNLIMITED ? kUnlimited : mostSamplesPerPixel;
+    return asked > samplesPerPixel ? asked : samplesPerPixel;
+  }
   bool adaptive() const {
     return samples == SampleSpread::adaptive || (samples == SampleSpread::automatic && guided);
   }
