@@ -24,7 +24,7 @@ def build(fields, context):
     builder = odis.GuideBuilder(options, context)
     vertices = odis.PathVertices(**fields)
     builder.add(vertices)
-    guide = builder.build(vertices)
+    guide = builder.build()
     return guide, (time.perf_counter() - begin, time.process_time() - work)
 
 

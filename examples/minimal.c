@@ -64,7 +64,7 @@ static OdisGuide buildGuide(OdisContext context, const OdisPathVertex* array) {
   // A builder gathers statistics of the vertices in the cells where they lie. NULL: the default options.
   OdisGuideBuilder builder = odisNewGuideBuilder(context, NULL);
   require(builder != NULL, "odisNewGuideBuilder");
-  require(odisAddVertices(builder, &vertices), "odisAddVertices");
+  require(odisAddVertices(builder, &vertices, false), "odisAddVertices");
 
   // Vertices that can't be learned from are counted by reason, so that mistakes of a host show.
   counts.size = sizeof counts;
@@ -72,7 +72,7 @@ static OdisGuide buildGuide(OdisContext context, const OdisPathVertex* array) {
   printf("%u vertices: %u accepted\n", (unsigned)VERTEX_COUNT, (unsigned)counts.accepted);
 
   // Makes a sampling map for each cell. There is no image here, so no pixel values.
-  OdisGuide guide = odisBuildGuide(builder, &vertices, NULL, 0);
+  OdisGuide guide = odisBuildGuide(builder, NULL, 0);
   require(guide != NULL, "odisBuildGuide");
   odisReleaseGuideBuilder(builder);
   return guide;

@@ -33,7 +33,7 @@ builder = odis.GuideBuilder()
 builder.add(vertices)
 
 # 4. The guide holds a map of incident radiance over directions for each cell.
-guide = builder.build(vertices)
+guide = builder.build()
 print(f"{len(guide)} cells from {builder.vertex_counts.accepted} vertices, {guide.bytes} bytes")
 
 # 5. Where paths are to be guided now: at four points of the floor. Which cell is each of them in?

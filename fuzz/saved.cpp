@@ -1,5 +1,5 @@
-// Saved guides, vertices and frames: as they are, and with a checksum that is made right, so that damage gets
-// behind it. What loads is looked into, and used as a host does.
+// Saved guides, builders, vertices and frames: as they are, and with a checksum that is made right, so that
+// damage gets behind it. What loads is looked into, and used as a host does.
 #include "learn/inspect/saved_output.h"
 #include "odis/api/objects.h"
 #include "odis/files/crc32.h"
@@ -62,11 +62,11 @@ void goOn(core::Frame& frame, uint32_t pixels, bool interrupted) {
 }
 
 void readFrame(const Archive& file) {
-  static OdisModelImpl formulas{core::Model()};
-  const bool hasMeans = core::SavedOptions(file).frame.keepPixelMeans;
+  const bool hasMeans = core::loadOptions(file).keepPixelMeans;
   const bool networks = file.value<uint64_t>("frame.model") != 0;
   for (const bool interrupted : {true, false}) {
-    core::Frame frame = core::Frame::load(file, networks ? nullptr : &formulas, core::threadTasks(1));
+    core::Frame frame =
+        core::Frame::load(file, networks ? std::nullopt : std::optional(core::Model()), core::threadTasks(1));
     const core::FrameStatistics size = frame.summary();
     const uint32_t pixels = size.width * size.height;
     goOn(frame, pixels, interrupted);
@@ -74,6 +74,16 @@ void readFrame(const Archive& file) {
     core::ArchiveWriter again("frame");
     frame.save(again);
   }
+}
+
+void readBuilder(const Archive& file) {
+  const bool networks = file.value<uint64_t>("builder.model") != 0;
+  core::GuideBuilder builder = core::GuideBuilder::load(
+      file, networks ? std::nullopt : std::optional(core::Model()), core::threadTasks(1));
+  const core::Guide guide = builder.build();
+  lookUp(guide.view());
+  core::ArchiveWriter again("builder");
+  builder.save(again);
 }
 
 void readAll(const std::string& bytes) {
@@ -90,6 +100,7 @@ void readAll(const std::string& bytes) {
     learn::savedText(seen, "fuzz");
     learn::toJson(seen).dump();
     if (file.kind() == "frame") readFrame(file);
+    if (file.kind() == "builder") readBuilder(file);
   } catch (const core::FileError&) {
   }
 }

@@ -36,8 +36,9 @@ void showSaved(const SavedArguments& a) {
   if (!a.json.empty()) outputs.add(a.json, {".json"});
   outputs.rejectInputs({a.file});
   learn::SavedInspection saved = learn::inspectSaved(core::Archive::load(a.file));
-  if (saved.vertices && !a.output.empty())
-    throw UsageError(fmt::format("-o: \"{}\" holds vertices, of which there is no picture", a.file));
+  if ((saved.vertices || saved.builder) && !a.output.empty())
+    throw UsageError(fmt::format("-o: \"{}\" holds {}, of which there is no picture", a.file,
+                                 saved.vertices ? "vertices" : "a builder"));
   if (a.point) saved.cell = learn::inspectCell(saved, *a.point, a.normal);
   const std::string title = std::filesystem::path(a.file).filename().string();
   if (!a.output.empty()) writeSavedPicture(a.output, saved, title);

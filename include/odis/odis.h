@@ -241,33 +241,50 @@ ODIS_API bool odisSetFrameProgress(OdisFrame frame, OdisProgressFunction functio
 // ---- guide: nested cells in world space, with a sampling map and decisions in each ----
 
 // For hosts that have no frame: vertices are added once or as samples arrive, and guides are built from all
-// of them.
+// of them. A builder holds about 2,200 bytes a cell and part (odisMergeGuideBuilders), and at most 35 MB a
+// part that BSDF sampling fractions are chosen by.
 ODIS_API void odisInitGuideOptions(OdisGuideOptions* options, size_t size);
 ODIS_API OdisGuideBuilder odisNewGuideBuilder(OdisContext context, const OdisGuideOptions* options);
 ODIS_API void odisRetainGuideBuilder(OdisGuideBuilder builder);
 ODIS_API void odisReleaseGuideBuilder(OdisGuideBuilder builder);
 // Adds to the statistics of the cells. The first call fixes the extent of the cells, so it should hold at
-// least one pass over the image. Vertices of guided paths may be added, too, their `pdf` being the mixture's.
-// Vertices that can't be used are left out and counted.
-ODIS_API bool odisAddVertices(OdisGuideBuilder builder, const OdisPathVertices* vertices);
-// Builds maps from all that was added, and BSDF sampling fractions from vertices that should be (a part of)
-// the same, without those of guided paths. `pixelValues`, indexed by OdisPathVertex.pixel, are what the
-// vertices' contributions are divided by; NULL: by those of an even image with the mean of all paths.
-ODIS_API OdisGuide odisBuildGuide(OdisGuideBuilder builder, const OdisPathVertices* vertices,
-                                  const float* pixelValues, size_t pixelCount);
+// least one pass over the image. `guided`: whether a guide helped to sample these paths, `pdf` being the
+// mixture's; BSDF sampling fractions are chosen by vertices of unguided paths alone. Vertices of one call
+// may come in any order; calls add in the order in which they come. Vertices that can't be used are left out
+// and counted.
+ODIS_API bool odisAddVertices(OdisGuideBuilder builder, const OdisPathVertices* vertices, bool guided);
+// Builds a guide from all that was added. `pixelValues`, indexed by OdisPathVertex.pixel, are what the
+// vertices' contributions are divided by; NULL: by those of an even image with the mean of all paths. A
+// vertex with a pixel beyond them is an error. Parts that were merged are taken to see pixels of one image,
+// whose values these are; of several images' parts NULL must be given.
+ODIS_API OdisGuide odisBuildGuide(OdisGuideBuilder builder, const float* pixelValues, size_t pixelCount);
 // Builds all but BSDF sampling fractions anew, from all that was added by now. Those are taken from
-// `previous`, which this builder must have built since its cells were faded, forgotten or moved; cells that
-// are new have their parents' fractions.
+// `previous`, a guide with cells of the same extent: of this builder before its cells were forgotten or
+// moved, or one that was loaded, say. Cells that are new have their parents' fractions.
 ODIS_API OdisGuide odisRebuildGuide(OdisGuideBuilder builder, OdisGuide previous);
 // From frame to frame of an animation, between two frames that learn into the builder (OdisFrameOptions):
 // what was added counts `weight` times from now on, in [0, 1]. Cells that are left with next to nothing are
-// forgotten, so memory follows what the last frames saw. Give each frame a seed of its own.
+// forgotten, so memory follows what the last frames saw. With a weight below 1, BSDF sampling fractions are
+// chosen by unguided vertices that come from now on; in frames they always are by the frame's own. Give each
+// frame a seed of its own.
 ODIS_API bool odisFadeVertices(OdisGuideBuilder builder, float weight);
-// Forgets all that was added, and the extent of the cells.
+// Forgets all that was added and merged, and the extent of the cells.
 ODIS_API bool odisForgetVertices(OdisGuideBuilder builder);
 // Fixes the extent of the cells in place of what the first vertices span. What cells have seen moves with
 // them, to the cell around the mean of its vertices' positions.
 ODIS_API bool odisSetBounds(OdisGuideBuilder builder, const OdisFloat3* lower, const OdisFloat3* upper);
+
+// Several builders, of threads or machines, that a guide is built from together (docs/merging.md). What is
+// added to a builder is a part with this id, 0 at first; a part that was merged into it can't have the same.
+ODIS_API bool odisSetPartId(OdisGuideBuilder builder, uint64_t id);
+// Takes copies of what other builders hold, parts that were merged into them included, and remembers them by
+// their ids. Guides are built from sums of the parts in the order of their ids: the same bits for any order
+// and nesting of merging, though not those of one builder that all vertices were added to. What is added
+// later is of the part of `into`; odisFadeVertices, odisForgetVertices and odisSetBounds are for all parts.
+// Builders that differ in an option, the model or the extent of their cells (odisSetBounds with one box
+// before the first vertices makes it the same), and two parts with one id are errors. A builder without
+// vertices fits all.
+ODIS_API bool odisMergeGuideBuilders(OdisGuideBuilder into, const OdisGuideBuilder* builders, size_t count);
 ODIS_API bool odisGetVertexCounts(OdisGuideBuilder builder, OdisVertexCounts* counts);
 // Held at most while guides are built, the vertices themselves not included, in bytes.
 ODIS_API uint64_t odisGetGuideBuilderBytes(OdisGuideBuilder builder);
@@ -285,6 +302,10 @@ ODIS_API bool odisGetGuideView(OdisGuide guide, OdisGuideView* view);
 // Files, which `odis inspect` shows. A loaded guide answers as the saved one did.
 ODIS_API bool odisSaveGuide(OdisGuide guide, const char* path);
 ODIS_API OdisGuide odisLoadGuide(OdisContext context, const char* path);
+// Writes the options and all that was added and merged; a loaded builder goes on as the saved one would have.
+// `model` must be the one that it had; NULL: the networks that come with the library.
+ODIS_API bool odisSaveGuideBuilder(OdisGuideBuilder builder, const char* path);
+ODIS_API OdisGuideBuilder odisLoadGuideBuilder(OdisContext context, const char* path, OdisModel model);
 ODIS_API bool odisSaveVertices(const OdisPathVertices* vertices, const char* path);
 // Copies the vertices of a file; returns how many there are. NULL: counts them only.
 ODIS_API size_t odisLoadVertices(const char* path, OdisPathVertex* vertices, size_t capacity);

@@ -237,21 +237,32 @@ class Guide : public Handle<OdisGuide, odisRetainGuide, odisReleaseGuide> {
 class GuideBuilder : public Handle<OdisGuideBuilder, odisRetainGuideBuilder, odisReleaseGuideBuilder> {
  public:
   explicit GuideBuilder(const GuideOptions& options = {}, const Context& context = Context::shared())
-      : Handle(made([&] {
+      : GuideBuilder(made([&] {
           const OdisGuideOptions flat = options.flat();
           return odisNewGuideBuilder(context.get(), &flat);
         })) {}
 
+  // A builder that was saved, with the model that it had.
+  static GuideBuilder load(const std::string& path, const std::optional<Model>& model = std::nullopt,
+                           const Context& context = Context::shared()) {
+    return GuideBuilder(made(
+        [&] { return odisLoadGuideBuilder(context.get(), path.c_str(), model ? model->get() : nullptr); }));
+  }
+  void save(const std::string& path) const {
+    orThrow([&] { return odisSaveGuideBuilder(get(), path.c_str()); });
+  }
+
+  // Vertices of unguided paths, and of guided ones.
   void add(ArrayView<const PathVertex> vertices) { add(describe(vertices)); }
   void add(const OdisPathVertices& vertices) {
-    orThrow([&] { return odisAddVertices(get(), &vertices); });
+    orThrow([&] { return odisAddVertices(get(), &vertices, false); });
   }
-  Guide build(ArrayView<const PathVertex> vertices, ArrayView<const float> pixelValues = {}) const {
-    return build(describe(vertices), pixelValues);
+  void addGuided(ArrayView<const PathVertex> vertices) { addGuided(describe(vertices)); }
+  void addGuided(const OdisPathVertices& vertices) {
+    orThrow([&] { return odisAddVertices(get(), &vertices, true); });
   }
-  Guide build(const OdisPathVertices& vertices, ArrayView<const float> pixelValues = {}) const {
-    return Guide(
-        made([&] { return odisBuildGuide(get(), &vertices, pixelValues.data(), pixelValues.size()); }));
+  Guide build(ArrayView<const float> pixelValues = {}) const {
+    return Guide(made([&] { return odisBuildGuide(get(), pixelValues.data(), pixelValues.size()); }));
   }
   Guide rebuild(const Guide& previous) const {
     return Guide(made([&] { return odisRebuildGuide(get(), previous.get()); }));
@@ -266,6 +277,16 @@ class GuideBuilder : public Handle<OdisGuideBuilder, odisRetainGuideBuilder, odi
     return checked(uint64_t(0), [&] { return odisGetGuideBuilderBytes(get()); });
   }
 
+  // Several builders: an id for what is added to this one, and the parts of others.
+  void setPartId(uint64_t id) {
+    orThrow([&] { return odisSetPartId(get(), id); });
+  }
+  void merge(const std::vector<GuideBuilder>& others) {
+    std::vector<OdisGuideBuilder> builders;
+    for (const GuideBuilder& other : others) builders.push_back(other.get());
+    orThrow([&] { return odisMergeGuideBuilders(get(), builders.data(), builders.size()); });
+  }
+
   // From frame to frame.
   void fade(float weight) {
     orThrow([&] { return odisFadeVertices(get(), weight); });
@@ -276,6 +297,9 @@ class GuideBuilder : public Handle<OdisGuideBuilder, odisRetainGuideBuilder, odi
   void setBounds(const Float3& lower, const Float3& upper) {
     orThrow([&] { return odisSetBounds(get(), &lower, &upper); });
   }
+
+ private:
+  explicit GuideBuilder(OdisGuideBuilder builder) : Handle(builder) {}
 };
 
 // OdisFrameOptions with owners in place of pointers.

@@ -71,8 +71,8 @@ typedef struct OdisPathVertex {
   // whole shutter time.
   float time ODIS_DEFAULT(0);
 
-  // These three numbers identify the vertex. Frames order sums by them, whatever the order of delivery;
-  // builders add in the order in which vertices come.
+  // These three numbers identify the vertex, and sums are ordered by them: those of a frame whatever the
+  // order of delivery, those of a builder within each call of odisAddVertices.
   uint32_t pixel ODIS_DEFAULT(0);   // index within the frame
   uint32_t sample ODIS_DEFAULT(0);  // of the pixel
   uint16_t depth ODIS_DEFAULT(0);   // 1 for the first vertex

@@ -4,7 +4,7 @@ the others, which leaves the image unbiased.
     builder = odis.GuideBuilder()
     vertices = odis.PathVertices(position=..., normal=..., wi=..., radiance=..., pdf=..., depth=...)
     builder.add(vertices)
-    guide = builder.build(vertices)
+    guide = builder.build()
     cells = guide.find_cells(positions, normals)
     directions, pdfs = guide.sample(cells, normals, uv)
 

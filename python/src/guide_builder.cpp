@@ -1,6 +1,9 @@
 #include <nanobind/stl/array.h>
+#include <nanobind/stl/filesystem.h>
 #include <nanobind/stl/optional.h>
+#include <nanobind/stl/unique_ptr.h>
 #include <nanobind/stl/variant.h>
+#include <nanobind/stl/vector.h>
 
 #include "guide_builder.h"
 
@@ -14,27 +17,47 @@ ended (Frame's `builder`); other frames have builders of their own. A builder do
 thing at a time: a call while another thread's is under way raises Error (INVALID_OPERATION).)")
       .def(nb::init<const std::optional<GuideOptions>&, const LoggingContext*>(), "options"_a = nb::none(),
            "context"_a = nb::none(), "Raises Error (INVALID_ARGUMENT) for an option out of its range.")
-      .def("add", &Builder::add, "vertices"_a, R"(Adds vertices: PathVertices, or a dict of its fields.
+      .def_static(
+          "load", &Builder::load, "path"_a, "model"_a = nb::none(), "context"_a = nb::none(),
+          R"(A builder that was saved, with the model that it had (None: the networks that come with ODIS).
 
-The first call fixes the extent of the cells, so it should hold at least one pass over the image. Vertices of
-guided paths may be added, too, their pdf being the mixture's. Ctrl-C raises KeyboardInterrupt where a guide
-is built, not here.)")
-      .def("build", &Builder::build, "vertices"_a, "pixel_values"_a = nb::none(),
-           R"(Builds a guide: maps from all that was added, BSDF sampling fractions from `vertices`.
+Raises Error (FILE) for what is no saved builder or has another model.)")
+      .def("save", &Builder::save, "path"_a, R"(Writes the options and all that was added and merged.
 
-vertices: PathVertices, or a dict of its fields; (a part of) what was added, without those of guided paths.
+Raises Error (FILE) where it can't be written.)")
+      .def("set_part_id", &Builder::setPartId, "id"_a,
+           R"(The id of what is added to this builder, 0 at first: an int from 0 to 2**64 - 1.
+
+Raises Error (INVALID_ARGUMENT) where a part that was merged has it.)")
+      .def("merge", &Builder::merge, "builders"_a,
+           R"(Takes copies of what other builders hold, in any order and nesting with the same result.
+
+builders: a list of GuideBuilder. Raises Error (INVALID_ARGUMENT), and changes nothing, where they differ in
+an option, the model or the extent of their cells (set_bounds), or where two have the same id.)")
+      .def("add", &Builder::add, "vertices"_a, "guided"_a = false,
+           R"(Adds vertices: PathVertices, or a dict of its fields.
+
+The first call fixes the extent of the cells, so it should hold at least one pass over the image.
+guided: whether a guide helped to sample these paths, their pdf being the mixture's; BSDF sampling fractions
+    are chosen by those of unguided paths alone.
+Ctrl-C raises KeyboardInterrupt where a guide is built, not here.)")
+      .def("build", &Builder::build, "pixel_values"_a = nb::none(),
+           R"(Builds a guide from all that was added.
+
 pixel_values: float32 of shape (pixels,), indexed by the vertices' `pixel`: luminances that their
-    contributions are divided by. None: by those of an even image with the mean of all paths.)")
+    contributions are divided by. None: by those of an even image with the mean of all paths.
+    Raises Error (INVALID_ARGUMENT) where a vertex has a pixel beyond them.)")
       .def("rebuild", &Builder::rebuild, "previous"_a,
            R"(Builds a guide from all that was added by now, with the BSDF sampling fractions of `previous`.
 
-previous: a Guide of this builder. Cells that are new have their parents' fractions.)")
+previous: a Guide whose cells have the same extent as this builder's. Cells that are new have their parents'
+    fractions.)")
       .def("fade", &Builder::fade, "weight"_a,
            R"(Lets what was added count `weight` times from now on, in [0, 1].
 
 Between two frames of an animation that learn into this builder. Cells that are left with next to nothing are
 forgotten, so memory follows what the last frames saw. Give each frame a seed of its own.)")
-      .def("forget", &Builder::forget, "Forgets all that was added, and the extent of the cells.")
+      .def("forget", &Builder::forget, "Forgets all that was added and merged, and the extent of the cells.")
       .def("set_bounds", &Builder::setBounds, "lower"_a, "upper"_a,
            R"(Fixes the extent of the cells in place of what the first vertices span.
 

@@ -2,7 +2,10 @@
 #pragma once
 
 #include <array>
+#include <filesystem>
+#include <memory>
 #include <optional>
+#include <vector>
 
 #include "calls.h"
 #include "context.h"
@@ -15,18 +18,44 @@ class Builder {
   Builder(const std::optional<GuideOptions>& given, const LoggingContext* context)
       : m_builder(interruptible(given), contextOrShared(context)) {}
 
-  void add(const VerticesArgument& given) {
-    const VertexArrays vertices = vertexArrays(given);
-    callAlone(m_calls, [&] { m_builder.add(vertices.described()); });
+  static std::unique_ptr<Builder> load(const std::filesystem::path& path, const Model* model,
+                                       const LoggingContext* context) {
+    const Context owner = contextOrShared(context);
+    return withoutLock([&] {
+      return std::unique_ptr<Builder>(
+          new Builder(GuideBuilder::load(path.string(), model ? *model : Model(owner), owner)));
+    });
   }
-  Guide build(const VerticesArgument& given, const std::optional<Array>& pixelValues) {
+  void save(const std::filesystem::path& path) {
+    callAlone(m_calls, [&] { m_builder.save(path.string()); });
+  }
+  void setPartId(uint64_t id) {
+    callAlone(m_calls, [&] { m_builder.setPartId(id); });
+  }
+  void merge(const std::vector<Builder*>& others) {
+    std::vector<GuideBuilder> builders;
+    std::vector<std::unique_ptr<Calls::Single>> calls;
+    for (Builder* other : others) {
+      if (!other) throw nb::type_error("expected builders, found None");
+      if (other != this) calls.push_back(std::make_unique<Calls::Single>(other->m_calls));
+      builders.push_back(other->m_builder);
+    }
+    callAlone(m_calls, [&] { m_builder.merge(builders); });
+  }
+
+  void add(const VerticesArgument& given, bool guided) {
     const VertexArrays vertices = vertexArrays(given);
+    callAlone(m_calls, [&] {
+      guided ? m_builder.addGuided(vertices.described()) : m_builder.add(vertices.described());
+    });
+  }
+  Guide build(const std::optional<Array>& pixelValues) {
     std::vector<float> values;
     if (pixelValues) {
       const Rows<float> rows(*pixelValues, "pixel_values");
       for (size_t i = 0; i < rows.size(); ++i) values.push_back(rows(i));
     }
-    return callAlone(m_calls, [&] { return m_builder.build(vertices.described(), values); });
+    return callAlone(m_calls, [&] { return m_builder.build(values); });
   }
   Guide rebuild(const Guide& previous) {
     return callAlone(m_calls, [&] { return m_builder.rebuild(previous); });
@@ -52,6 +81,7 @@ class Builder {
   const GuideBuilder& handle() const { return m_builder; }
 
  private:
+  explicit Builder(GuideBuilder builder) : m_builder(std::move(builder)) {}
   static GuideOptions interruptible(const std::optional<GuideOptions>& given) {
     GuideOptions options = given ? *given : GuideOptions();
     options.progressFunction = goOn;

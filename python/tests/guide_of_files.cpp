@@ -106,7 +106,7 @@ int main(int argc, char** argv) {
     const std::clock_t work = std::clock();
     odis::GuideBuilder builder(options, context);
     builder.add(arrays.described);
-    guide = builder.build(arrays.described);
+    guide = builder.build();
     const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - begin;
     std::printf("%.6f %.6f\n", seconds.count(), double(std::clock() - work) / CLOCKS_PER_SEC);
     std::fflush(stdout);

@@ -74,7 +74,7 @@ class Arrays(unittest.TestCase):
     def test_lookups(self):
         builder = odis.GuideBuilder()
         builder.add(self.fields)
-        guide = builder.build(self.fields)
+        guide = builder.build()
         position, normal = self.fields["position"], self.fields["normal"]
         with self.assertRaisesRegex(ValueError, r"^positions: expected float32 of shape \(count, 3\), found float64"):
             guide.find_cells(position.astype(np.float64), normal)
@@ -88,12 +88,12 @@ class Arrays(unittest.TestCase):
         with self.assertRaisesRegex(ValueError, "^both_sides: expected bool"):
             guide.pdf(cells, normal, normal, np.zeros(10, np.uint8))
         with self.assertRaisesRegex(ValueError, "^pixel_values: expected float32"):
-            builder.build(self.fields, np.ones(10))
+            builder.build(np.ones(10))
 
     def test_values_in_lookups(self):
         builder = odis.GuideBuilder()
         builder.add(self.fields)
-        guide = builder.build(self.fields)
+        guide = builder.build()
         normal, uv = self.fields["normal"][:2], np.full((2, 2), 0.5, np.float32)
         known = np.array([0, odis.NO_CELL], np.uint32)
         self.assertEqual(guide.sample(known, normal, uv)[1][1], 0)
@@ -159,7 +159,9 @@ class Library(unittest.TestCase):
         first, second = odis.GuideBuilder(), odis.GuideBuilder()
         for builder in (first, second):
             builder.add(fields)
-        self.expect_error(odis.ErrorCode.INVALID_ARGUMENT, second.rebuild, first.build(fields))
+        self.assertEqual(len(second.rebuild(first.build())), len(first.build()))
+        second.set_bounds([-5, -5, -5], [5, 5, 5])
+        self.expect_error(odis.ErrorCode.INVALID_ARGUMENT, second.rebuild, first.build())
         # A vertex of a pixel that there is no value for.
         values = np.ones(50, np.float32)
         self.expect_error(odis.ErrorCode.INVALID_ARGUMENT, first.build, fields, values)

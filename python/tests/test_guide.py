@@ -3,6 +3,7 @@
 import gc
 import logging
 import os
+import pathlib
 import signal
 import tempfile
 import threading
@@ -18,7 +19,7 @@ def build(fields, context=None):
     builder = odis.GuideBuilder(odis.GuideOptions(light_groups=made_up.LIGHT_GROUPS), context)
     vertices = odis.PathVertices(**fields)
     builder.add(vertices)
-    return builder.build(vertices)
+    return builder.build()
 
 
 class SameBits(unittest.TestCase):
@@ -90,33 +91,57 @@ class SameBits(unittest.TestCase):
     def test_dict_or_described(self):
         builder = odis.GuideBuilder(odis.GuideOptions(light_groups=made_up.LIGHT_GROUPS))
         builder.add(self.fields)
-        self.assertEqual(made_up.guide_bytes(builder.build(self.fields)), self.expected)
+        self.assertEqual(made_up.guide_bytes(builder.build()), self.expected)
         self.assertEqual(builder.vertex_counts.accepted, 20000)
         self.assertGreater(builder.bytes, 0)
 
     def test_rebuild(self):
         builder = odis.GuideBuilder(odis.GuideOptions(light_groups=made_up.LIGHT_GROUPS))
         builder.add(self.fields)
-        first = builder.build(self.fields)
+        first = builder.build()
         builder.add(made_up.vertices(20000, seed=2))
         again = builder.rebuild(first)
         self.assertNotEqual(made_up.guide_bytes(again), self.expected)
         self.assertEqual(made_up.guide_bytes(first), self.expected)
+
+    def test_merging(self):
+        options = odis.GuideOptions(light_groups=made_up.LIGHT_GROUPS)
+        builders = []
+        for part in range(3):
+            builders.append(odis.GuideBuilder(options))
+            builders[-1].set_part_id(part + 1)
+            builders[-1].set_bounds([-1, -1, -1], [1, 1, 1])
+            builders[-1].add(made_up.vertices(5000, seed=part))
+            builders[-1].add(made_up.vertices(1000, seed=part + 10), guided=True)
+        whole, backwards = odis.GuideBuilder(options), odis.GuideBuilder(options)
+        whole.merge(builders)
+        with tempfile.TemporaryDirectory() as folder:
+            for part in reversed(range(3)):
+                path = pathlib.Path(folder) / "part.builder"
+                builders[part].save(path)
+                backwards.merge([odis.GuideBuilder.load(path)])
+            with self.assertRaises(odis.Error):
+                odis.GuideBuilder.load(path, model=odis.Model.from_bytes(b"no weights"))
+        guide = whole.build()
+        self.assertEqual(made_up.guide_bytes(guide), made_up.guide_bytes(backwards.build()))
+        self.assertEqual(whole.vertex_counts.accepted, 18000)
+        with self.assertRaisesRegex(odis.Error, "two parts have the id 2"):
+            whole.merge([builders[1]])
 
     def test_models(self):
         for settings in ("", "guide=histogram lights=formula"):
             builder = odis.GuideBuilder(odis.GuideOptions(model=odis.Model(), light_groups=made_up.LIGHT_GROUPS,
                                                           settings=settings))
             builder.add(self.fields)
-            same = made_up.guide_bytes(builder.build(self.fields)) == self.expected
+            same = made_up.guide_bytes(builder.build()) == self.expected
             self.assertEqual(same, not settings)
 
     def test_pixel_values(self):
         builder = odis.GuideBuilder(odis.GuideOptions(light_groups=made_up.LIGHT_GROUPS))
         builder.add(self.fields)
-        ones = builder.build(self.fields, np.ones(20000, np.float32))
-        np.testing.assert_array_equal(ones.texels, builder.build(self.fields).texels)
-        tens = builder.build(self.fields, pixel_values=np.full(20000, 10, np.float32))
+        ones = builder.build(np.ones(20000, np.float32))
+        np.testing.assert_array_equal(ones.texels, builder.build().texels)
+        tens = builder.build(pixel_values=np.full(20000, 10, np.float32))
         np.testing.assert_array_equal(tens.texels, ones.texels)
         self.assertTrue((tens.survival_factors != ones.survival_factors).any())
 
@@ -246,9 +271,9 @@ class Threads(unittest.TestCase):
         other = threading.Thread(target=lambda: signal.pthread_kill(main, signal.SIGINT))
         with self.assertRaises(KeyboardInterrupt):
             other.start()
-            builder.build(fields)
+            builder.build()
             other.join()
-        self.assertGreater(len(builder.build(fields)), 0)
+        self.assertGreater(len(builder.build()), 0)
 
     def test_ctrl_c_while_logging(self):
         """A signal that arrives while a message is logged is not lost."""
@@ -263,8 +288,9 @@ class Threads(unittest.TestCase):
         logger.setLevel(logging.INFO)
         logger.addHandler(handler)
         builder = odis.GuideBuilder()
+        builder.add(made_up.vertices(2000))
         with self.assertRaises(KeyboardInterrupt):
-            builder.build(made_up.vertices(2000))
+            builder.build()
             self.fail("the signal did not come again")
 
 

@@ -25,7 +25,7 @@ class Lookups(unittest.TestCase):
         fields = made_up.vertices(50000)
         builder = odis.GuideBuilder(odis.GuideOptions(light_groups=made_up.LIGHT_GROUPS))
         builder.add(fields)
-        cls.guide = builder.build(fields)
+        cls.guide = builder.build()
         cls.positions, cls.normals = fields["position"], fields["normal"]
         cls.cells = cls.guide.find_cells(cls.positions, cls.normals)
 

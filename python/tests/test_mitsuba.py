@@ -286,7 +286,7 @@ class Maps(unittest.TestCase):
         vertices = made_up.vertices(20000)
         builder = odis.GuideBuilder(odis.GuideOptions())
         builder.add(vertices)
-        self.guide = builder.build(vertices)
+        self.guide = builder.build()
         self.tables = guide_tables.make_guide_tables(self.guide, both_sides=True)
 
     def places(self, count):
@@ -328,7 +328,7 @@ class Maps(unittest.TestCase):
         vertices = made_up.vertices(20000)
         builder = odis.GuideBuilder(odis.GuideOptions(settings="cached=on cached-error=0.5"))
         builder.add(vertices)
-        guide = builder.build(vertices)
+        guide = builder.build()
         tables = guide_tables.make_guide_tables(guide, both_sides=False)
         count = 2000
         random = np.random.default_rng(9)

@@ -195,7 +195,7 @@ void Frame::Data::take(uint32_t tile, ArrayView<const FrameSample> samples, Tile
   if (pixelsPerLearned > 1) vertices.filter([this](const PathVertex& v) { return wantsVertices(v.pixel); });
   const uint64_t seen = passVertexCount += vertices.size();
   if (!passSamples.empty()) {
-    passSamples[tile] = next == ODIS_PASS_GUIDED ? builder->take(vertices.view())
+    passSamples[tile] = next == ODIS_PASS_GUIDED ? builder->takeGuided(vertices.view())
                                                  : builder->takeUnguided(vertices.view(), seen);
     keptBytes += passSamples[tile].bytes();
   }
@@ -214,12 +214,12 @@ void Frame::Data::endPilot() {
   next = paper && paper->hasOraclePass() ? ODIS_PASS_ORACLE : ODIS_PASS_GUIDED;
 }
 
-// Adds what was taken from an unguided pass to the cells, and keeps what BSDF sampling fractions are chosen
-// by.
+// Adds what was taken from an unguided pass to the cells and, where it is asked for, to what BSDF sampling
+// fractions are chosen by.
 void Frame::Data::learnUnguided(bool forFractions) {
   tasks->forEach(passSamples.size(), [&](size_t tile) { passSamples[tile].narrow(passVertexCount); });
-  builder->add(passSamples);
-  if (forFractions) std::move(passSamples.begin(), passSamples.end(), std::back_inserter(unguided));
+  builder->addToCells(passSamples);
+  if (forFractions) builder->addToFractions(passSamples);
   passSamples.clear();
   countKept();
 }
@@ -232,7 +232,7 @@ void Frame::Data::endOraclePass() {
 
 // Builds the first guide from all that the builder was taught.
 void Frame::Data::buildGuide() {
-  cells = builder->build(unguided, vertexCount(unguided), pixelValues);
+  cells = builder->build(pixelValues);
   useCells();
   settleRefinement();
   takeStock();
@@ -246,7 +246,7 @@ void Frame::Data::useCells() {
 
 // Counts what is kept between passes.
 void Frame::Data::countKept() {
-  keptBytes = bytesOf(pilotVertices) + bytesOf(unguided) + (paper ? paper->bytes() : 0);
+  keptBytes = bytesOf(pilotVertices) + (paper ? paper->bytes() : 0);
 }
 
 // Notes what building needed, lets go of what was taken from vertices and, when the guide won't learn any
@@ -255,9 +255,9 @@ void Frame::Data::takeStock() {
   if (builder) {
     buildingBytes = std::max<uint64_t>(buildingBytes, builder->bytes() + keptBytes);
     vertexCounts = builder->vertexCounts();
+    if (ownsBuilder) builder->forgetFractions();
   }
   passSamples.clear();
-  unguided.clear();
   if (!learns()) {
     builder.reset();
     cells = {};
@@ -268,7 +268,7 @@ void Frame::Data::takeStock() {
 
 // Learns from the vertices of a guided pass, and rebuilds the guide where it is time.
 void Frame::Data::refineGuide() {
-  builder->add(passSamples);
+  builder->addToCells(passSamples);
   countKept();
   done = end;
   if (std::has_single_bit(done + 1)) {
@@ -387,6 +387,8 @@ void Frame::endPass(bool interrupted) {
     d.finished = false;
     return;
   }
+  // Pixels of earlier frames that learned into the builder are not this frame's.
+  if (kind == ODIS_PASS_PILOT) d.builder->forgetFractions();
   if (kind == ODIS_PASS_PILOT && d.next == ODIS_PASS_GUIDED) d.learnUnguided(true);
   if (kind == ODIS_PASS_ORACLE) d.endOraclePass();
   if (kind == ODIS_PASS_GUIDED)

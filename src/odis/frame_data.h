@@ -118,7 +118,6 @@ struct Frame::Data {
   uint32_t pixelsPerLearned = 1;           // of the pass: the guide learns from one pixel in so many
   VertexTiles pilotVertices;               // [tile], where they are kept
   std::vector<VertexSamples> passSamples;  // [tile], of a pass that is learned from
-  std::vector<VertexSamples> unguided;     // what BSDF sampling fractions are chosen by
   std::atomic<uint64_t> notFinite{0};
   std::atomic<uint64_t> pilotSamplesTaken{0}, laterSamplesTaken{0};
   std::atomic<uint64_t> passVertexCount{0};  // vertices of the pass that are learned from, so far

@@ -16,6 +16,7 @@
 #include "odis/models/model.h"
 #include "odis/models/returned_light.h"
 #include "odis/paper_method.h"
+#include "odis/record/vertex_order.h"
 #include "odis/work/progress.h"
 
 namespace odis::core {
@@ -103,10 +104,7 @@ VertexCounts VertexSamples::counts() const {
   return m_data ? m_data->cells.counts : VertexCounts();
 }
 void VertexSamples::narrow(uint64_t seen) {
-  if (!m_data) return;
-  const uint32_t stride = fractionStride(seen);
-  std::erase_if(m_data->fractions, [&](const FractionSample& v) { return !isForFractions(v.pixel, stride); });
-  m_data->fractions.shrink_to_fit();
+  if (m_data) core::narrow(m_data->fractions, fractionStride(seen));
 }
 uint64_t VertexSamples::bytes() const {
   return m_data ? m_data->cells.bytes() + m_data->fractions.capacity() * sizeof(FractionSample) : 0;
@@ -121,50 +119,96 @@ GuideBuilder::~GuideBuilder() = default;
 GuideBuilder::GuideBuilder(GuideBuilder&&) noexcept = default;
 GuideBuilder& GuideBuilder::operator=(GuideBuilder&&) noexcept = default;
 
-void GuideBuilder::add(VertexParts parts) {
-  if (m_data->options.cellsPerDiagonal == 0) return;
-  m_data->store.add(parts, m_data->options.cellsPerDiagonal, m_data->rules(false));
-}
-VertexSamples GuideBuilder::take(ArrayView<const PathVertex> vertices) const {
-  if (m_data->options.cellsPerDiagonal == 0) return {};
+VertexSamples GuideBuilder::Data::takeGuided(const VertexBatch& vertices) {
+  if (options.cellsPerDiagonal == 0) return {};
   VertexSamples result;
   result.m_data = std::make_unique<VertexSamples::Data>(
-      VertexSamples::Data{m_data->store.take({vertices}, m_data->rules(false)), {}});
+      VertexSamples::Data{own().store.take(vertices, rules(false)), {}});
   return result;
 }
-VertexSamples GuideBuilder::takeUnguided(ArrayView<const PathVertex> vertices, uint64_t seen) const {
-  if (m_data->options.cellsPerDiagonal == 0) return {};
+VertexSamples GuideBuilder::Data::takeUnguided(const VertexBatch& vertices, uint64_t seen) {
+  if (options.cellsPerDiagonal == 0) return {};
   VertexSamples result;
-  const VertexRules rules = m_data->rules(true);
-  BatchSamples cells = m_data->store.takeWithoutCells({vertices}, rules);
+  BatchSamples cells = own().store.takeWithoutCells(vertices, rules(true));
+  const VertexRules checked = rules(true);
   const bool areUsable = refusedVertices(cells.counts) == cells.counts.discrete;
   result.m_data = std::make_unique<VertexSamples::Data>(VertexSamples::Data{
-      std::move(cells), takeFractionSamples(vertices, fractionStride(seen), areUsable ? nullptr : &rules)});
+      std::move(cells), takeFractionSamples(vertices, fractionStride(seen), areUsable ? nullptr : &checked)});
   return result;
 }
-void GuideBuilder::add(ArrayView<VertexSamples> samples) {
+VertexSamples GuideBuilder::takeGuided(ArrayView<const PathVertex> vertices) const {
+  return m_data->takeGuided({vertices});
+}
+VertexSamples GuideBuilder::takeUnguided(ArrayView<const PathVertex> vertices, uint64_t seen) const {
+  return m_data->takeUnguided({vertices}, seen);
+}
+
+void GuideBuilder::addToCells(ArrayView<VertexSamples> samples) {
   if (m_data->options.cellsPerDiagonal == 0) return;
   std::vector<BatchSamples*> batches;
-  for (VertexSamples& batch : samples)
-    if (batch.m_data) batches.push_back(&batch.m_data->cells);
-  m_data->store.add(batches, m_data->options.cellsPerDiagonal);
+  for (VertexSamples& taken : samples)
+    if (taken.m_data) batches.push_back(&taken.m_data->cells);
+  m_data->own().store.add(batches, m_data->options.cellsPerDiagonal);
   for (BatchSamples* batch : batches) batch->release();
+}
+void GuideBuilder::addToFractions(ArrayView<VertexSamples> samples) {
+  FractionSamples& kept = m_data->own().fractions;
+  size_t more = 0;
+  uint64_t vertices = 0;
+  for (const VertexSamples& taken : samples) {
+    if (taken.m_data) more += taken.m_data->fractions.size();
+    const VertexCounts counts = taken.counts();
+    vertices += counts.accepted + refusedVertices(counts);
+  }
+  kept.makeRoom(more);
+  for (VertexSamples& taken : samples) {
+    if (!taken.m_data) continue;
+    const std::vector<FractionSample> unguided = std::exchange(taken.m_data->fractions, {});
+    kept.samples.insert(kept.samples.end(), unguided.begin(), unguided.end());
+  }
+  kept.see(vertices);
+}
+
+void GuideBuilder::add(VertexParts parts) {
+  const std::vector<ArrayView<const PathVertex>> ordered = inOrder(parts);
+  const std::vector<VertexBatch> batches = makeBatches<PathVertex>(ordered);
+  const uint64_t seen = m_data->own().fractions.seen + countItems(parts);
+  std::vector<VertexSamples> samples(batches.size());
+  m_data->tasks->forEach(batches.size(),
+                         [&](size_t b) { samples[b] = m_data->takeUnguided(batches[b], seen); });
+  addToCells(samples);
+  addToFractions(samples);
+}
+void GuideBuilder::addGuided(VertexParts parts) {
+  const std::vector<ArrayView<const PathVertex>> ordered = inOrder(parts);
+  const std::vector<VertexBatch> batches = makeBatches<PathVertex>(ordered);
+  std::vector<VertexSamples> samples(batches.size());
+  m_data->tasks->forEach(batches.size(), [&](size_t b) { samples[b] = m_data->takeGuided(batches[b]); });
+  addToCells(samples);
 }
 
 void GuideBuilder::fade(float weight) {
   if (!(weight >= 0 && weight <= 1))
     throw std::invalid_argument("odisFadeVertices: weight: expected a number from 0 to 1");
-  m_data->store.fade(weight);
+  for (auto& [id, part] : m_data->parts) part.store.fade(weight);
+  if (weight < 1) forgetFractions();
 }
 void GuideBuilder::forget() {
-  m_data->store.forget();
+  BuilderPart own = std::move(m_data->own());
+  own.store.forget();
+  own.fractions = {};
+  m_data->parts.clear();
+  m_data->parts.emplace(m_data->id, std::move(own));
+}
+void GuideBuilder::forgetFractions() {
+  for (auto& [id, part] : m_data->parts) part.fractions = {};
 }
 void GuideBuilder::setBounds(const Float3& lower, const Float3& upper) {
   const Float3 extent = upper - lower;
   if (!(extent.x >= 0 && extent.y >= 0 && extent.z >= 0 && std::isfinite(dot(extent, extent))))
     throw std::invalid_argument("odisSetBounds: expected finite numbers, lower <= upper");
-  const CellGrid grid = gridAround(lower, extent, m_data->options.cellsPerDiagonal);
-  m_data->store.move(grid.coarser(coarsening()));
+  const CellGrid grid = gridAround(lower, extent, m_data->options.cellsPerDiagonal).coarser(coarsening());
+  for (auto& [id, part] : m_data->parts) part.store.move(grid);
 }
 
 const GuideOptions& GuideBuilder::options() const {
@@ -174,7 +218,9 @@ uint64_t GuideBuilder::modelId() const {
   return m_data->modelId;
 }
 VertexCounts GuideBuilder::vertexCounts() const {
-  return m_data->store.vertexCounts();
+  VertexCounts counts;
+  for (const auto& [id, part] : m_data->parts) addCounts(counts, part.store.vertexCounts());
+  return counts;
 }
 void GuideBuilder::setProgress(OdisProgressFunction function, void* user) {
   m_data->progress = Progress(function, user);
@@ -186,41 +232,53 @@ void GuideBuilder::limitBytes(uint64_t most, uint64_t vertices) {
                                 sizeof(DirectionDistribution) + 2 * sizeof(CellMoments) + 2 * kPerGuide;
   const uint64_t tables = 2 * sizeof(float) * (m_data->options.lightGroups + 1);
   const uint64_t samples = vertices * (sizeof(CellSample) + sizeof(uint32_t) + sizeof(void*));
-  m_data->store.limitCells((most - std::min(most, samples)) / (kPerCell + tables));
+  uint64_t others = m_data->own().fractions.bytes();
+  for (const auto& [id, part] : m_data->parts)
+    if (id != m_data->id) others += part.bytes() + part.store.index().size() * (kPerCell + tables);
+  m_data->own().store.limitCells((most - std::min(most, samples + others)) / (kPerCell + tables));
 }
 int GuideBuilder::coarsening() const {
-  return m_data->store.coarsening();
+  int most = 1;
+  for (const auto& [id, part] : m_data->parts) most = std::max(most, part.store.coarsening());
+  return most;
 }
 uint64_t GuideBuilder::samplesLeftOut() const {
-  return m_data->store.samplesLeftOut();
+  uint64_t count = 0;
+  for (const auto& [id, part] : m_data->parts) count += part.store.samplesLeftOut();
+  return count;
 }
 double GuideBuilder::visitedCells() const {
-  return m_data->store.visitedCells();
+  return m_data->own().store.visitedCells();
 }
 uint64_t GuideBuilder::heldBytes() const {
-  return m_data->store.bytes();
+  uint64_t bytes = 0;
+  for (const auto& [id, part] : m_data->parts) bytes += part.bytes();
+  return bytes;
 }
 uint64_t GuideBuilder::bytes() const {
   // What build() makes beside the cells' statistics: distributions, and sums for the BSDF sampling fraction.
   constexpr uint64_t kPerCell = sizeof(DirectionDistribution) + 2 * sizeof(CellMoments);
-  const CellStore& store = m_data->store;
-  return store.bytes() + std::max(store.transientBytes(), store.index().size() * kPerCell);
+  uint64_t cells = 0, ofParts = 0;
+  for (const auto& [id, part] : m_data->parts) {
+    cells += part.store.index().size();
+    ofParts += part.store.bytes();
+  }
+  const uint64_t ofSum = partCount() > 1 ? ofParts : 0;
+  return heldBytes() + ofSum + std::max(m_data->own().store.transientBytes(), cells * kPerCell);
 }
 
 // A guide of maps alone, made for coarse levels first; leaves the distributions that they were made from.
-Guide GuideBuilder::Data::buildMaps(const std::vector<CellStatistics>& cells,
+Guide GuideBuilder::Data::buildMaps(const CellStore& store, const std::vector<CellStatistics>& cells,
                                     std::vector<DirectionDistribution>& distributions) const {
   Guide guide;
   guide.m_data = std::make_shared<Guide::Data>(cells.size());
   Guide::Data& result = *guide.m_data;
-  result.builder = this;
-  result.numbering = store.numbering();
   result.grid = store.grid();
   result.index = store.index();
   result.keys = store.keys();
   result.setCosineProduct(options.cosineProduct);
   distributions.resize(cells.size());
-  forEachFromCoarse(store.tasks(), cells, [&](size_t c) {
+  forEachFromCoarse(*tasks, cells, [&](size_t c) {
     const uint32_t parent = cells[c].parent;
     if (!cells[c].hasMap) {
       distributions[c] = distributions[parent];
@@ -235,53 +293,42 @@ Guide GuideBuilder::Data::buildMaps(const std::vector<CellStatistics>& cells,
   return guide;
 }
 
-void GuideBuilder::Data::addRouletteAndLights(Guide::Data& guide,
+void GuideBuilder::Data::addRouletteAndLights(Guide::Data& guide, const CellStore& store,
                                               const std::vector<CellStatistics>& cells) const {
-  fillRoulette(store.tasks(), guide.decisions, cells, guide.prediction.image, options.controlVariate);
+  fillRoulette(*tasks, guide.decisions, cells, guide.prediction.image, options.controlVariate);
   guide.cachedError = options.cachedError;
   if (guide.cachedError > 0) {
-    guide.cached = cacheRadiance(store.tasks(), cells);
+    guide.cached = cacheRadiance(*tasks, cells);
     guide.maxDepth = store.depthShares().maxDepth();
     guide.cachedShares.assign(store.depthShares().shares().begin(), store.depthShares().shares().end());
   }
   guide.lightGroups = options.lightGroups;
   if (guide.lightGroups > 0)
     guide.lightTables =
-        tabulateLights(store.tasks(), guide.decisions, cells, *lights, guide.lightGroups, options.lightParts);
+        tabulateLights(*tasks, guide.decisions, cells, *lights, guide.lightGroups, options.lightParts);
 }
 
-Guide GuideBuilder::build(VertexParts parts, ArrayView<const float> pixelValues) const {
-  const uint64_t seen = countItems(parts);
-  const std::vector<VertexBatch> batches = makeBatches(parts);
-  std::vector<std::vector<FractionSample>> samples(batches.size());
-  const VertexRules rules = m_data->rules(true);
-  m_data->store.tasks().forEach(batches.size(), [&](size_t b) {
-    for (const ArrayView<const PathVertex>& piece : batches[b]) {
-      const std::vector<FractionSample> taken = takeFractionSamples(piece, fractionStride(seen), &rules);
-      samples[b].insert(samples[b].end(), taken.begin(), taken.end());
-    }
-  });
-  const std::vector<ArrayView<const FractionSample>> unguided(samples.begin(), samples.end());
-  return m_data->build(unguided, seen, pixelValues);
+Guide GuideBuilder::build(ArrayView<const float> pixelValues) const {
+  return m_data->build(pixelValues);
 }
 
-Guide GuideBuilder::build(ArrayView<const VertexSamples> unguided, uint64_t seen,
-                          ArrayView<const float> pixelValues) const {
-  std::vector<ArrayView<const FractionSample>> parts;
-  for (const VertexSamples& samples : unguided)
-    if (samples.m_data) parts.emplace_back(samples.m_data->fractions);
-  return m_data->build(parts, seen, pixelValues);
-}
-
-Guide GuideBuilder::Data::build(FractionParts unguided, uint64_t seen, ArrayView<const float> pixelValues) {
+Guide GuideBuilder::Data::build(ArrayView<const float> pixelValues) {
   if (options.cellsPerDiagonal == 0) return Guide();
   progress.report(0);
+  std::optional<CellStore> sum;
+  CellStore& store = allCells(sum);
   const std::vector<CellStatistics>& cells = store.rollUp();
   progress.report(0.3);
   std::vector<DirectionDistribution> distributions;
-  Guide guide = buildMaps(cells, distributions);
+  Guide guide = buildMaps(store, cells, distributions);
   progress.report(0.7);
   Guide::Data& result = *guide.m_data;
+  std::vector<ArrayView<const FractionSample>> unguided;
+  uint64_t seen = 0;
+  for (const auto& [id, part] : parts) {
+    unguided.emplace_back(part.fractions.samples);
+    seen += part.fractions.seen;
+  }
   result.prediction =
       chooseFractions(result.decisions, {store, cells, distributions, result.maps(), guide.view().rules,
                                          unguided, fractionStride(seen), pixelValues});
@@ -289,38 +336,36 @@ Guide GuideBuilder::Data::build(FractionParts unguided, uint64_t seen, ArrayView
     for (CellDecisions& cell : result.decisions) std::fill_n(cell.bsdfFraction, kRoughnessClasses, fixed);
     result.prediction.varianceRatio = 1;
   }
-  addRouletteAndLights(result, cells);
+  addRouletteAndLights(result, store, cells);
   progress.report(1);
   return guide;
 }
 
 Guide GuideBuilder::rebuild(const Guide& previous) const {
   if (m_data->options.cellsPerDiagonal == 0) return Guide();
-  if (!previous.m_data || previous.m_data->builder != m_data.get() ||
-      previous.m_data->numbering != m_data->store.numbering())
+  std::optional<CellStore> sum;
+  CellStore& store = m_data->allCells(sum);
+  if (!previous.m_data || (previous.m_data->index.size() > 0 && !(previous.m_data->grid == store.grid())))
     throw std::invalid_argument(
-        "odisRebuildGuide: expected a guide that this builder built since odisFadeVertices, "
-        "odisForgetVertices or odisSetBounds");
+        "odisRebuildGuide: expected a guide of cells as the builder has them since odisForgetVertices or "
+        "odisSetBounds");
   const Progress& progress = m_data->progress;
   progress.report(0);
-  const std::vector<CellStatistics>& cells = m_data->store.rollUp();
+  const std::vector<CellStatistics>& cells = store.rollUp();
   progress.report(0.3);
   std::vector<DirectionDistribution> distributions;
-  Guide guide = m_data->buildMaps(cells, distributions);
+  Guide guide = m_data->buildMaps(store, cells, distributions);
   progress.report(0.7);
   Guide::Data& result = *guide.m_data;
-
-  // Old cells keep their indices, new ones follow.
-  const std::vector<CellDecisions>& old = previous.m_data->decisions;
-  forEachFromCoarse(m_data->store.tasks(), cells, [&](size_t c) {
-    if (c < old.size())
-      std::copy_n(old[c].bsdfFraction, kRoughnessClasses, result.decisions[c].bsdfFraction);
-    else if (cells[c].parent != kNoCell)
-      std::copy_n(result.decisions[cells[c].parent].bsdfFraction, kRoughnessClasses,
-                  result.decisions[c].bsdfFraction);
+  const Guide::Data& old = *previous.m_data;
+  forEachFromCoarse(*m_data->tasks, cells, [&](size_t c) {
+    const uint32_t known = old.index.find(result.keys[c]);
+    if (known == kNoCell && cells[c].parent == kNoCell) return;
+    const CellDecisions& from = known != kNoCell ? old.decisions[known] : result.decisions[cells[c].parent];
+    std::copy_n(from.bsdfFraction, kRoughnessClasses, result.decisions[c].bsdfFraction);
   });
-  result.prediction = previous.m_data->prediction;
-  m_data->addRouletteAndLights(result, cells);
+  result.prediction = old.prediction;
+  m_data->addRouletteAndLights(result, store, cells);
   progress.report(1);
   return guide;
 }

@@ -4,7 +4,7 @@
 //
 //   GuideBuilder builder(options);
 //   builder.add(vertices);              // once, or as samples arrive
-//   Guide guide = builder.build(vertices);
+//   Guide guide = builder.build();
 //   ... look-ups in guide.view(): odis/guide_view.h
 #pragma once
 
@@ -33,7 +33,7 @@ class VertexSamples {
   // How many vertices they were taken of, and how many of those can't be used.
   VertexCounts counts() const;
   uint64_t bytes() const;
-  // Lets go of what build() does not need once `seen` vertices have been taken in all.
+  // Lets go of what BSDF sampling fractions are not chosen by once `seen` vertices have been taken in all.
   void narrow(uint64_t seen);
 
  private:
@@ -72,8 +72,10 @@ class Guide {
   std::shared_ptr<Data> m_data;
 };
 
-// Gathers path vertices and builds guides from them. Results depend on the order of the vertices, not on
-// the number of threads.
+// Gathers path vertices and builds guides from them. What it gathers itself is a part; merge() adds those of
+// other builders, which stay apart. Results depend on what each call of add() is given, on the order of these
+// calls and on the parts' ids, not on the order of the vertices of a call, on the order of merging or on
+// threads.
 class GuideBuilder {
  public:
   // Throws std::invalid_argument where an option is out of its range.
@@ -83,38 +85,46 @@ class GuideBuilder {
   GuideBuilder(GuideBuilder&&) noexcept;
   GuideBuilder& operator=(GuideBuilder&&) noexcept;
 
-  // Adds to the statistics of the cells. The first call fixes the extent of the cells, so it should hold at
-  // least one pass over the image. Vertices of guided paths may be added, too, their `pdf` being the
-  // mixture's. Vertices that can't be used are left out and counted.
+  // Adds vertices of unguided paths to the statistics of the cells, and some of them to what BSDF sampling
+  // fractions are chosen by. The first call fixes the extent of the cells, so it should hold at least one
+  // pass over the image. Vertices that can't be used are left out and counted.
   void add(VertexParts parts);
   void add(ArrayView<const PathVertex> vertices) { add(VertexParts(&vertices, 1)); }
-  // The same in two steps: take() may be called by many threads at once, for a part of the image each; add()
-  // uses the samples up, but for what build() needs. Empty samples are fine.
-  VertexSamples take(ArrayView<const PathVertex> vertices) const;
-  void add(ArrayView<VertexSamples> samples);
-  // The same of vertices of unguided paths, for build() as well. `seen` vertices have been taken by now,
-  // these included: the more there are, the fewer of them does build() need.
+  // The same of guided paths, whose `pdf` is the mixture's: they add to the cells alone.
+  void addGuided(VertexParts parts);
+  void addGuided(ArrayView<const PathVertex> vertices) { addGuided(VertexParts(&vertices, 1)); }
+  // The same in steps: take...() may be called by many threads at once, for a part of the image each; what
+  // adds uses the samples up. Empty samples are fine. Of unguided paths `seen` vertices have been taken by
+  // now, these included: the more there are, the fewer of them are fractions chosen by.
+  VertexSamples takeGuided(ArrayView<const PathVertex> vertices) const;
   VertexSamples takeUnguided(ArrayView<const PathVertex> vertices, uint64_t seen) const;
-  // From frame to frame (odis/odis.h). fade() throws std::invalid_argument unless 0 <= weight <= 1,
-  // setBounds() unless all is finite and lower <= upper. Guides of before are not of this builder any more.
+  void addToCells(ArrayView<VertexSamples> samples);
+  void addToFractions(ArrayView<VertexSamples> samples);
+  // From frame to frame (odis/odis.h), for all parts. fade() throws std::invalid_argument unless 0 <= weight
+  // <= 1, setBounds() unless all is finite and lower <= upper. What fractions are chosen by can't fade: it is
+  // forgotten where the weight is below 1. forget() lets go of other builders' parts.
   void fade(float weight);
   void forget();
+  void forgetFractions();
   void setBounds(const Float3& lower, const Float3& upper);
-  // Builds maps from all that was added, and BSDF sampling fractions from vertices that should be (a part
-  // of) the same, without those of guided paths. `pixelValues`, indexed by PathVertex::pixel, are what the
-  // vertices' contributions are divided by; without any, by those of an even image. Throws std::out_of_range
-  // where a vertex has a pixel beyond them.
-  Guide build(VertexParts parts, ArrayView<const float> pixelValues = {}) const;
-  Guide build(ArrayView<const PathVertex> vertices, ArrayView<const float> pixelValues = {}) const {
-    return build(VertexParts(&vertices, 1), pixelValues);
-  }
-  // The same from what was taken of unguided paths, `seen` vertices in all.
-  Guide build(ArrayView<const VertexSamples> unguided, uint64_t seen,
-              ArrayView<const float> pixelValues = {}) const;
+  // Builds a guide from all that was added. `pixelValues`, indexed by PathVertex::pixel, are what the
+  // vertices' contributions are divided by; without any, by those of an even image with the mean of paths.
+  // Throws std::out_of_range where a vertex has a pixel beyond them.
+  Guide build(ArrayView<const float> pixelValues = {}) const;
   // Builds all but BSDF sampling fractions and the prediction anew, from all that was added by now. Those are
-  // taken from `previous`, which must come from this builder (else std::invalid_argument is thrown); cells
+  // taken from `previous`, whose cells must be of the same grid (else std::invalid_argument is thrown); cells
   // that are new have their parents' fractions.
   Guide rebuild(const Guide& previous) const;
+
+  // The id of what this builder gathers itself, 0 at first. Throws std::invalid_argument where a part that
+  // was merged has it.
+  void setPartId(uint64_t id);
+  // Takes the parts of other builders in, which stay as they are. Throws std::invalid_argument, and changes
+  // nothing, where builders differ in an option, the model or the grid, or where two parts have the same id;
+  // parts that nothing was added to are passed over.
+  void merge(ArrayView<const GuideBuilder* const> others);
+  // How many parts there are that something was added to.
+  size_t partCount() const;
 
   // Keeps the memory of building from so many vertices, and of two guides, below a limit, as well as can be
   // foreseen: the cells become as much larger as it takes, or samples without a cell are left out.
@@ -122,13 +132,15 @@ class GuideBuilder {
   // How many times larger the cells' edges are for that, and how many samples were left out.
   int coarsening() const;
   uint64_t samplesLeftOut() const;
-  // Writes all that was added, and reads it into a builder with the same options that nothing was added to.
+  // Writes the options and all that was added. Reads the latter into a builder with the same options that
+  // nothing was added to, or makes a builder with the options that were saved. Reading throws FileError, also
+  // where the model is not the one that there was.
   void save(ArchiveWriter& file) const;
   void load(const Archive& file);
+  static GuideBuilder load(const Archive& file, std::optional<Model> model,
+                           std::shared_ptr<const Tasks> tasks);
   // Tells of progress from now on.
   void setProgress(OdisProgressFunction function, void* user);
-  // Lets rebuild() take a guide that was built before this builder was saved.
-  void adopt(Guide& guide) const;
 
   // As they hold, without the model.
   const GuideOptions& options() const;

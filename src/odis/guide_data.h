@@ -1,6 +1,9 @@
 // What a guide, samples of cells and a builder hold.
 #pragma once
 
+#include <map>
+#include <optional>
+
 #include "odis/cells/statistics.h"
 #include "odis/guide.h"
 #include "odis/maps/texel_directions.h"
@@ -44,8 +47,6 @@ struct Guide::Data {
   // Beside this, cosines don't matter.
   static constexpr float kRimWithoutProduct = 1e6f;
 
-  const void* builder = nullptr;  // the one that it comes from
-  uint64_t numbering = 0;         // that its cells had then
   CellGrid grid;
   CellIndex index;
   std::vector<uint64_t> keys;
@@ -68,29 +69,61 @@ struct VertexSamples::Data {
   std::vector<FractionSample> fractions;  // of unguided vertices
 };
 
+// The options of a saved builder, without a model. Throws FileError.
+GuideOptions loadGuideOptions(const Archive& file);
+
+// What one builder gathered.
+struct BuilderPart {
+  CellStore store;
+  FractionSamples fractions;
+
+  bool isEmpty() const {
+    const VertexCounts& counts = store.vertexCounts();
+    return counts.accepted + refusedVertices(counts) == 0;
+  }
+  uint64_t bytes() const { return store.bytes() + fractions.bytes(); }
+};
+
 struct GuideBuilder::Data {
-  Data(const GuideOptions& o, Model model, std::shared_ptr<const Tasks> tasks)
+  Data(const GuideOptions& o, Model model, std::shared_ptr<const Tasks> t)
       : options(o),
         progress(o.progressFunction, o.progressUser),
         modelId(idOf(model)),
         directions(std::move(model.directions)),
         lights(std::move(model.lights)),
         pixelNetwork(std::move(model.pixels)),
-        store(o.clamp, directions && directions->looksAround(), std::move(tasks)) {
+        tasks(std::move(t)) {
     if (!directions) directions = std::make_shared<DirectionFormula>(o.priorSamples);
     if (!lights) lights = std::make_shared<LightFormula>();
     if (!options.caches()) options.cachedError = 0;
     if (options.caches() && options.cachedError == 0)
       throw std::invalid_argument("cached-error: expected a positive number for a builder without a frame");
-    if (options.cachedError > 0) store.cache(options.maxDepth);
     options.model.reset();
+    parts.emplace(id, BuilderPart{newStore(), {}});
   }
 
+  CellStore newStore() const {
+    CellStore store(options.clamp, directions->looksAround(), tasks);
+    if (options.cachedError > 0) store.cache(options.maxDepth);
+    return store;
+  }
+  BuilderPart& own() { return parts.at(id); }
   VertexRules rules(bool unguided) const { return {options.lightGroups, unguided}; }
-  Guide build(FractionParts unguided, uint64_t seen, ArrayView<const float> pixelValues);
-  Guide buildMaps(const std::vector<CellStatistics>& cells,
+  VertexSamples takeGuided(const VertexBatch& vertices);
+  VertexSamples takeUnguided(const VertexBatch& vertices, uint64_t seen);
+
+  // The cells of all parts: of the only one that is not empty, or `sum`, to which they are added in the order
+  // of their ids.
+  CellStore& allCells(std::optional<CellStore>& sum);
+  // The grid of the parts that have one.
+  const CellGrid* grid() const;
+  void requireSameOptions(const Data& other) const;
+
+  Guide build(ArrayView<const float> pixelValues);
+  Guide buildMaps(const CellStore& store, const std::vector<CellStatistics>& cells,
                   std::vector<DirectionDistribution>& distributions) const;
-  void addRouletteAndLights(Guide::Data& guide, const std::vector<CellStatistics>& cells) const;
+  void addRouletteAndLights(Guide::Data& guide, const CellStore& store,
+                            const std::vector<CellStatistics>& cells) const;
 
   GuideOptions options;
   Progress progress;
@@ -98,7 +131,9 @@ struct GuideBuilder::Data {
   std::shared_ptr<const DirectionModel> directions;
   std::shared_ptr<const LightModel> lights;
   std::shared_ptr<const PixelModel> pixelNetwork;  // of the paper's method; null: the model has none
-  CellStore store;
+  std::shared_ptr<const Tasks> tasks;
+  uint64_t id = 0;                        // of what this builder gathers itself
+  std::map<uint64_t, BuilderPart> parts;  // by their ids
 };
 
 }  // namespace odis::core

@@ -148,8 +148,6 @@ Guide PaperMethod::over(const Guide& cells, const PixelMaps& maps, const GuideOp
 std::shared_ptr<Guide::Data> PaperMethod::copyOf(const Guide::Data& from, size_t more) {
   const size_t count = from.index.size(), columns = from.lightTables.empty() ? 0 : from.lightGroups + 1;
   const auto result = std::make_shared<Guide::Data>(count + more);
-  result->builder = from.builder;
-  result->numbering = from.numbering;
   result->grid = from.grid;
   result->index = from.index;
   result->rim = from.rim;

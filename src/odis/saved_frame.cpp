@@ -25,7 +25,7 @@ void saveTiles(ArchiveWriter& file, const std::string& name, const VertexTiles& 
     all.insert(all.end(), tile.begin(), tile.end());
   }
   file.add(name + ".sizes", sizes);
-  file.add(name, all);
+  saveVertices(file, name, all);
 }
 
 // The parts of an array that have these sizes. `take` is called with the first and the one after the last.
@@ -79,22 +79,21 @@ struct SavedVertexSamples {
       fractionSizes.push_back(fractions.size() - before);
     }
     file.add(name + ".samples.sizes", sizes);
-    file.add(name + ".samples", samples);
+    saveFields(file, name + ".samples", samples);
     file.add(name + ".samples.cellOf", cellOf);
     file.add(name + ".cells.sizes", cellSizes);
-    file.add(name + ".cells", cells);
+    saveFields(file, name + ".cells", cells);
     file.add(name + ".fractions.sizes", fractionSizes);
-    file.add(name + ".fractions", fractions);
-    file.add(name + ".counts", counts);
+    saveFields(file, name + ".fractions", fractions);
+    saveFields(file, name + ".counts", counts);
   }
 
-  // Reads an array of all tiles that was saved with its sizes; `arrayOf(t)` is where that of tile t goes.
+  // Splits an array of all tiles that was saved with its sizes; `arrayOf(t)` is where that of tile t goes.
   template <class T, class ArrayOf>
-  static void read(const Archive& file, const std::string& name, const std::vector<uint64_t>& sizes,
-                   const ArrayOf& arrayOf) {
+  static void split(const Archive& file, const std::string& name, const std::vector<T>& all,
+                    const std::vector<uint64_t>& sizes, const ArrayOf& arrayOf) {
     size_t next = 0;
-    forEachPart(file, name, file.get<T>(name), sizes,
-                [&](auto begin, auto end) { arrayOf(next++).assign(begin, end); });
+    forEachPart(file, name, all, sizes, [&](auto begin, auto end) { arrayOf(next++).assign(begin, end); });
   }
 
   static std::vector<VertexSamples> load(const Archive& file, const std::string& name, size_t pixels) {
@@ -103,23 +102,22 @@ struct SavedVertexSamples {
       return file.get<uint64_t>(name + array + ".sizes", sizes.size());
     };
     std::vector<VertexSamples::Data> tiles(sizes.size());
-    read<CellSample>(
-        file, name + ".samples", sizes, [&](size_t t) -> auto& { return tiles[t].cells.samples; });
+    split(
+        file, name + ".samples", loadFields<CellSample>(file, name + ".samples"),
+        sizes, [&](size_t t) -> auto& { return tiles[t].cells.samples; });
     // Those that were taken before there was a grid have no cells yet.
-    if (!file.get<uint32_t>(name + ".samples.cellOf").empty())
-      read<uint32_t>(
-          file, name + ".samples.cellOf", sizes, [&](size_t t) -> auto& { return tiles[t].cells.cellOf; });
-    read<BatchSamples::Cell>(
-        file, name + ".cells", sizesOf(".cells"), [&](size_t t) -> auto& { return tiles[t].cells.cells; });
-    for (const auto& bytes : file.get<std::array<unsigned char, sizeof(FractionSample)>>(name + ".fractions"))
-      for (const size_t offset :
-           {offsetof(FractionSample, isFirst), offsetof(FractionSample, isUsable),
-            offsetof(FractionSample, discrete), offsetof(FractionSample, scattersBothSides)})
-        file.require(bytes[offset] <= 1, name + ".fractions: are damaged");
-    read<FractionSample>(
-        file, name + ".fractions",
+    const std::vector<uint32_t> cellOf = file.get<uint32_t>(name + ".samples.cellOf");
+    if (!cellOf.empty())
+      split(
+          file, name + ".samples.cellOf", cellOf,
+          sizes, [&](size_t t) -> auto& { return tiles[t].cells.cellOf; });
+    split(
+        file, name + ".cells", loadFields<BatchSamples::Cell>(file, name + ".cells"),
+        sizesOf(".cells"), [&](size_t t) -> auto& { return tiles[t].cells.cells; });
+    split(
+        file, name + ".fractions", loadFields<FractionSample>(file, name + ".fractions"),
         sizesOf(".fractions"), [&](size_t t) -> auto& { return tiles[t].fractions; });
-    const std::vector<VertexCounts> counts = file.get<VertexCounts>(name + ".counts", sizes.size());
+    const std::vector<VertexCounts> counts = loadFields<VertexCounts>(file, name + ".counts", sizes.size());
     std::vector<VertexSamples> result(sizes.size());
     for (size_t t = 0; t < tiles.size(); ++t) {
       tiles[t].cells.counts = counts[t];
@@ -195,7 +193,7 @@ void Frame::save(ArchiveWriter& file) const {
   file.addValue("frame.model", d.modelId);
   file.add("frame.hostData", d.hostData);
   file.addValue("frame.position", d.position());
-  file.addValue("frame.vertexCounts", d.vertexCounts);
+  saveFields(file, "frame.vertexCounts", d.vertexCounts);
   file.add("frame.counts", d.schedule.counts());
   file.add("frame.before", d.schedule.before().done);
   file.add("frame.pilot", d.pilot.sums());
@@ -207,7 +205,6 @@ void Frame::save(ArchiveWriter& file) const {
   }
   file.add("frame.pixelValues", d.pixelValues);
   saveTiles(file, "frame.pilotVertices", d.pilotVertices);
-  SavedVertexSamples::save(file, "frame.unguided", d.unguided);
   // A pass that was loaded and has not begun again is what it was.
   if (d.inPass || d.resumed) {
     file.add("pass.tilesDone", d.resumed ? d.resumed->tilesDone : d.tiles.done());
@@ -240,9 +237,8 @@ SavedFrame::SavedFrame(const Archive& file)
       hostData(file.get<uint8_t>("frame.hostData")),
       pixelValues(file.get<float>("frame.pixelValues")),
       schedule(options),
-      vertexCounts(file.value<VertexCounts>("frame.vertexCounts")),
+      vertexCounts(loadFieldsOfOne<VertexCounts>(file, "frame.vertexCounts")),
       pilotVertices(loadTiles(file, "frame.pilotVertices", pixelCount)),
-      unguided(SavedVertexSamples::load(file, "frame.unguided", pixelCount)),
       guide(Guide::load(file)) {
   const auto isFull = [this](size_t size) { return size == 0 || size == pixelCount; };
   file.require(isFull(guide.view().pixels.count), "guide.pixelCells: are damaged");
@@ -364,14 +360,12 @@ Frame Frame::load(const Archive& file, std::optional<Model> model, std::shared_p
   d.schedule = std::move(saved.schedule);
   d.vertexCounts = saved.vertexCounts;
   d.pilotVertices = std::move(saved.pilotVertices);
-  d.unguided = std::move(saved.unguided);
   d.guide = std::move(saved.guide);
   d.resumed = std::move(saved.pass);
   d.moveTo(saved.position);
   if (saved.position.builder) {
     d.cells = d.paper ? d.paper->load(file, d.guide) : d.guide;
     d.builder->load(file);
-    d.builder->adopt(d.cells);
   } else {
     d.builder.reset();
     d.paper.reset();

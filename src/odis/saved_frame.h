@@ -38,7 +38,6 @@ struct SavedFrame {
   FramePosition position;
   VertexCounts vertexCounts;
   VertexTiles pilotVertices;
-  std::vector<VertexSamples> unguided;
   Guide guide;
   std::unique_ptr<ResumedPass> pass;  // null between passes
 

@@ -1,12 +1,44 @@
 // Guides and builders written to a file and read again.
 #include <cmath>
+#include <stdexcept>
 
 #include "odis/cells/saved_grid.h"
 #include "odis/files/archive.h"
 #include "odis/guide_data.h"
 #include "odis/maps/pack.h"
+#include "odis/options/settings.h"
 
 namespace odis::core {
+
+template <class Body>
+constexpr void forEachField(FieldsOf<CellDecisions>, const Body& body) {
+  body("bsdfFraction", &CellDecisions::bsdfFraction);
+  body("survivalFactor", &CellDecisions::survivalFactor);
+  body("outgoingRadiance", &CellDecisions::outgoingRadiance);
+  body("learnedLightFraction", &CellDecisions::learnedLightFraction);
+}
+static_assert(listedBytes<CellDecisions>() == sizeof(CellDecisions));
+
+template <class Body>
+constexpr void forEachField(FieldsOf<CachedRadiance>, const Body& body) {
+  body("radiance", &CachedRadiance::radiance);
+  body("error", &CachedRadiance::error);
+}
+static_assert(listedBytes<CachedRadiance>() == sizeof(CachedRadiance));
+
+template <class Body>
+constexpr void forEachField(FieldsOf<ImageMoments>, const Body& body) {
+  body("variance", &ImageMoments::variance);
+  body("rays", &ImageMoments::rays);
+  body("count", &ImageMoments::count);
+}
+static_assert(listedBytes<ImageMoments>() == sizeof(ImageMoments));
+
+template <class Body>
+constexpr void forEachField(FieldsOf<LightParts>, const Body& body) {
+  body("first", &LightParts::first);
+  body("count", &LightParts::count);
+}
 
 namespace {
 
@@ -40,14 +72,15 @@ void Guide::save(ArchiveWriter& file) const {
   saveGrid(file, "guide.grid", m_data->grid.flat());
   file.add("guide.keys", m_data->keys);
   file.add("guide.texels", std::span<const uint16_t>(m_data->texels.data(), cells * kMapTexels));
-  file.add("guide.decisions", m_data->decisions);
+  saveFields(file, "guide.decisions", m_data->decisions);
   file.addValue("guide.lightGroups", m_data->lightGroups);
   file.add("guide.lightTables", m_data->lightTables);
-  file.add("guide.cached", m_data->cached);
+  saveFields(file, "guide.cached", m_data->cached);
   file.addValue("guide.cachedError", m_data->cachedError);
   file.addValue("guide.maxDepth", m_data->maxDepth);
   file.add("guide.cachedShares", m_data->cachedShares);
-  file.addValue("guide.prediction", m_data->prediction);
+  saveFields(file, "guide.prediction", m_data->prediction.image);
+  file.addValue("guide.varianceRatio", m_data->prediction.varianceRatio);
   file.add("guide.pixelCells", m_data->pixelCells);
   file.addValue("guide.rim", m_data->rim);
   file.addValue("guide.gridCells", m_data->index.size());
@@ -84,7 +117,7 @@ Guide Guide::load(const Archive& file) {
   std::copy(texels.begin(), texels.end(), data.texels.at(0));
   for (size_t c = 0; c < keys.size(); ++c)
     sumBlocks(data.texels.at(c * kMapTexels), data.sums.at(c * kSumsPerMap));
-  data.decisions = file.get<CellDecisions>("guide.decisions", keys.size());
+  data.decisions = loadFields<CellDecisions>(file, "guide.decisions", keys.size());
   data.lightGroups = file.value<uint32_t>("guide.lightGroups");
   file.require(data.lightGroups <= kMaxLightGroups, "guide.lightGroups: is damaged");
   const size_t columns = data.lightGroups + 1;
@@ -97,9 +130,9 @@ Guide Guide::load(const Archive& file) {
       file.require(isSound(std::span<const float>(&data.lightTables[c * columns], columns), hasTable),
                    "guide.lightTables: are damaged");
   }
-  if (file.contains("guide.cached")) {
-    data.cachedError = file.value<float>("guide.cachedError");
-    data.cached = file.get<CachedRadiance>("guide.cached", data.cachedError > 0 ? 2 * keys.size() : 0);
+  data.cachedError = file.valueOr<float>("guide.cachedError", 0);
+  if (data.cachedError > 0) {
+    data.cached = loadFields<CachedRadiance>(file, "guide.cached", 2 * keys.size());
     for (const CachedRadiance& cached : data.cached)
       file.require(isSound(cached), "guide.cached: is damaged");
   }
@@ -109,22 +142,77 @@ Guide Guide::load(const Archive& file) {
     for (const float share : data.cachedShares)
       file.require(share >= 0 && share <= 1, "guide.cachedShares: are damaged");
   }
-  data.prediction = file.value<GuidingPrediction>("guide.prediction");
+  data.prediction.image = loadFieldsOfOne<ImageMoments>(file, "guide.prediction");
+  data.prediction.varianceRatio = file.valueOr<float>("guide.varianceRatio", 1);
   return guide;
 }
 
 void GuideBuilder::save(ArchiveWriter& file) const {
-  m_data->store.save(file);
+  const Data& d = *m_data;
+  file.addText("builder.settings", settingsText(d.options));
+  file.addValue("builder.lightGroups", d.options.lightGroups);
+  saveFields(file, "builder.lightParts", d.options.lightParts);
+  file.addValue("builder.model", d.modelId);
+  file.addValue("builder.own", d.id);
+  std::vector<uint64_t> ids;
+  for (const auto& [id, part] : d.parts) {
+    const std::string name = "part" + std::to_string(ids.size());
+    ids.push_back(id);
+    part.store.save(file, name + ".cells");
+    file.addValue(name + ".seen", part.fractions.seen);
+    saveFields(file, name + ".fractions", part.fractions.samples);
+  }
+  file.add("builder.parts", ids);
 }
 
 void GuideBuilder::load(const Archive& file) {
-  m_data->store.load(file);
+  Data& d = *m_data;
+  std::map<uint64_t, BuilderPart> parts;
+  const std::vector<uint64_t> ids = file.get<uint64_t>("builder.parts");
+  const CellGrid* grid = nullptr;
+  for (size_t i = 0; i < ids.size(); ++i) {
+    const std::string name = "part" + std::to_string(i);
+    const auto [place, isNew] = parts.emplace(ids[i], BuilderPart{d.newStore(), {}});
+    BuilderPart& part = place->second;
+    part.store.load(file, name + ".cells");
+    part.fractions.seen = file.value<uint64_t>(name + ".seen");
+    part.fractions.samples = loadFields<FractionSample>(file, name + ".fractions");
+    file.require(isNew, "builder.parts: are damaged");
+    if (!part.store.isPlaced()) continue;
+    file.require(!grid || part.store.grid() == *grid, "builder.parts: have different grids");
+    grid = &part.store.grid();
+  }
+  d.id = file.value<uint64_t>("builder.own");
+  file.require(parts.count(d.id) > 0, "builder.own: is damaged");
+  d.parts = std::move(parts);
 }
 
-void GuideBuilder::adopt(Guide& guide) const {
-  if (!guide.m_data) return;
-  guide.m_data->builder = m_data.get();
-  guide.m_data->numbering = m_data->store.numbering();
+GuideOptions loadGuideOptions(const Archive& file) {
+  FrameOptions options;
+  try {
+    applySettings(options, file.text("builder.settings"));
+  } catch (const std::invalid_argument& error) {
+    file.require(false, std::string("builder.settings: ") + error.what());
+  }
+  options.guide.lightGroups = file.valueOr<uint32_t>("builder.lightGroups", 0);
+  options.guide.lightParts = loadFields<LightParts>(file, "builder.lightParts");
+  return options.guide;
+}
+
+GuideBuilder GuideBuilder::load(const Archive& file, std::optional<Model> model,
+                                std::shared_ptr<const Tasks> tasks) {
+  file.requireKind("builder");
+  GuideOptions options = loadGuideOptions(file);
+  options.model = std::move(model);
+  try {
+    GuideBuilder builder(options, std::move(tasks));
+    file.require(builder.modelId() == file.value<uint64_t>("builder.model"), "was saved with another model");
+    builder.load(file);
+    return builder;
+  } catch (const std::invalid_argument& error) {
+    file.require(false, error.what());
+    throw;
+  }
 }
 
 }  // namespace odis::core

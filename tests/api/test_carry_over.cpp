@@ -10,7 +10,7 @@ namespace {
 const Float3 kLower{0, 0, -0.5f}, kUpper{1, 1, 0.5f};
 
 Guide buildFrom(const GuideBuilder& builder) {
-  return builder.build(apiVertices());
+  return builder.build();
 }
 
 uint32_t cellsOfLevel(const GuideView& view, int level) {
@@ -63,7 +63,7 @@ TEST(CarryOver, OldSamplesCountLess) {
     builder.add(lit(oldSide));
     builder.fade(weight);
     builder.add(lit(newSide));
-    const Guide guide = builder.build(lit(newSide));
+    const Guide guide = builder.build();
     const GuideView view = guide.view();
     const uint32_t cell = findCell(view, {first.position, first.normal});
     ASSERT_NE(cell, kNoCell);
@@ -141,19 +141,21 @@ TEST(CarryOver, WhatMakesNoSenseIsRefused) {
     EXPECT_FALSE(odisSetBounds(builder.get(), &kLower, &upper));
     EXPECT_EQ(takeError(), ODIS_ERROR_INVALID_ARGUMENT);
   }
-  // Cells have other numbers now than in the guide.
-  GuideBuilder faded;
-  faded.add(apiVertices());
-  const Guide guide = buildFrom(faded);
-  faded.fade(0.5f);
-  EXPECT_EQ(odisRebuildGuide(faded.get(), guide.get()), nullptr);
+  // Cells have another extent now than in the guide.
+  GuideBuilder moved;
+  moved.add(apiVertices());
+  const Guide guide = buildFrom(moved);
+  moved.fade(0.5f);
+  EXPECT_TRUE(sameBits(moved.rebuild(guide).view(), moved.rebuild(moved.rebuild(guide)).view()));
+  moved.setBounds(kLower, kUpper);
+  EXPECT_EQ(odisRebuildGuide(moved.get(), guide.get()), nullptr);
   EXPECT_EQ(takeError(), ODIS_ERROR_INVALID_ARGUMENT);
   // A builder has its own options.
   OdisFrameOptions options;
   options.width = options.height = 4;
   const OdisGuideOptions guideOptions;
   options.guide = &guideOptions;
-  options.builder = faded.get();
+  options.builder = moved.get();
   EXPECT_EQ(odisNewFrame(Context::shared().get(), &options), nullptr);
   EXPECT_EQ(takeError(), ODIS_ERROR_INVALID_ARGUMENT);
 }

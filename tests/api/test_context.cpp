@@ -33,7 +33,7 @@ void runByThreads(void*, size_t count, void (*task)(void* data, size_t index), v
 Guide guideIn(const Context& context) {
   GuideBuilder builder({}, context);
   builder.add(apiVertices());
-  return builder.build(apiVertices());
+  return builder.build();
 }
 
 TEST(ApiContext, TasksOfTheHostGiveTheSameGuide) {
@@ -69,12 +69,11 @@ TEST(ApiContext, CancellingLeavesABuilderThatGoesOn) {
   options.progressUser = &patience;
   GuideBuilder builder(options);
   builder.add(apiVertices());
-  const OdisPathVertices vertices = describe(apiVertices());
   int stages = 0;
   OdisGuide guide = nullptr;
   while (!guide && stages < 100) {
     patience.left = stages++;
-    guide = odisBuildGuide(builder.get(), &vertices, nullptr, 0);
+    guide = odisBuildGuide(builder.get(), nullptr, 0);
     if (!guide) {
       EXPECT_EQ(takeError(), ODIS_ERROR_CANCELLED);
     }

@@ -156,11 +156,13 @@ TEST(ApiMistakes, BuildersCountAndTellOnce) {
   EXPECT_EQ(builder.vertexCounts().wrongSide, 10u);
   ASSERT_EQ(heard.messages.size(), 1u);
   EXPECT_EQ(heard.count("the other side than their wo: 5"), 1);
-  const float value = 1;
-  EXPECT_EQ(odisBuildGuide(builder.get(), nullptr, &value, 1), nullptr);
+  EXPECT_EQ(odisBuildGuide(builder.get(), nullptr, 5), nullptr);
   EXPECT_EQ(takeError(), ODIS_ERROR_INVALID_ARGUMENT);
-  const OdisPathVertices described = describe(vertices);
-  EXPECT_EQ(odisBuildGuide(builder.get(), &described, nullptr, 5), nullptr);
+  // A vertex of a pixel that has no value.
+  vertices[9].pixel = 1;
+  builder.add(vertices);
+  const float value = 1;
+  EXPECT_EQ(odisBuildGuide(builder.get(), &value, 1), nullptr);
   EXPECT_EQ(takeError(), ODIS_ERROR_INVALID_ARGUMENT);
 }
 
@@ -276,7 +278,7 @@ TEST(ApiMistakes, ABuilderHasOneFrameAtATime) {
   const auto refuses = [&](const auto& call) { expectRefused(ODIS_ERROR_INVALID_OPERATION, call); };
   refuses([&] { second.beginPass(); });
   refuses([&] { builder.add(vertices); });
-  refuses([&] { builder.build(vertices); });
+  refuses([&] { builder.build(); });
   refuses([&] { builder.fade(0.5f); });
   refuses([&] { builder.forget(); });
   refuses([&] { builder.setBounds({}, {1, 1, 1}); });

@@ -70,8 +70,13 @@ TEST(ApiMisuse, NullIsAnError) {
   REFUSED(odisGetPilotImage(nullptr));
   REFUSED(odisGetPilotVertices(nullptr, nullptr, 0));
   REFUSED(odisNewGuideBuilder(nullptr, nullptr));
-  REFUSED(odisAddVertices(nullptr, &vertices));
-  REFUSED(odisBuildGuide(nullptr, &vertices, nullptr, 0));
+  REFUSED(odisAddVertices(nullptr, &vertices, false));
+  REFUSED(odisBuildGuide(nullptr, nullptr, 0));
+  REFUSED(odisSetPartId(nullptr, 1));
+  REFUSED(odisMergeGuideBuilders(nullptr, nullptr, 0));
+  REFUSED(odisSaveGuideBuilder(nullptr, "x"));
+  REFUSED(odisLoadGuideBuilder(nullptr, "x", nullptr));
+  REFUSED(odisLoadGuideBuilder(Context::shared().get(), nullptr, nullptr));
   REFUSED(odisRebuildGuide(nullptr, nullptr));
   REFUSED(odisFadeVertices(nullptr, 1));
   REFUSED(odisForgetVertices(nullptr));
@@ -117,11 +122,16 @@ TEST(ApiMisuse, NullArgumentsOfObjectsAreErrors) {
   REFUSED(odisFinishPaths(recorder.get(), nullptr));
   GuideBuilder builder({}, context);
   const OdisPathVertices none;
-  REFUSED(odisAddVertices(builder.get(), nullptr));
-  REFUSED(odisBuildGuide(builder.get(), nullptr, nullptr, 0));
+  REFUSED(odisAddVertices(builder.get(), nullptr, false));
+  REFUSED(odisBuildGuide(builder.get(), nullptr, 1));
+  REFUSED(odisMergeGuideBuilders(builder.get(), nullptr, 1));
+  const OdisGuideBuilder nobody = nullptr;
+  REFUSED(odisMergeGuideBuilders(builder.get(), &nobody, 1));
+  REFUSED(odisSaveGuideBuilder(builder.get(), nullptr));
+  EXPECT_TRUE(odisMergeGuideBuilders(builder.get(), nullptr, 0));
   REFUSED(odisRebuildGuide(builder.get(), nullptr));
   REFUSED(odisGetVertexCounts(builder.get(), nullptr));
-  EXPECT_TRUE(odisAddVertices(builder.get(), &none));
+  EXPECT_TRUE(odisAddVertices(builder.get(), &none, false));
   REFUSED(odisSetBounds(builder.get(), nullptr, nullptr));
   REFUSED(odisSaveFrame(frame.get(), nullptr));
   REFUSED(odisSetFrameHostData(frame.get(), nullptr, 3));
@@ -334,7 +344,7 @@ TEST(ApiMisuse, SpoiledVerticesLeaveAGuideOfNumbers) {
   }
   GuideBuilder builder;
   builder.add(vertices);
-  const Guide guide = builder.build(vertices);
+  const Guide guide = builder.build();
   const GuideView view = guide.view();
   ASSERT_GT(view.cellCount, 0u);
   const OdisFloat3 up{0, 0, 1};

@@ -8,7 +8,7 @@ Guide guideOf(const OdisPathVertices& vertices) {
   GuideBuilder builder;
   builder.add(vertices);
   EXPECT_GT(builder.vertexCounts().accepted, 0u);
-  return builder.build(vertices);
+  return builder.build();
 }
 
 // A host's own vertex: other fields, another order, not aligned.
@@ -122,7 +122,7 @@ TEST(ApiVertices, WhatCannotBeIsRefusedByName) {
   const std::vector<OdisPathVertex> plain = plainVertices();
   GuideBuilder builder;
   const auto expectRefused = [&](const OdisPathVertices& described, const std::string& part) {
-    EXPECT_FALSE(odisAddVertices(builder.get(), &described));
+    EXPECT_FALSE(odisAddVertices(builder.get(), &described, false));
     std::string message;
     EXPECT_EQ(takeError(&message), ODIS_ERROR_INVALID_ARGUMENT);
     EXPECT_NE(message.find(part), std::string::npos) << message;
@@ -148,7 +148,7 @@ TEST(ApiVertices, WhatCannotBeIsRefusedByName) {
   bad = describe(plain);
   bad.count = SIZE_MAX / 2;
   bad.position.stride = 16;
-  EXPECT_FALSE(odisAddVertices(builder.get(), &bad));
+  EXPECT_FALSE(odisAddVertices(builder.get(), &bad, false));
   EXPECT_NE(takeError(), ODIS_ERROR_NONE);
   EXPECT_EQ(builder.vertexCounts().accepted, 0u);
 }

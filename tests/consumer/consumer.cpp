@@ -38,7 +38,7 @@ int main() {
   const std::vector<odis::PathVertex> vertices = someVertices();
   odis::GuideBuilder builder;
   builder.add(vertices);
-  const odis::Guide guide = builder.build(vertices);
+  const odis::Guide guide = builder.build();
   const odis::GuideView view = guide.view();
   const odis::Place place{{5, 5, 0}, {0, 0, 1}, 0, 0};
   const uint32_t cell = odis::findCell(view, place);

@@ -64,7 +64,7 @@ void printGuide(const char* name, const char* settings) {
   options.lightGroups = 2;
   odis::GuideBuilder builder(options);
   builder.add(vertices);
-  const odis::Guide guide = builder.build(vertices);
+  const odis::Guide guide = builder.build();
   const odis::GuideView view = guide.view();
   print(name, "cells", view.keys, view.cellCount);
   print(name, "maps", view.maps.texels, size_t(view.cellCount) * odis::kMapTexels);

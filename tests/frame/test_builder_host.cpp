@@ -46,7 +46,7 @@ BuiltImage renderByBuilder(uint64_t seed) {
   for (const FrameSample& s : pilot.samples) addSample(sums[s.pixel], s.value, s.rays);
   const std::vector<float> values = estimatePixelValues(sums, kBuilderSide);
   builder.add(pilot.vertices);
-  Guide guide = builder.build(pilot.vertices, values);
+  Guide guide = builder.build(values);
   image.guides = 1;
   for (uint32_t done = 1; done < kBuilderSamples;) {
     const uint32_t next = std::min(2 * done, kBuilderSamples);
@@ -54,7 +54,7 @@ BuiltImage renderByBuilder(uint64_t seed) {
     image.add(traced, kBuilderSamples / kAll);
     done = next;
     if (2 * done > kBuilderSamples) continue;
-    builder.add(traced.vertices);
+    builder.addGuided(traced.vertices);
     guide = builder.rebuild(guide);
     ++image.guides;
   }

@@ -140,7 +140,7 @@ TEST(Extend, GoesOnBeyondTheMostSamples) {
 TEST(Extend, HasAsManySamplesInTheMean) {
   FrameOptions options = toyOptions(64, 64, 16);
   options.mostSamplesPerPixel = ODIS_UNLIMITED;
-  options.refinementSamples = 1;
+  options.set("refine=1");
   const double most = double(runExtended(options, {200}).statistics().samples) / (64 * 64 * 200);
   EXPECT_NEAR(most, 1, 0.2);  // of equal cost
   for (const uint32_t n : {3u, 7u, 20u}) {

@@ -118,8 +118,7 @@ TEST(OwnFilm, SplatsAnEdgeInRounds) {
   for (const double pilot : {0.0, 0.25, 1.0})
     for (const std::vector<uint32_t>& rounds : {std::vector<uint32_t>{8}, {1, 2, 4}}) {
       FrameOptions options = toyOptions(kWallWidth, kWallHeight, 16);
-      options.guided = pilot > 0;
-      options.pilotSamplesPerPixel = pilot;
+      options.set(pilot > 0 ? "pilot-spp=" + std::to_string(pilot) : "guided=off samples=adaptive");
       for (const WallColumn& column : renderWalls(options, false, rounds)) {
         EXPECT_GT(std::erfc(std::abs(column.distance()) / std::sqrt(2.0)), significance)
             << column.truth << ", z = " << column.distance();

@@ -110,7 +110,7 @@ int main() {
   options.set("bsdf-fraction=0.4");
   odis::GuideBuilder builder(options);
   builder.add(vertices);
-  const odis::Guide guide = builder.build(vertices);
+  const odis::Guide guide = builder.build();
   const odis::GuideView view = guide.view();
   std::vector<odis::Place> places;
   std::vector<float2> numbers;

@@ -45,7 +45,22 @@ std::string savedGuide(const core::GuideOptions& options, const std::vector<Path
   core::GuideBuilder builder(options);
   builder.add(vertices);
   core::ArchiveWriter file("guide");
-  builder.build(vertices).save(file);
+  builder.build().save(file);
+  return bytesOf(file);
+}
+
+// A builder that another one was merged into.
+std::string savedBuilder(const core::GuideOptions& options) {
+  core::GuideBuilder builder(options), other(options);
+  for (core::GuideBuilder* each : {&builder, &other}) {
+    each->setBounds({0, 0, 0}, {1, 1, 1});
+    each->add(litFloor(20));
+  }
+  other.setPartId(7);
+  const core::GuideBuilder* others[] = {&other};
+  builder.merge({others, 1});
+  core::ArchiveWriter file("builder");
+  builder.save(file);
   return bytesOf(file);
 }
 
@@ -190,6 +205,27 @@ TEST(InspectSaved, VerticesAreCounted) {
   EXPECT_TRUE(toJson(seen)["vertices"]["quantiles"]["distance"][1].is_null());
 }
 
+TEST(InspectSaved, ABuilderTellsOfItsParts) {
+  core::GuideOptions options = guideOptions(4);
+  options.clamp = 5;
+  const SavedInspection seen = look(savedBuilder(options));
+  ASSERT_TRUE(seen.builder);
+  ASSERT_EQ(seen.builder->parts.size(), 2u);
+  EXPECT_EQ(seen.builder->own, 0u);
+  EXPECT_EQ(seen.builder->parts[1].id, 7u);
+  EXPECT_EQ(seen.builder->parts[1].counts.accepted, 20u);
+  EXPECT_EQ(seen.builder->parts[1].unguided, 20u);
+  EXPECT_GT(seen.builder->parts[1].cells[0], 0u);
+  const std::string text = savedText(seen, "b");
+  for (const char* words : {"b: a builder", "option map-clamp         5", "part                     7",
+                            "directions by a network", "20 taken"})
+    EXPECT_NE(text.find(words), std::string::npos) << text;
+  const nlohmann::ordered_json json = toJson(seen);
+  EXPECT_EQ(json["builder"]["parts"][1]["counts"]["accepted"], 20);
+  EXPECT_EQ(json["builder"]["options"]["cells"], "4");
+  EXPECT_THROW(inspectCell(seen, {0, 0, 0}, std::nullopt), render::OptionError);
+}
+
 TEST(InspectSaved, AFrameTellsWhereItIs) {
   const core::GuideOptions guide = guideOptions(8);
   core::FrameOptions options = frameOptions(40, 20, guide);
@@ -218,8 +254,9 @@ TEST(InspectSaved, AFrameTellsWhereItIs) {
   EXPECT_NEAR(f.luminance, 1, 1e-5);
   EXPECT_EQ(f.guides, 1u);
   ASSERT_TRUE(f.builder);
-  EXPECT_EQ(f.builder->cells, between.guide->cells);
-  EXPECT_EQ(f.builder->counts.accepted, pixels);
+  ASSERT_EQ(f.builder->parts.size(), 1u);
+  EXPECT_EQ(f.builder->parts[0].cells, between.guide->cells);
+  EXPECT_EQ(f.builder->parts[0].counts.accepted, pixels);
   EXPECT_FALSE(f.pilotVertices);
   EXPECT_EQ(f.hostBytes, 0u);
   const std::string text = savedText(between, "f");
@@ -335,15 +372,22 @@ TEST(InspectSaved, SeedsOfTheFuzzerAreRead) {
   core::GuideOptions simple = networks;
   simple.model = core::Model();
   const core::FrameOptions guided = frameOptions(4, 4, networks), formula = frameOptions(4, 4, simple);
-  core::FrameOptions withoutMeans = guided, goesOn = formula;
+  core::FrameOptions withoutGuide = formula, withoutMeans = guided, goesOn = formula;
+  withoutGuide.guided = false;
   withoutMeans.keepPixelMeans = goesOn.keepPixelMeans = false;
   goesOn.samplesPerPixel = 1;
   goesOn.mostSamplesPerPixel = ODIS_UNLIMITED;
   const std::pair<std::string, std::string> seeds[] = {
-      {"guide", savedGuide(networks, litFloor(50))},        {"vertices", savedVertices(litFloor(4))},
-      {"frame-in-pilot", savedFrame(formula, 0, 16)},       {"frame-guided", savedFrame(guided, 1)},
-      {"frame-in-guided-pass", savedFrame(guided, 1, 16)},  {"frame-by-formulas", savedFrame(formula, 2)},
-      {"frame-without-means", savedFrame(withoutMeans, 1)}, {"frame-extended", savedFrame(goesOn, 2)}};
+      {"guide", savedGuide(networks, litFloor(50))},
+      {"vertices", savedVertices(litFloor(4))},
+      {"builder", savedBuilder(simple)},
+      {"frame-without-guide", savedFrame(withoutGuide, 0, 16)},
+      {"frame-without-means", savedFrame(withoutMeans, 1)},
+      {"frame-extended", savedFrame(goesOn, 2)},
+      {"frame-in-pilot", savedFrame(formula, 0, 16)},
+      {"frame-guided", savedFrame(guided, 1)},
+      {"frame-in-guided-pass", savedFrame(guided, 1, 16)},
+      {"frame-by-formulas", savedFrame(formula, 2)}};
   for (const auto& [name, bytes] : seeds) {
     const std::string path = ODIS_SAVED_SEEDS "/" + name;
     if (std::getenv("ODIS_WRITE_SEEDS")) std::ofstream(path, std::ios::binary) << bytes;

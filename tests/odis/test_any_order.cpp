@@ -208,7 +208,7 @@ INSTANTIATE_TEST_SUITE_P(Deliveries, AnyOrder,
                                            NamedDelivery{"tiles", deliverTiles},
                                            NamedDelivery{"by threads", deliverByThreads}));
 
-// A builder keeps to the order that it is given, in whatever parts that comes.
+// In whatever parts vertices of one call lie.
 TEST(GuideBuilder, PartsOfOneOrderGiveOneGuide) {
   const std::vector<PathVertex> first = floorUnderPatch(kBright, 20000, 6),
                                 later = floorUnderPatch({-0.6f, 0, 0.8f}, 40000, 7);
@@ -218,21 +218,21 @@ TEST(GuideBuilder, PartsOfOneOrderGiveOneGuide) {
     options.model = model;
     GuideBuilder whole(options), parts(options), taken(options);
     for (GuideBuilder* builder : {&whole, &parts, &taken}) builder->add(first);
-    whole.add(later);
+    whole.addGuided(later);
     std::vector<ArrayView<const PathVertex>> pieces;
     std::vector<VertexSamples> samples;
     std::mt19937 engine(8);
     for (size_t begin = 0; begin < all.size();) {
       const size_t size = std::min<size_t>(engine() % 3000, all.size() - begin);
       pieces.push_back(all.subview(begin, size));
-      samples.push_back(taken.take(pieces.back()));
+      samples.push_back(taken.takeGuided(pieces.back()));
       begin += size;
     }
-    parts.add(pieces);
-    taken.add(samples);
-    const Guide expected = whole.build(first);
-    EXPECT_TRUE(sameGuide(parts.build(first), expected));
-    EXPECT_TRUE(sameGuide(taken.build(first), expected));
+    parts.addGuided(pieces);
+    taken.addToCells(samples);
+    const Guide expected = whole.build();
+    EXPECT_TRUE(sameGuide(parts.build(), expected));
+    EXPECT_TRUE(sameGuide(taken.build(), expected));
   }
 }
 

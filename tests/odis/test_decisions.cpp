@@ -184,7 +184,7 @@ std::vector<float> learnedOfTwoLights(const std::vector<PathVertex>& vertices) {
   options.lightGroups = 2;
   GuideBuilder builder(options);
   builder.add(vertices);
-  const Guide guide = builder.build(vertices);
+  const Guide guide = builder.build();
   const GuideView view = guide.view();
   const LearnedLights lights = learnedLights(view, findCell(view, {{0.5f, 0.5f, 0}, {0, 0, 1}}));
   return lights.cdf ? std::vector<float>(lights.cdf, lights.cdf + 3) : std::vector<float>();
@@ -243,10 +243,10 @@ TEST(BsdfFraction, AnEvenImageHasTheValuesOfNone) {
   builder.add(vertices);
   PixelSums image;
   for (const PathVertex& v : vertices) addSample(image, {v.indirect, v.indirect, v.indirect}, 1);
-  const float given = builder.build(vertices, estimatePixelValues({&image, 1}, 1)).predictedVarianceRatio();
-  EXPECT_NEAR(builder.build(vertices).predictedVarianceRatio(), given, 1e-5);
+  const float given = builder.build(estimatePixelValues({&image, 1}, 1)).predictedVarianceRatio();
+  EXPECT_NEAR(builder.build().predictedVarianceRatio(), given, 1e-5);
   const float ofMean[] = {float(image.sum[0] / image.count)};
-  EXPECT_GT(std::abs(builder.build(vertices, {ofMean, 1}).predictedVarianceRatio() - given), 1e-3);
+  EXPECT_GT(std::abs(builder.build({ofMean, 1}).predictedVarianceRatio() - given), 1e-3);
 }
 
 TEST(BsdfFraction, PrefersTheMapWhereItMatchesTheLight) {

@@ -105,7 +105,7 @@ TEST(Guide, PointsAtTheLight) {
   const std::vector<PathVertex> vertices = floorUnderPatch(kBright, 20000, 1);
   GuideBuilder builder(byFormula());
   builder.add(vertices);
-  const Guide guide = builder.build(vertices);
+  const Guide guide = builder.build();
   const uint32_t cell = cellAt(guide, {0.5f, 0.5f, 0});
   ASSERT_NE(cell, kNoCell);
   VertexMap<float> map;
@@ -123,14 +123,14 @@ TEST(Guide, UniformLightKeepsTheVarianceAsItIs) {
   }
   GuideBuilder builder(byFormula());
   builder.add(vertices);
-  EXPECT_GT(builder.build(vertices).predictedVarianceRatio(), 0.9f);
+  EXPECT_GT(builder.build().predictedVarianceRatio(), 0.9f);
 }
 
 TEST(Guide, FallsBackToCoarserCellsAndThenToNothing) {
   const std::vector<PathVertex> vertices = floorUnderPatch(kBright, 5000, 3);
   GuideBuilder builder(byFormula());
   builder.add(vertices);
-  const Guide guide = builder.build(vertices);
+  const Guide guide = builder.build();
   EXPECT_NE(cellAt(guide, {0.5f, 0.5f, 0.06f}), kNoCell);  // above the finest cells, inside coarser ones
   EXPECT_EQ(cellAt(guide, {50, 50, 50}), kNoCell);
   EXPECT_EQ(cellAt(Guide(), {0, 0, 0}), kNoCell);
@@ -139,7 +139,7 @@ TEST(Guide, FallsBackToCoarserCellsAndThenToNothing) {
 TEST(Guide, NothingToLearnFromIsNoCrash) {
   GuideBuilder builder(byFormula());
   builder.add(VertexParts());
-  EXPECT_EQ(cellAt(builder.build(VertexParts()), {0, 0, 0}), kNoCell);
+  EXPECT_EQ(cellAt(builder.build(), {0, 0, 0}), kNoCell);
   std::vector<PathVertex> vertices = floorUnderPatch(kBright, 200, 4);
   for (size_t i = 0; i < vertices.size(); ++i) {
     PathVertex& v = vertices[i];
@@ -165,7 +165,7 @@ TEST(Guide, NothingToLearnFromIsNoCrash) {
   for (const GuideOptions& options : {byFormula(), GuideOptions()}) {
     GuideBuilder broken(options);
     broken.add(vertices);
-    const Guide guide = broken.build(vertices);
+    const Guide guide = broken.build();
     EXPECT_TRUE(std::isfinite(guide.predictedVarianceRatio()));
   }
 }
@@ -186,7 +186,7 @@ TEST(Guide, IsTheSameWhoeverDoesTheWork) {
   for (const std::shared_ptr<const Tasks>& tasks : all) {
     GuideBuilder builder(GuideOptions(), tasks);
     builder.add(vertices);
-    guides.push_back(builder.build(vertices));
+    guides.push_back(builder.build());
     EXPECT_TRUE(sameGuide(guides.front(), guides.back()));
   }
 }
@@ -199,7 +199,7 @@ TEST(Guide, IsTheSameInPieces) {
   GuideBuilder whole(byFormula()), pieces(byFormula());
   whole.add(vertices);
   pieces.add(parts);
-  EXPECT_TRUE(sameGuide(whole.build(vertices), pieces.build(parts)));
+  EXPECT_TRUE(sameGuide(whole.build(), pieces.build()));
 }
 
 TEST(Guide, IsTheSameFromSamplesTakenByParts) {
@@ -209,14 +209,14 @@ TEST(Guide, IsTheSameFromSamplesTakenByParts) {
   GuideBuilder vertices(byFormula()), samples(byFormula());
   vertices.add(first);
   samples.add(first);
-  vertices.add(later);
+  vertices.addGuided(later);
   std::vector<VertexSamples> parts(4);  // the last one remains empty
-  parts[0] = samples.take(all.subview(0, 1));
-  parts[1] = samples.take({});
-  parts[2] = samples.take(all.subview(1, all.size() - 1));
-  samples.add(parts);
+  parts[0] = samples.takeGuided(all.subview(0, 1));
+  parts[1] = samples.takeGuided({});
+  parts[2] = samples.takeGuided(all.subview(1, all.size() - 1));
+  samples.addToCells(parts);
   EXPECT_EQ(samples.vertexCounts().accepted, first.size() + later.size());
-  EXPECT_TRUE(sameGuide(vertices.build(first), samples.build(first)));
+  EXPECT_TRUE(sameGuide(vertices.build(), samples.build()));
 }
 
 // Vertices need not be kept: what was taken of them, by parts of any size, makes the same guide.
@@ -234,11 +234,29 @@ TEST(Guide, IsTheSameFromWhatWasTakenOfUnguidedVertices) {
   }
   EXPECT_LT(bytes, 188 * vertices.size() * 3 / 4);
   for (VertexSamples& samples : taken) samples.narrow(vertices.size());
-  parts.add(taken);
-  uint64_t left = 0;
-  for (const VertexSamples& samples : taken) left += samples.bytes();
-  EXPECT_LT(left, 112 * (vertices.size() / 4) * 1.01) << "more is kept than build() needs";
-  EXPECT_TRUE(sameGuide(whole.build(vertices), parts.build(taken, vertices.size())));
+  parts.addToCells(taken);
+  const uint64_t ofCells = parts.heldBytes();
+  parts.addToFractions(taken);
+  for (const VertexSamples& samples : taken) EXPECT_EQ(samples.bytes(), 0u);
+  EXPECT_LT(double(parts.heldBytes() - ofCells), 112 * (double(vertices.size()) / 4) * 1.01)
+      << "more is kept than build() needs";
+  EXPECT_TRUE(sameGuide(whole.build(), parts.build()));
+}
+
+// However many calls it takes, no more is kept than of one.
+TEST(Guide, KeepsAPartOfTheVerticesThatCameInManyCalls) {
+  GuideBuilder builder(byFormula());
+  std::vector<PathVertex> vertices = floorUnderPatch(kBright, 20000, 6);
+  builder.setBounds({0, 0, 0}, {1, 1, 0});
+  for (uint32_t call = 0; call < 15; ++call) {
+    for (size_t i = 0; i < vertices.size(); ++i) vertices[i].pixel = uint32_t(vertices.size() * call + i);
+    builder.add(vertices);
+  }
+  const uint64_t before = builder.heldBytes();
+  builder.forgetFractions();
+  const auto kept = double(before - builder.heldBytes());
+  EXPECT_GT(kept, 112 * 300000 / 4.0 * 0.98);
+  EXPECT_LT(kept, 112 * 300000 / 4.0 * 1.27);
 }
 
 TEST(FractionSamples, AreAQuarterOfTheVerticesWithinBounds) {
@@ -266,18 +284,19 @@ TEST(FractionSamples, OfMoreVerticesAreThoseOfFewer) {
 
 TEST(Guide, DividesByPixelValues) {
   std::vector<PathVertex> vertices = floorUnderPatch(kBright, 20000, 7);
-  GuideBuilder builder(byFormula());
+  GuideBuilder builder(byFormula()), brighter(byFormula());
+  for (size_t i = 0; i < vertices.size(); ++i) vertices[i].pixel = i % 3;
   builder.add(vertices);
-  const std::vector<float> ones(1, 1.0f);
-  const Guide relative = builder.build(vertices, ones);
+  const std::vector<float> ones(3, 1.0f);
+  const Guide relative = builder.build(ones);
   // Powers of two, so that dividing is exact.
   const std::vector<float> values = {4, 0.5f, 64};
-  for (size_t i = 0; i < vertices.size(); ++i) vertices[i].indirect *= values[vertices[i].pixel = i % 3];
-  // Fractions are made from the vertices of all pixels, whatever their number.
-  const Guide divided = builder.build(vertices, values);
+  for (PathVertex& v : vertices) v.indirect *= values[v.pixel];
+  brighter.add(vertices);
+  const Guide divided = brighter.build(values);
   EXPECT_TRUE(sameView(relative.view(), divided.view()));
   EXPECT_EQ(relative.predictedVarianceRatio(), divided.predictedVarianceRatio());
-  EXPECT_NE(relative.predictedVarianceRatio(), builder.build(vertices).predictedVarianceRatio());
+  EXPECT_NE(relative.predictedVarianceRatio(), brighter.build().predictedVarianceRatio());
 }
 
 // Where pixels have no values the unit of radiance does not matter.
@@ -291,7 +310,7 @@ TEST(Guide, DividesByTheMeanOfAllPathsWithoutPixelValues) {
     }
     GuideBuilder builder(byFormula());
     builder.add(vertices);
-    const Guide guide = builder.build(vertices);
+    const Guide guide = builder.build();
     EXPECT_LT(bsdfFraction(guide.view(), int32_t(cellAt(guide, {0.5f, 0.5f, 0})), 1.0f), 0.5f);
     const GuideView& view = guide.view();
     decisions[unit < 1].assign(view.decisions, view.decisions + view.cellCount);
@@ -307,10 +326,10 @@ TEST(Guide, RebuiltMapsAreThoseOfAllThatWasAdded) {
   GuideBuilder builder(byFormula()), both(byFormula());
   builder.add(first);
   both.add(first);
-  const Guide before = builder.build(first);
-  builder.add(later);
-  both.add(later);
-  const Guide after = builder.rebuild(before), expected = both.build(first);
+  const Guide before = builder.build();
+  builder.addGuided(later);
+  both.addGuided(later);
+  const Guide after = builder.rebuild(before), expected = both.build();
   EXPECT_EQ(after.view().cellCount, expected.view().cellCount);
   for (float x = 0.05f; x < 1; x += 0.3f) {
     const Float3 position{x, 0.5f, 0};
@@ -330,8 +349,8 @@ TEST(Guide, RebuiltCellsThatAreNewHaveTheirParentsFractions) {
   for (PathVertex& v : later) v.position.x += 0.9f;  // some where nothing was, some in new parents
   GuideBuilder builder(byFormula());
   builder.add(first);
-  const Guide before = builder.build(first);
-  builder.add(later);
+  const Guide before = builder.build();
+  builder.addGuided(later);
   const Guide after = builder.rebuild(before);
   EXPECT_GT(after.view().cellCount, before.view().cellCount);
   const uint32_t parent = cellAt(before, {1.03f, 0.5f, 0}), cell = cellAt(after, {1.03f, 0.5f, 0});
@@ -345,7 +364,7 @@ TEST(Guide, FindsManyAsItFindsEach) {
   const std::vector<PathVertex> vertices = floorUnderPatch(kBright, 2000, 4);
   GuideBuilder builder(byFormula());
   builder.add(vertices);
-  const Guide guide = builder.build(vertices);
+  const Guide guide = builder.build();
   std::vector<Place> places = {{{0.5f, 0.5f, 40}, {0, 0, -1}},
                                {{NAN, 0, 0}, {0, 0, 1}}};  // nothing was seen there
   for (const PathVertex& v : vertices) places.push_back({v.position, v.normal});

@@ -46,7 +46,7 @@ TEST(NumberTypes, MapsAndDecisions) {
   GuideBuilder builder(options);
   const std::vector<PathVertex> vertices = floorUnderPatch(kBright, 20000, 7);
   builder.add(vertices);
-  const Guide guide = builder.build(vertices);
+  const Guide guide = builder.build();
   const GuideView view = guide.view();
   std::mt19937 engine(2);
   std::uniform_real_distribution<float> uniform(0, 1);

@@ -111,9 +111,9 @@ TEST(VertexCounts, EachReasonIsCountedByBuilders) {
     EXPECT_EQ(counts.*defect.counted, 3u) << "defect " << i;
     // By both ways of adding.
     std::vector<VertexSamples> samples(2);
-    samples[0] = builder.take(ArrayView<const PathVertex>(vertices).subview(0, 3));
-    samples[1] = builder.take(ArrayView<const PathVertex>(vertices).subview(3, 7));
-    builder.add(samples);
+    samples[0] = builder.takeGuided(ArrayView<const PathVertex>(vertices).subview(0, 3));
+    samples[1] = builder.takeGuided(ArrayView<const PathVertex>(vertices).subview(3, 7));
+    builder.addToCells(samples);
     EXPECT_EQ(builder.vertexCounts().accepted, 14u) << "defect " << i;
     EXPECT_EQ(refusedVertices(builder.vertexCounts()), 6u) << "defect " << i;
     EXPECT_EQ(builder.vertexCounts().*defect.counted, 6u) << "defect " << i;
@@ -150,7 +150,7 @@ TEST(VertexCounts, RefusedVerticesTeachNothing) {
   std::vector<PathVertex> vertices = floorUnderPatch(kBright, 5000, 1);
   GuideBuilder without, with;
   without.add(vertices);
-  const Guide expected = without.build(vertices);
+  const Guide expected = without.build();
   // All have a place and a cell, so that nothing but their defects can keep them out.
   with.add(vertices);
   std::vector<PathVertex> refused;
@@ -161,9 +161,9 @@ TEST(VertexCounts, RefusedVerticesTeachNothing) {
     // (HoldsWhatCoatsMirror).
     if (refused.back().discrete) refused.back().guidableProbability = 0;
   }
-  with.add(refused);
+  with.addGuided(refused);
   EXPECT_EQ(refusedVertices(with.vertexCounts()), refused.size());
-  EXPECT_TRUE(sameGuide(with.build(vertices), expected));
+  EXPECT_TRUE(sameGuide(with.build(), expected));
 }
 
 TEST(VertexCounts, FramesCountWhatThePassDidNotAskFor) {
@@ -252,8 +252,8 @@ TEST(Fallbacks, StandInForUnknownContributions) {
       GuideBuilder builder(options);
       builder.add(vertices);
       EXPECT_EQ(builder.vertexCounts().accepted, vertices.size());
-      expectFallbacks(builder.build(vertices), kFallbackBsdfFraction);
-      expectFallbacks(builder.build(vertices, std::vector<float>{1}), 0.5f);
+      expectFallbacks(builder.build(), kFallbackBsdfFraction);
+      expectFallbacks(builder.build(std::vector<float>{1}), 0.5f);
     }
 }
 
@@ -270,7 +270,7 @@ TEST(Fallbacks, AreThoseOfVerticesWithNothingButWhatIsRequired) {
   GuideBuilder builder, all;
   builder.add(vertices);
   all.add(known);
-  const Guide guide = builder.build(vertices), expected = all.build(known);
+  const Guide guide = builder.build(), expected = all.build();
   expectFallbacks(guide, 0.5f);
   // Nothing stands in for ended paths, nothing is known of lights; maps are what they are with all that is
   // optional.
@@ -290,7 +290,7 @@ TEST(Fallbacks, GiveWayToAFixedFraction) {
   options.fixedBsdfFraction = 0.3f;
   GuideBuilder builder(options);
   builder.add(vertices);
-  expectFallbacks(builder.build(vertices), 0.3f);
+  expectFallbacks(builder.build(), 0.3f);
 }
 
 TEST(Fallbacks, AreNotAskedWhereSomeVerticesKnow) {
@@ -298,7 +298,7 @@ TEST(Fallbacks, AreNotAskedWhereSomeVerticesKnow) {
   for (size_t i = 0; i < vertices.size(); i += 2) vertices[i].light = kUnknown;
   GuideBuilder builder(withFormulas());
   builder.add(vertices);
-  const Guide guide = builder.build(vertices);
+  const Guide guide = builder.build();
   const GuideView view = guide.view();
   const uint32_t cell = findCell(view, {{0.5f, 0.5f, 0}, {0, 0, 1}});
   ASSERT_NE(cell, kNoCell);
@@ -316,7 +316,7 @@ TEST(Fallbacks, StandInForUnknownDensitiesAndCosines) {
   GuideBuilder one, other;
   one.add(known);
   other.add(unknown);
-  EXPECT_TRUE(sameGuide(one.build(known), other.build(unknown)));
+  EXPECT_TRUE(sameGuide(one.build(), other.build()));
 }
 
 }  // namespace

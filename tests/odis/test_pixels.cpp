@@ -239,7 +239,7 @@ class PixelGuide : public ::testing::Test {
     GuideBuilder builder(m_options);
     const std::vector<PathVertex> vertices = manyVertices();
     builder.add(vertices);
-    m_cells = builder.build(vertices);
+    m_cells = builder.build();
   }
   GuideOptions m_options;
   Guide m_cells;

@@ -250,7 +250,7 @@ TEST(PlaceGrid, GuidesKnowTheFloorAndWhatLiesFarOut) {
   const auto build = [&](ArrayView<const PathVertex> vertices) {
     GuideBuilder builder(options);
     builder.add(vertices);
-    return builder.build(vertices);
+    return builder.build();
   };
   const Guide without = build(floor), with = build(all);
   const auto densityAt = [](const Guide& guide, const Float3& position, const Float3& wi) {
@@ -282,7 +282,7 @@ TEST(PlaceGrid, FewVerticesFarOutHaveTheMapsOfCoarserCells) {
   options.model = Model();
   GuideBuilder builder(options);
   builder.add(vertices);
-  const Guide guide = builder.build(vertices);
+  const Guide guide = builder.build();
   const GuideView view = guide.view();
   const auto hasParentsMap = [&](const Float3& position) {
     const uint64_t key = CellGrid(view.grid).key(position, {0, 0, 1}, 0);

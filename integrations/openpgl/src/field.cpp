@@ -51,11 +51,11 @@ void Field::update(SampleStorage& samples) {
   // Until the first update all directions are the BSDF's, unless a guide was loaded.
   const bool first = !m_builder, loaded = first && m_guide;
   if (first) m_builder.emplace();
-  m_builder->add(vertices);
+  first ? m_builder->add(vertices) : m_builder->addGuided(vertices);
   m_vertices += vertices.size();
   if (first) {
     m_firstVertices = m_vertices;
-    show(m_builder->build(vertices));
+    show(m_builder->build());
     if (!loaded) judge(vertices);
   } else if (m_vertices >= kGrowth * m_builtFrom) {
     show(m_builder->rebuild(*m_guide));

@@ -14,30 +14,15 @@ namespace {
 std::vector<ChosenOption> chosenOptions(const core::FrameOptions& saved) {
   const core::FrameOptions usual;
   std::vector<ChosenOption> chosen;
-  const auto note = [&](const std::string& name, const auto& value, const auto& usualValue) {
-    if (value != usualValue) chosen.push_back({name, fmt::format("{}", value)});
-  };
-  note("samplesPerPixel", saved.samplesPerPixel, usual.samplesPerPixel);
-  note("mostSamplesPerPixel", saved.mostSamplesPerPixel, usual.mostSamplesPerPixel);
-  note("seed", saved.seed, usual.seed);
-  note("keepPixelMeans", saved.keepPixelMeans, usual.keepPixelMeans);
-  note("tileOffsetX", saved.tileOffsetX, usual.tileOffsetX);
-  note("tileOffsetY", saved.tileOffsetY, usual.tileOffsetY);
-  note("lightGroups", saved.guide.lightGroups, usual.guide.lightGroups);
-  note("lightParts", saved.guide.lightParts.size(), usual.guide.lightParts.size());
-  const std::string settings = core::settingsText(saved), usualSettings = core::settingsText(usual);
-  for (const OdisSetting& setting : core::allSettings())
-    note(setting.name, core::readSetting(settings, setting.name),
-         core::readSetting(usualSettings, setting.name));
+  noteOption(chosen, "samplesPerPixel", saved.samplesPerPixel, usual.samplesPerPixel);
+  noteOption(chosen, "mostSamplesPerPixel", saved.mostSamplesPerPixel, usual.mostSamplesPerPixel);
+  noteOption(chosen, "seed", saved.seed, usual.seed);
+  noteOption(chosen, "keepPixelMeans", saved.keepPixelMeans, usual.keepPixelMeans);
+  noteOption(chosen, "tileOffsetX", saved.tileOffsetX, usual.tileOffsetX);
+  noteOption(chosen, "tileOffsetY", saved.tileOffsetY, usual.tileOffsetY);
+  noteGuideOptions(chosen, saved.guide);
+  noteSettings(chosen, core::settingsText(saved));
   return chosen;
-}
-
-std::string modelText(uint64_t id) {
-  if (id == 0) return "formulas";
-  const auto part = [&](uint64_t network) { return (id & network) != 0 ? "a network" : "a formula"; };
-  return fmt::format("directions by {}, lights by {}{}, weights {:08x}", part(core::kDirectionNetwork),
-                     part(core::kLightNetwork),
-                     (id & core::kPixelNetwork) != 0 ? ", pixels by a network" : "", uint32_t(id));
 }
 
 // Where a frame is between its first sample and its last.
@@ -64,18 +49,6 @@ std::optional<VertexSummary> keptVertices(const core::VertexTiles& tiles) {
 std::optional<VertexCounts> countsTaken(const std::vector<core::VertexSamples>& tiles) {
   if (core::vertexCount(tiles) == 0) return std::nullopt;
   return core::countsOf(tiles);
-}
-
-BuilderSummary summarizeBuilder(const core::Archive& file) {
-  BuilderSummary result;
-  for (const uint64_t key : file.get<uint64_t>("cells.keys")) {
-    file.require(CellGrid::levelOf(key) < kCellLevels, "cells.keys: are damaged");
-    ++result.cells[size_t(CellGrid::levelOf(key))];
-  }
-  result.counts = file.value<VertexCounts>("cells.counts");
-  result.coarsening = file.value<int32_t>("cells.coarsening");
-  result.samplesLeftOut = file.value<uint64_t>("cells.leftOut");
-  return result;
 }
 
 void addImage(FrameSummary& result, const core::SavedFrame& saved) {
@@ -121,7 +94,6 @@ FrameSummary summarizeFrame(const core::SavedFrame& saved, const core::Archive& 
   result.vertexCounts = saved.vertexCounts;
   result.vertexCounts.outsideFrame += saved.position.outsideFrame;
   result.pilotVertices = keptVertices(saved.pilotVertices);
-  result.unguidedVertices = countsTaken(saved.unguided);
   if (saved.position.builder) result.builder = summarizeBuilder(file);
   result.hostBytes = saved.hostData.size();
   return result;

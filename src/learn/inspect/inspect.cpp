@@ -116,7 +116,7 @@ class Inspector {
     const auto build = [&](const std::string& name, const std::string& more) {
       GuideBuilder builder(GuideOptions(m_pilot.guideOptions).set("cached=off" + more));
       builder.add(m_pilot.vertices);
-      m_guides.push_back({name, builder.build(m_pilot.vertices, m_pilot.pixelValues)});
+      m_guides.push_back({name, builder.build(m_pilot.pixelValues)});
     };
     build("formula", " guide=histogram");
     const std::optional<Model>& model = m_options.model;

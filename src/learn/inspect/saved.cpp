@@ -78,13 +78,15 @@ SavedInspection inspectSaved(const core::Archive& file) {
   result.kind = file.kind();
   if (result.kind == "guide") {
     result.guide = summarizeGuide(core::Guide::load(file));
+  } else if (result.kind == "builder") {
+    result.builder = summarizeBuilder(file);
   } else if (result.kind == "vertices") {
     const std::vector<PathVertex> vertices = core::loadVertices(file, "vertices");
     const ArrayView<const PathVertex> all = vertices;
     result.vertices = summarizeVertices(VertexParts(&all, 1));
   } else {
     file.require(result.kind == "frame",
-                 "found a saved \"" + result.kind + "\", expected a guide, vertices or a frame");
+                 "found a saved \"" + result.kind + "\", expected a guide, a builder, vertices or a frame");
     const core::SavedFrame frame(file);
     result.frame = summarizeFrame(frame, file);
     result.guide = summarizeGuide(frame.guide);

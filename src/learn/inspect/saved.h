@@ -1,4 +1,5 @@
-// What a host saved with the library, looked into without the model that it had: guides, vertices, frames.
+// What a host saved with the library, looked into without the model that it had: guides, builders, vertices,
+// frames.
 #pragma once
 
 #include <array>
@@ -62,12 +63,21 @@ struct ChosenOption {
   std::string name, value;
 };
 
-// The builder of a frame's guide.
-struct BuilderSummary {
+// What one builder has gathered.
+struct PartSummary {
+  uint64_t id = 0;
   std::array<uint32_t, kCellLevels> cells{};
   VertexCounts counts;
+  uint64_t unguided = 0;        // vertices that BSDF sampling fractions are chosen from
   int coarsening = 1;           // how many times larger cells are than was asked for, to save memory
   uint64_t samplesLeftOut = 0;  // for the same reason
+};
+
+struct BuilderSummary {
+  std::vector<ChosenOption> options;
+  std::string model;  // in words
+  uint64_t own = 0;   // id of what is added to it
+  std::vector<PartSummary> parts;
 };
 
 struct FrameSummary {
@@ -82,19 +92,18 @@ struct FrameSummary {
   uint64_t notFinite = 0, guides = 0;  // samples that counted as black; how often a guide was built
   VertexCounts vertexCounts;           // taken and refused by the builder, when the guide was built last
   std::optional<VertexSummary> pilotVertices;  // if they are kept
-  // How many vertices came in the pass under way, and in the oracle's passes that BSDF sampling fractions
-  // will be chosen from; how many of them can't be used.
-  std::optional<VertexCounts> passVertices, unguidedVertices;
+  std::optional<VertexCounts> passVertices;    // that came in the pass under way
   std::optional<BuilderSummary> builder;
   uint64_t hostBytes = 0;          // data that the host added
   std::vector<render::Rgb> image;  // so far, the pilot weighed as the frame does
 };
 
-// Of a guide `guide`, of vertices `vertices`, of a frame `frame` and its guide.
+// Of a guide `guide`, of a builder `builder`, of vertices `vertices`, of a frame `frame` and its guide.
 struct SavedInspection {
   std::string kind;
   std::optional<GuideSummary> guide;
   std::optional<CellSummary> cell;
+  std::optional<BuilderSummary> builder;
   std::optional<VertexSummary> vertices;
   std::optional<FrameSummary> frame;
 };

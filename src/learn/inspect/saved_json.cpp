@@ -76,21 +76,39 @@ Json jsonVertices(const VertexSummary& v) {
             {"radiance", jsonQuantiles(v.radiance)},
             {"pdf", jsonQuantiles(v.pdf)}}}};
 }
-Json jsonFrame(const FrameSummary& f) {
+Json jsonOptions(const std::vector<ChosenOption>& chosen) {
   Json options = Json::object();
-  for (const ChosenOption& option : f.options) options[option.name] = option.value;
+  for (const ChosenOption& option : chosen) options[option.name] = option.value;
+  return options;
+}
+
+Json jsonParts(const BuilderSummary& builder) {
+  Json parts = Json::array();
+  for (const PartSummary& part : builder.parts)
+    parts.push_back({{"id", part.id},
+                     {"cells", part.cells},
+                     {"counts", jsonCounts(part.counts)},
+                     {"unguided", part.unguided},
+                     {"coarsening", part.coarsening},
+                     {"samplesLeftOut", part.samplesLeftOut}});
+  return parts;
+}
+Json jsonBuilder(const BuilderSummary& builder) {
+  return {{"model", builder.model},
+          {"options", jsonOptions(builder.options)},
+          {"own", builder.own},
+          {"parts", jsonParts(builder)}};
+}
+
+Json jsonFrame(const FrameSummary& f) {
   Json builder;
-  if (f.builder)
-    builder = {{"cells", f.builder->cells},
-               {"counts", jsonCounts(f.builder->counts)},
-               {"coarsening", f.builder->coarsening},
-               {"samplesLeftOut", f.builder->samplesLeftOut}};
+  if (f.builder) builder = jsonParts(*f.builder);
   return {{"size", {f.width, f.height}},
           {"state", f.state},
           {"tiles", f.tiles},
           {"tilesDone", f.tilesDone},
           {"model", f.model},
-          {"options", options},
+          {"options", jsonOptions(f.options)},
           {"samples", f.samples},
           {"fewestOfAPixel", f.fewest},
           {"mostOfAPixel", f.most},
@@ -100,7 +118,6 @@ Json jsonFrame(const FrameSummary& f) {
           {"guidesBuilt", f.guides},
           {"vertexCounts", jsonCounts(f.vertexCounts)},
           {"pilotVertices", f.pilotVertices ? jsonVertices(*f.pilotVertices) : Json()},
-          {"unguidedVertices", f.unguidedVertices ? jsonCounts(*f.unguidedVertices) : Json()},
           {"passVertices", f.passVertices ? jsonCounts(*f.passVertices) : Json()},
           {"builder", builder},
           {"hostBytes", f.hostBytes}};
@@ -113,6 +130,7 @@ Json toJson(const SavedInspection& in) {
   if (in.frame) result["frame"] = jsonFrame(*in.frame);
   if (in.guide) result["guide"] = jsonGuide(*in.guide);
   if (in.cell) result["cell"] = jsonCell(*in.cell);
+  if (in.builder) result["builder"] = jsonBuilder(*in.builder);
   if (in.vertices) result["vertices"] = jsonVertices(*in.vertices);
   return result;
 }

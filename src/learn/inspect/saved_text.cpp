@@ -101,6 +101,26 @@ std::string verticesText(const VertexSummary& v) {
   return out + quantileRow("density", v.pdf);
 }
 
+std::string partsText(const BuilderSummary& builder) {
+  std::string out;
+  for (const PartSummary& part : builder.parts) {
+    if (builder.parts.size() > 1) out += fact("part", std::to_string(part.id));
+    out += fact("cells of the builder", levelsText(part.cells));
+    out += fact("its vertices", countsText(part.counts));
+    if (part.coarsening > 1 || part.samplesLeftOut > 0)
+      out += fact("to save memory", fmt::format("cells {} times as wide, {} samples left out",
+                                                part.coarsening, part.samplesLeftOut));
+  }
+  return out;
+}
+
+std::string builderText(const BuilderSummary& builder) {
+  std::string out = fact("model", builder.model);
+  for (const ChosenOption& option : builder.options) out += fact("option " + option.name, option.value);
+  out += fact("what is added is part", std::to_string(builder.own));
+  return out + partsText(builder);
+}
+
 std::string frameText(const FrameSummary& f) {
   std::string out = fact("size", fmt::format("{} x {} pixels", f.width, f.height));
   out += fact("state", f.state);
@@ -122,15 +142,10 @@ std::string frameText(const FrameSummary& f) {
     out += fact("pilot's vertices",
                 fmt::format("{}: {}; {}", f.pilotVertices->count, countsText(f.pilotVertices->counts),
                             boundsWords(f.pilotVertices->bounds)));
-  if (f.unguidedVertices) out += fact("oracle's vertices", countsText(*f.unguidedVertices));
   if (f.passVertices) out += fact("vertices of the pass", countsText(*f.passVertices));
   out += fact("guides built", std::to_string(f.guides));
   if (f.builder) {
-    out += fact("cells of the builder", levelsText(f.builder->cells));
-    out += fact("its vertices", countsText(f.builder->counts));
-    if (f.builder->coarsening > 1 || f.builder->samplesLeftOut > 0)
-      out += fact("to save memory", fmt::format("cells {} times as wide, {} samples left out",
-                                                f.builder->coarsening, f.builder->samplesLeftOut));
+    out += partsText(*f.builder);
   } else if (f.guides > 0) {
     out += fact("vertices learned from", countsText(f.vertexCounts));
   }
@@ -145,6 +160,7 @@ std::string savedText(const SavedInspection& in, const std::string& title) {
   if (in.frame) out += frameText(*in.frame);
   if (in.guide) out += guideText(*in.guide);
   if (in.cell) out += cellText(*in.cell);
+  if (in.builder) out += builderText(*in.builder);
   if (in.vertices) out += verticesText(*in.vertices);
   return out;
 }

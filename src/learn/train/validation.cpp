@@ -53,8 +53,11 @@ double varianceOf(const ShardReader& shard, size_t view,
   core::GuideBuilder builder(options);
   std::vector<ArrayView<const PathVertex>> seen;
   for (size_t i = 0; i + 1 < pilots.size(); ++i) seen.emplace_back(pilots[i].vertices);
-  builder.add(seen);
-  return builder.build(pilots.back().vertices, values).predictedVarianceRatio();
+  builder.addGuided(seen);  // to the cells alone
+  const std::vector<PathVertex>& last = pilots.back().vertices;
+  core::VertexSamples judged = builder.takeUnguided(last, last.size());
+  builder.addToFractions({&judged, 1});
+  return builder.build(values).predictedVarianceRatio();
 }
 
 }  // namespace

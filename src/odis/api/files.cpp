@@ -77,6 +77,27 @@ OdisGuide odisLoadGuide(OdisContext context, const char* path) {
   });
 }
 
+bool odisSaveGuideBuilder(OdisGuideBuilder builder, const char* path) {
+  return guardedFor(builder, "odisSaveGuideBuilder", false, [&] {
+    requireArgument(path, "odisSaveGuideBuilder: path");
+    builder->requireFree("odisSaveGuideBuilder");
+    ArchiveWriter file("builder");
+    builder->builder.save(file);
+    file.write(path);
+    return true;
+  });
+}
+
+OdisGuideBuilder odisLoadGuideBuilder(OdisContext context, const char* path, OdisModel model) {
+  return guarded(context, OdisGuideBuilder(nullptr), [&] {
+    requireArgument(context, "odisLoadGuideBuilder: context");
+    requireArgument(path, "odisLoadGuideBuilder: path");
+    return new OdisGuideBuilderImpl(
+        context,
+        odis::core::GuideBuilder::load(Archive::load(path), odis::core::modelBehind(model), context->tasks));
+  });
+}
+
 bool odisSaveVertices(const OdisPathVertices* vertices, const char* path) {
   return guarded(nullptr, false, [&] {
     requireArgument(vertices, "odisSaveVertices: vertices");

@@ -10,8 +10,10 @@ OdisGuideImpl::OdisGuideImpl(OdisContext owner, odis::core::Guide content)
   memory.set(guide.bytes());
 }
 
-OdisGuideBuilderImpl::OdisGuideBuilderImpl(OdisContext owner, const odis::core::GuideOptions& options)
-    : memory(owner), builder(options, owner->tasks) {}
+OdisGuideBuilderImpl::OdisGuideBuilderImpl(OdisContext owner, odis::core::GuideBuilder content)
+    : memory(owner), builder(std::move(content)) {
+  memory.set(builder.heldBytes());
+}
 
 void OdisGuideBuilderImpl::takeStock() {
   memory.set(builder.heldBytes());
@@ -31,8 +33,8 @@ void odisInitGuideOptions(OdisGuideOptions* options, size_t size) {
 OdisGuideBuilder odisNewGuideBuilder(OdisContext context, const OdisGuideOptions* options) {
   return odis::core::guarded(context, OdisGuideBuilder(nullptr), [&] {
     odis::core::requireArgument(context, "odisNewGuideBuilder: context");
-    return new OdisGuideBuilderImpl(context,
-                                    options ? odis::core::optionsOf(*options) : odis::core::GuideOptions());
+    const auto given = options ? odis::core::optionsOf(*options) : odis::core::GuideOptions();
+    return new OdisGuideBuilderImpl(context, odis::core::GuideBuilder(given, context->tasks));
   });
 }
 void odisRetainGuideBuilder(OdisGuideBuilder builder) {
@@ -42,7 +44,7 @@ void odisReleaseGuideBuilder(OdisGuideBuilder builder) {
   if (builder) builder->release();
 }
 
-bool odisAddVertices(OdisGuideBuilder builder, const OdisPathVertices* vertices) {
+bool odisAddVertices(OdisGuideBuilder builder, const OdisPathVertices* vertices, bool guided) {
   return guardedFor(builder, "odisAddVertices", false, [&] {
     odis::core::requireArgument(vertices, "odisAddVertices: vertices");
     builder->requireFree("odisAddVertices");
@@ -50,7 +52,8 @@ bool odisAddVertices(OdisGuideBuilder builder, const OdisPathVertices* vertices)
     OdisContextImpl& context = builder->memory.context();
     if (context.options.memoryLimit > 0)
       builder->builder.limitBytes(context.memoryLeft() + builder->builder.heldBytes(), given.size());
-    builder->builder.add(given.view());
+    const odis::ArrayView<const odis::PathVertex> all = given.view();
+    guided ? builder->builder.addGuided(all) : builder->builder.add(all);
     builder->memory.set(builder->builder.bytes());
     builder->takeStock();
     builder->refusals.report(context, builder->builder.vertexCounts());
@@ -73,15 +76,12 @@ OdisGuide newBuiltGuide(OdisGuideBuilder builder, Guide guide) {
 
 }  // namespace odis::core
 
-OdisGuide odisBuildGuide(OdisGuideBuilder builder, const OdisPathVertices* vertices, const float* pixelValues,
-                         size_t pixelCount) {
+OdisGuide odisBuildGuide(OdisGuideBuilder builder, const float* pixelValues, size_t pixelCount) {
   return guardedFor(builder, "odisBuildGuide", OdisGuide(nullptr), [&] {
-    odis::core::requireArgument(vertices, "odisBuildGuide: vertices");
     builder->requireFree("odisBuildGuide");
     if (pixelCount > 0) odis::core::requireArgument(pixelValues, "odisBuildGuide: pixelValues");
-    HostVertices given(vertices);
-    return odis::core::newBuiltGuide(
-        builder, builder->builder.build(given.view(), {pixelValues, pixelValues ? pixelCount : 0}));
+    return odis::core::newBuiltGuide(builder,
+                                     builder->builder.build({pixelValues, pixelValues ? pixelCount : 0}));
   });
 }
 
@@ -118,6 +118,33 @@ bool odisSetBounds(OdisGuideBuilder builder, const OdisFloat3* lower, const Odis
     builder->requireFree("odisSetBounds");
     builder->builder.setBounds(*lower, *upper);
     builder->takeStock();
+    return true;
+  });
+}
+
+bool odisSetPartId(OdisGuideBuilder builder, uint64_t id) {
+  return guardedFor(builder, "odisSetPartId", false, [&] {
+    builder->requireFree("odisSetPartId");
+    builder->builder.setPartId(id);
+    return true;
+  });
+}
+
+bool odisMergeGuideBuilders(OdisGuideBuilder into, const OdisGuideBuilder* builders, size_t count) {
+  return guardedFor(into, "odisMergeGuideBuilders", false, [&] {
+    if (count > 0) odis::core::requireArgument(builders, "odisMergeGuideBuilders: builders");
+    into->requireFree("odisMergeGuideBuilders");
+    std::vector<const odis::core::GuideBuilder*> others;
+    uint64_t bytes = 0;
+    for (size_t i = 0; i < count; ++i) {
+      odis::core::requireArgument(builders[i], "odisMergeGuideBuilders: builders");
+      builders[i]->requireFree("odisMergeGuideBuilders");
+      others.push_back(&builders[i]->builder);
+      bytes += builders[i]->builder.heldBytes();
+    }
+    if (bytes > into->memory.context().memoryLeft()) throw std::bad_alloc();
+    into->builder.merge(others);
+    into->takeStock();
     return true;
   });
 }

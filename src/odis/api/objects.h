@@ -132,7 +132,7 @@ class MemoryWarnings {
 }  // namespace odis::core
 
 struct OdisGuideBuilderImpl : odis::core::Object {
-  OdisGuideBuilderImpl(OdisContext owner, const odis::core::GuideOptions& options);
+  OdisGuideBuilderImpl(OdisContext owner, odis::core::GuideBuilder content);
 
   // Notes what the builder holds after it has learned.
   void takeStock();

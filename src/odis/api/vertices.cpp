@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "odis/api/guard.h"
+#include "odis/record/vertex_fields.h"
 
 namespace odis::core {
 
@@ -23,46 +24,10 @@ struct FieldPair {
 template <class Type>
 constexpr bool kIsFloat = std::is_same_v<Type, float> || std::is_same_v<Type, Float3>;
 
-#define ODIS_FIELD(NAME)                                                                          \
-  {                                                                                               \
-#NAME, &OdisPathVertices::NAME, offsetof(OdisPathVertex, NAME), sizeof(OdisPathVertex::NAME), \
-        kIsFloat < decltype(OdisPathVertex::NAME)>                                                \
-  }
-constexpr FieldPair kFields[] = {
-    ODIS_FIELD(position),
-    ODIS_FIELD(normal),
-    ODIS_FIELD(wo),
-    ODIS_FIELD(wi),
-    ODIS_FIELD(radiance),
-    ODIS_FIELD(weight),
-    ODIS_FIELD(direct),
-    ODIS_FIELD(pdf),
-    ODIS_FIELD(survival),
-    ODIS_FIELD(guidablePdf),
-    ODIS_FIELD(guidableProbability),
-    ODIS_FIELD(distance),
-    ODIS_FIELD(roughness),
-    ODIS_FIELD(cosine),
-    ODIS_FIELD(indirect),
-    ODIS_FIELD(emission),
-    ODIS_FIELD(emissionLightPdf),
-    ODIS_FIELD(light),
-    ODIS_FIELD(lightDirection),
-    ODIS_FIELD(lightPdf),
-    ODIS_FIELD(lightBsdfPdf),
-    ODIS_FIELD(lightGuidablePdf),
-    ODIS_FIELD(raysAfter),
-    ODIS_FIELD(lightGroupProbability),
-    ODIS_FIELD(lightGroup),
-    ODIS_FIELD(lightableGroups),
-    ODIS_FIELD(sampleWeight),
-    ODIS_FIELD(time),
-    ODIS_FIELD(pixel),
-    ODIS_FIELD(sample),
-    ODIS_FIELD(depth),
-    ODIS_FIELD(discrete),
-    ODIS_FIELD(scattersBothSides),
-};
+#define ODIS_FIELD(NAME)                                                                         \
+  {#NAME, &OdisPathVertices::NAME, offsetof(OdisPathVertex, NAME), sizeof(OdisPathVertex::NAME), \
+   kIsFloat<decltype(OdisPathVertex::NAME)>},
+constexpr FieldPair kFields[] = {ODIS_VERTEX_FIELDS(ODIS_FIELD)};
 #undef ODIS_FIELD
 
 float halfToFloat(uint16_t half) {

@@ -1,6 +1,8 @@
-// From frame to frame: what cells have seen fades, moves to other cells, or is forgotten.
+// What cells have seen goes into other cells: it fades or moves from frame to frame, is added to that of
+// another store, or is forgotten.
 #include "odis/cells/statistics.h"
 #include "odis/cells/surroundings.h"
+#include "odis/record/vertex_check.h"
 
 namespace odis::core {
 
@@ -36,13 +38,14 @@ void addField(LightField& sum, const LightField& field) {
 
 }  // namespace
 
+CellStore::CellStore(const CellStore&) = default;
+CellStore::CellStore(CellStore&&) noexcept = default;
 CellStore& CellStore::operator=(CellStore&&) noexcept = default;
 
 void CellStore::forget() {
   CellStore empty(m_clamp, m_looksAround, m_tasks);
   empty.m_mostCells = m_mostCells;
   if (m_caches) empty.cache(m_depthShares.maxDepth());
-  empty.m_numbering = m_numbering + 1;
   *this = std::move(empty);
 }
 
@@ -62,46 +65,50 @@ void CellStore::carryOver(const CellGrid& grid, double weight) {
   carried.m_mostCells = m_mostCells;
   carried.m_caches = m_caches;
   carried.m_depthShares = m_depthShares;
-  carried.m_coarsening = m_coarsening;
-  carried.m_samplesLeftOut = m_samplesLeftOut;
-  carried.m_vertexCounts = m_vertexCounts;
-  carried.m_numbering = m_numbering + 1;
-  const bool stays = grid == m_grid;
-  std::vector<uint32_t> newCell(m_cells.size(), kNoCell);  // of each cell of the finest level
-  for (size_t c = 0; c < m_cells.size(); ++c) {
-    const CellStatistics& cell = m_cells[c];
-    if (cell.level > 0 || cell.count * weight < kLeastSamples) continue;
-    newCell[c] = carried.insert(stays ? m_links[c].key : grid.key(cell.centroid, cell.normal, 0));
-  }
-  carried.addNewCells();
-  for (size_t c = 0; c < m_cells.size(); ++c)
-    if (newCell[c] != kNoCell) addTo(carried.m_cells[newCell[c]], weighted(m_cells[c], weight));
-  if (m_looksAround) carryFields(carried, newCell, weight);
+  carried.add(*this, weight);
   *this = std::move(carried);
 }
 
+void CellStore::add(const CellStore& other, double weight) {
+  m_coarsening = std::max(m_coarsening, other.m_coarsening);
+  m_samplesLeftOut += other.m_samplesLeftOut;
+  addCounts(m_vertexCounts, other.m_vertexCounts);
+  if (m_depthShares.areUnknown()) m_depthShares.set(other.m_depthShares.shares());
+  const bool sameGrid = other.m_grid == m_grid;
+  std::vector<uint32_t> newCell(other.m_cells.size(), kNoCell);  // of each cell of the finest level
+  for (size_t c = 0; c < other.m_cells.size(); ++c) {
+    const CellStatistics& cell = other.m_cells[c];
+    if (cell.level > 0 || cell.count * weight < kLeastSamples) continue;
+    newCell[c] = insert(sameGrid ? other.m_links[c].key : m_grid.key(cell.centroid, cell.normal, 0));
+  }
+  addNewCells();
+  for (size_t c = 0; c < other.m_cells.size(); ++c)
+    if (newCell[c] != kNoCell) addTo(m_cells[newCell[c]], weighted(other.m_cells[c], weight));
+  if (m_looksAround) addFields(other, newCell, weight);
+}
+
 // The light field of siblings goes where the one goes that has seen most.
-void CellStore::carryFields(CellStore& carried, std::span<const uint32_t> newCell, double weight) const {
-  for (size_t c = 0; c < m_cells.size(); ++c) {
-    if (m_fieldOf[c] == kNoCell) continue;
+void CellStore::addFields(const CellStore& other, std::span<const uint32_t> newCell, double weight) {
+  for (size_t c = 0; c < other.m_cells.size(); ++c) {
+    if (other.m_fieldOf[c] == kNoCell) continue;
     uint32_t heir = kNoCell;
     double most = 0;
-    for (const uint32_t child : childrenOf(c))
-      if (newCell[child] != kNoCell && m_cells[child].count > most) {
+    for (const uint32_t child : other.childrenOf(c))
+      if (newCell[child] != kNoCell && other.m_cells[child].count > most) {
         heir = newCell[child];
-        most = m_cells[child].count;
+        most = other.m_cells[child].count;
       }
     if (heir == kNoCell) continue;
-    const uint32_t parent = carried.m_links[heir].parent;
-    const LightField field = weighted(m_fields[m_fieldOf[c]], weight);
-    LightField& sum = carried.m_fields[carried.m_fieldOf[parent]];
-    if (carried.m_grid == m_grid) {
+    const uint32_t parent = m_links[heir].parent;
+    const LightField field = weighted(other.m_fields[other.m_fieldOf[c]], weight);
+    LightField& sum = m_fields[m_fieldOf[parent]];
+    if (m_grid == other.m_grid) {
       addField(sum, field);
       continue;
     }
     LightPoints points;
-    points.add(field, m_grid.middle(m_links[c].key));
-    points.addTo(sum, 0, carried.m_grid.middle(carried.m_links[parent].key));
+    points.add(field, other.m_grid.middle(other.m_links[c].key));
+    points.addTo(sum, 0, m_grid.middle(m_links[parent].key));
   }
 }
 

@@ -7,6 +7,7 @@
 #include "odis/cell_grid.h"
 #include "odis/cells/batches.h"
 #include "odis/cells/depth_shares.h"
+#include "odis/files/fields.h"
 #include "odis/guide_view.h"
 #include "odis/path_vertex.h"
 #include "odis/record/vertex_check.h"
@@ -61,6 +62,30 @@ struct BatchSamples {
            cells.capacity() * sizeof(Cell);
   }
 };
+
+template <class Body>
+constexpr void forEachField(FieldsOf<CellSample>, const Body& body) {
+  body("position", &CellSample::position);
+  body("normal", &CellSample::normal);
+  body("wi", &CellSample::wi);
+  body("distance", &CellSample::distance);
+  body("value", &CellSample::value);
+  body("outgoing", &CellSample::outgoing);
+  body("rays", &CellSample::rays);
+  body("lightSquare", &CellSample::lightSquare);
+  body("lightGroup", &CellSample::lightGroup);
+  body("half", &CellSample::half);
+  body("depth", &CellSample::depth);
+}
+static_assert(listedBytes<CellSample>() == sizeof(CellSample));
+
+template <class Body>
+constexpr void forEachField(FieldsOf<BatchSamples::Cell>, const Body& body) {
+  body("key", &BatchSamples::Cell::key);
+  body("count", &BatchSamples::Cell::count);
+  body("value", &BatchSamples::Cell::value);
+}
+
 // Takes the samples alone.
 BatchSamples takeSamples(const VertexBatch& batch, const VertexRules& rules = {});
 // Finds their cells.

@@ -2,15 +2,13 @@
 #include "odis/cells/saved_grid.h"
 #include "odis/cells/statistics.h"
 #include "odis/cells/surroundings.h"
-#include "odis/files/archive.h"
+#include "odis/record/vertex_fields.h"
 
 namespace odis::core {
 
-namespace {
-
-// Calls body(name, member) for all that a cell of the finest level has gathered.
+// What a cell of the finest level has gathered, but for what returns.
 template <class Body>
-void forEachColumn(const Body& body) {
+constexpr void forEachField(FieldsOf<CellStatistics>, const Body& body) {
   body("count", &CellStatistics::count);
   body("lightCount", &CellStatistics::lightCount);
   body("sum", &CellStatistics::sum);
@@ -18,68 +16,83 @@ void forEachColumn(const Body& body) {
   body("outgoing", &CellStatistics::outgoing);
   body("outgoingSquares", &CellStatistics::outgoingSquares);
   body("rays", &CellStatistics::rays);
-  body("halves", &CellStatistics::halves);
   body("centroid", &CellStatistics::centroid);
   body("normal", &CellStatistics::normal);
   body("lightSquares", &CellStatistics::lightSquares);
   body("histogram", &CellStatistics::histogram);
 }
 
-}  // namespace
+template <class Body>
+constexpr void forEachField(FieldsOf<ReturnedSums>, const Body& body) {
+  body("count", &ReturnedSums::count);
+  body("outgoing", &ReturnedSums::outgoing);
+  body("squares", &ReturnedSums::squares);
+  body("passedOn", &ReturnedSums::passedOn);
+}
+static_assert(listedBytes<ReturnedSums>() == sizeof(ReturnedSums));
+
+template <class Body>
+constexpr void forEachField(FieldsOf<LightField>, const Body& body) {
+  body("value", &LightField::value);
+  body("inverse", &LightField::inverse);
+}
+static_assert(listedBytes<LightField>() == sizeof(LightField));
 
 // Coarser levels are sums, which rollUp() forms anew.
-void CellStore::save(ArchiveWriter& file) const {
-  file.addValue("cells.placed", uint8_t(m_placed));
-  saveGrid(file, "cells.grid", m_grid.flat());
-  file.addValue("cells.coarsening", int32_t(m_coarsening));
-  file.addValue("cells.leftOut", m_samplesLeftOut);
-  file.addValue("cells.counts", m_vertexCounts);
-  file.add("cells.keys", keys());
-  file.add("cells.depthShares", m_depthShares.shares());
-  forEachColumn([&]<class T>(const std::string& name, T CellStatistics::*member) {
-    std::vector<T> column;
-    for (const CellStatistics& cell : m_cells)
-      if (cell.level == 0) column.push_back(cell.*member);
-    file.add("cells." + name, column);
-  });
-  std::vector<Histogram> fields;
-  for (const LightField& field : m_fields) {
-    fields.push_back(field.value);
-    fields.push_back(field.inverse);
-  }
-  file.add("cells.fields", fields);
+void CellStore::save(ArchiveWriter& file, const std::string& name) const {
+  file.addValue(name + ".placed", uint8_t(m_placed));
+  saveGrid(file, name + ".grid", m_grid.flat());
+  file.addValue(name + ".coarsening", int32_t(m_coarsening));
+  file.addValue(name + ".leftOut", m_samplesLeftOut);
+  saveFields(file, name + ".counts", m_vertexCounts);
+  file.add(name + ".keys", keys());
+  file.add(name + ".depthShares", m_depthShares.shares());
+  std::vector<const CellStatistics*> finest;
+  for (const CellStatistics& cell : m_cells)
+    if (cell.level == 0) finest.push_back(&cell);
+  saveFieldsAt<CellStatistics>(file, name + ".finest", finest.size(),
+                               [&](size_t i) -> const CellStatistics& { return *finest[i]; });
+  // Of both halves of the paths, one after the other.
+  saveFieldsAt<ReturnedSums>(file, name + ".returned", m_caches ? 2 * finest.size() : 0,
+                             [&](size_t i) -> const ReturnedSums& { return finest[i / 2]->halves[i % 2]; });
+  saveFields(file, name + ".fields", m_fields);
 }
 
-void CellStore::load(const Archive& file) {
-  m_placed = file.value<uint8_t>("cells.placed") != 0;
-  m_grid = CellGrid(loadGrid(file, "cells.grid"));
-  m_coarsening = file.value<int32_t>("cells.coarsening");
-  m_samplesLeftOut = file.value<uint64_t>("cells.leftOut");
-  m_vertexCounts = file.value<VertexCounts>("cells.counts");
-  m_depthShares.set(file.get<float>("cells.depthShares"));
-  const std::vector<uint64_t> keys = file.get<uint64_t>("cells.keys");
+void CellStore::load(const Archive& file, const std::string& name) {
+  m_placed = file.value<uint8_t>(name + ".placed") != 0;
+  m_grid = CellGrid(loadGrid(file, name + ".grid"));
+  m_coarsening = file.valueOr<int32_t>(name + ".coarsening", 1);
+  file.require(m_coarsening >= 1, name + ".coarsening: is damaged");
+  m_samplesLeftOut = file.valueOr<uint64_t>(name + ".leftOut", 0);
+  m_vertexCounts = loadFieldsOfOne<VertexCounts>(file, name + ".counts");
+  m_depthShares.set(file.get<float>(name + ".depthShares"));
+  const std::vector<uint64_t> keys = file.get<uint64_t>(name + ".keys");
   for (const uint64_t key : keys) {
     const uint32_t next = m_index.size();
     file.require(CellGrid::levelOf(key) < kCellLevels && m_index.insert(key) == next,
-                 "cells.keys: are damaged");
+                 name + ".keys: are damaged");
     m_links.push_back({kNoCell, CellGrid::levelOf(key), key});
   }
   for (Link& link : m_links) {
     if (link.level + 1 == kCellLevels) continue;
     link.parent = m_index.find(CellGrid::parent(link.key));
-    file.require(link.parent != kNoCell, "cells.keys: a cell has no parent");
+    file.require(link.parent != kNoCell, name + ".keys: a cell has no parent");
   }
-  addNewCells();
   size_t finest = 0;
   for (const Link& link : m_links) finest += link.level == 0;
-  forEachColumn([&]<class T>(const std::string& name, T CellStatistics::*member) {
-    const std::vector<T> column = file.get<T>("cells." + name, finest);
-    size_t next = 0;
-    for (CellStatistics& cell : m_cells)
-      if (cell.level == 0) cell.*member = column[next++];
-  });
-  const std::vector<Histogram> fields = file.get<Histogram>("cells.fields", 2 * m_fields.size());
-  for (size_t f = 0; f < m_fields.size(); ++f) m_fields[f] = {fields[2 * f], fields[2 * f + 1]};
+  const auto cells = loadFields<CellStatistics>(file, name + ".finest", finest);
+  const auto returned = loadFields<ReturnedSums>(file, name + ".returned", m_caches ? 2 * finest : 0);
+  addNewCells();
+  size_t next = 0;
+  for (CellStatistics& cell : m_cells) {
+    if (cell.level > 0) continue;
+    const uint32_t parent = cell.parent;
+    cell = cells[next];
+    cell.parent = parent;
+    if (m_caches) cell.halves = {returned[2 * next], returned[2 * next + 1]};
+    ++next;
+  }
+  m_fields = loadFields<LightField>(file, name + ".fields", m_fields.size());
 }
 
 }  // namespace odis::core

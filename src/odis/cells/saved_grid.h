@@ -1,29 +1,33 @@
 // A grid in a file. Files of versions whose cells were the same size everywhere have no reach.
 #pragma once
 
-#include <array>
 #include <cmath>
 #include <string>
 
-#include "odis/files/archive.h"
+#include "odis/files/fields.h"
 #include "odis/view.h"
 
 namespace odis::core {
 
+template <class Body>
+constexpr void forEachField(FieldsOf<OdisCellGrid>, const Body& body) {
+  body("origin", &OdisCellGrid::origin);
+  body("inverseEdge", &OdisCellGrid::inverseEdge);
+  body("inverseReach", &OdisCellGrid::inverseReach);
+}
+static_assert(listedBytes<OdisCellGrid>() == sizeof(OdisCellGrid));
+
 inline void saveGrid(ArchiveWriter& file, const std::string& name, const OdisCellGrid& grid) {
-  file.addValue(name, std::array{grid.origin.x, grid.origin.y, grid.origin.z, grid.inverseEdge});
-  file.addValue(name + ".inverseReach", grid.inverseReach);
+  saveFields(file, name, grid);
 }
 
 // Throws FileError.
 inline OdisCellGrid loadGrid(const Archive& file, const std::string& name) {
-  const auto [x, y, z, inverseEdge] = file.value<std::array<float, 4>>(name);
-  const std::string reach = name + ".inverseReach";
-  const float inverseReach = file.contains(reach) ? file.value<float>(reach) : 0;
-  file.require(std::isfinite(x + y + z) && inverseEdge > 0 && std::isfinite(inverseEdge) &&
-                   inverseReach >= 0 && inverseReach <= 1,
+  const auto grid = loadFieldsOfOne<OdisCellGrid>(file, name);
+  file.require(std::isfinite(grid.origin.x + grid.origin.y + grid.origin.z) && grid.inverseEdge > 0 &&
+                   std::isfinite(grid.inverseEdge) && grid.inverseReach >= 0 && grid.inverseReach <= 1,
                "the grid is damaged");
-  return {{x, y, z}, inverseEdge, inverseReach};
+  return grid;
 }
 
 }  // namespace odis::core

@@ -34,7 +34,7 @@ CellStore::~CellStore() = default;
 
 uint64_t CellStore::bytes() const {
   return m_cells.capacity() * sizeof(CellStatistics) + m_links.capacity() * sizeof(Link) +
-         m_fields.capacity() * sizeof(LightField) + m_aroundSize * sizeof(Surroundings) + m_index.bytes() +
+         m_fields.capacity() * sizeof(LightField) + m_around.size * sizeof(Surroundings) + m_index.bytes() +
          (m_fieldOf.capacity() + m_children.capacity() + m_firstChild.capacity()) * sizeof(uint32_t);
 }
 
@@ -301,9 +301,9 @@ void CellStore::lookAround() {
     }
 
   // The threads that fill it are the first to touch it.
-  if (m_aroundSize < m_cells.size()) {
-    m_around = std::make_unique_for_overwrite<Surroundings[]>(m_cells.size());
-    m_aroundSize = m_cells.size();
+  if (m_around.size < m_cells.size()) {
+    m_around.cells = std::make_unique_for_overwrite<Surroundings[]>(m_cells.size());
+    m_around.size = m_cells.size();
   }
   fillSurroundings(points, pointsOf);
 }
@@ -311,10 +311,10 @@ void CellStore::lookAround() {
 // Cells of one parent, and of one grandparent, have the same cells around them: what those have seen is put
 // together once, as from the parent's centroid, and each child looks at that.
 void CellStore::fillSurroundings(const LightPoints& points, std::span<const uint32_t> pointsOf) {
-  const auto clear = [&](size_t cell, size_t map) { m_around[cell][map].fill(0); };
+  const auto clear = [&](size_t cell, size_t map) { m_around.cells[cell][map].fill(0); };
   forEachCell(*m_tasks, m_cells.size(), [&](size_t c) {
     CellStatistics& cell = m_cells[c];
-    cell.around = &m_around[c];
+    cell.around = &m_around.cells[c];
     if (cell.parent == kNoCell) clear(c, 0);
     if (cell.parent == kNoCell || m_links[cell.parent].parent == kNoCell) clear(c, 1);
     if (cell.level == 0 || !cell.hasMap) return;
@@ -330,7 +330,7 @@ void CellStore::fillSurroundings(const LightPoints& points, std::span<const uint
     const auto look = [&](size_t from, size_t map) {
       clear(from, map);
       if (!m_cells[from].hasMap) return;
-      around.addTo(m_around[from][map], 0, m_cells[from].centroid);
+      around.addTo(m_around.cells[from][map], 0, m_cells[from].centroid);
     };
     for (const uint32_t child : childrenOf(c)) {
       look(child, 0);

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <memory>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "odis/cells/cell_index.h"
@@ -95,6 +96,8 @@ class CellStore {
   explicit CellStore(float clamp, bool looksAround = false,
                      std::shared_ptr<const Tasks> tasks = libraryTasks());
   ~CellStore();
+  CellStore(const CellStore&);
+  CellStore(CellStore&&) noexcept;
   CellStore& operator=(CellStore&&) noexcept;
 
   // Keeps the number of cells below a limit: the first call of `add` makes them as much larger as it takes,
@@ -115,8 +118,9 @@ class CellStore {
   void fade(double weight);
   // Lets go of all that was added, and of the grid.
   void forget();
-  // Changes whenever cells get other numbers than they had.
-  uint64_t numbering() const { return m_numbering; }
+  // Adds what another store with the same options has seen, each of its samples counting `weight` times: to
+  // the same cells if the grids are equal, else to those around its cells' centroids.
+  void add(const CellStore& other, double weight = 1);
   // Sorts the vertices into cells and adds them up.
   void add(VertexParts parts, int cellsPerDiagonal, const VertexRules& rules = {});
   // The same in two steps: many threads take samples, with their cells if there is a grid by then; one call
@@ -132,12 +136,14 @@ class CellStore {
   // samples it has.
   double visitedCells() const;
 
-  // Writes all that was added, and reads it into a store without cells. The latter throws FileError.
-  void save(ArchiveWriter& file) const;
-  void load(const Archive& file);
+  // Writes all that was added, in arrays whose names begin with `name`, and reads it into a store without
+  // cells. The latter throws FileError.
+  void save(ArchiveWriter& file, const std::string& name) const;
+  void load(const Archive& file, const std::string& name);
 
   // How many vertices were taken and refused.
   const VertexCounts& vertexCounts() const { return m_vertexCounts; }
+  bool isPlaced() const { return m_placed; }
   const CellGrid& grid() const { return m_grid; }
   const CellIndex& index() const { return m_index; }
   // The key of each cell.
@@ -157,7 +163,7 @@ class CellStore {
   void place(std::span<BatchSamples* const> batches, int cellsPerDiagonal);
   bool coarsen(std::span<BatchSamples* const> batches);
   void carryOver(const CellGrid& grid, double weight);
-  void carryFields(CellStore& carried, std::span<const uint32_t> newCell, double weight) const;
+  void addFields(const CellStore& other, std::span<const uint32_t> newCell, double weight);
   uint32_t insert(uint64_t key);
   void addNewCells();
   void addReturned(const CellOrder<CellSample>& order);
@@ -174,7 +180,6 @@ class CellStore {
   DepthShares m_depthShares;
   std::shared_ptr<const Tasks> m_tasks;
   bool m_placed = false;
-  uint64_t m_numbering = 0;
   size_t m_mostCells = SIZE_MAX;
   int m_coarsening = 1;
   uint64_t m_samplesLeftOut = 0;
@@ -190,8 +195,16 @@ class CellStore {
   std::vector<uint32_t> m_children, m_firstChild;  // of all cells, and where each cell's begin
   std::vector<LightField> m_fields;                // what arrives in the cells one level above the finest
   std::vector<uint32_t> m_fieldOf;                 // of each cell: an index of m_fields, or kNoCell
-  std::unique_ptr<Surroundings[]> m_around;        // of each cell
-  size_t m_aroundSize = 0;
+  // Of each cell, filled in anew whenever it is asked for: copies of a store have none.
+  struct Around {
+    Around() = default;
+    Around(const Around&) {}
+    Around(Around&&) noexcept = default;
+    Around& operator=(Around&&) noexcept = default;
+
+    std::unique_ptr<Surroundings[]> cells;
+    size_t size = 0;
+  } m_around;
   uint64_t m_transientBytes = 0;
   VertexCounts m_vertexCounts;
 };

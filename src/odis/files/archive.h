@@ -1,13 +1,13 @@
-// Files of named arrays of numbers: saved guides, vertices and frames.
+// Files of named arrays of numbers: saved guides, builders, vertices and frames.
 //
 //   bytes  0-7   ODISSAVE
 //          8-11  format, 1
-//          then  what is saved: length of a text in bytes, the text ("guide", "vertices", "frame")
+//          then  what is saved: length of a text in bytes, the text ("guide", "builder", "vertices", "frame")
 //                number of arrays; for each: length of its name, the name, bytes of an element, number of
 //                elements (64 bits), the elements
 //          last 4 CRC-32 of all before
 // All numbers are little-endian and, but for the elements, unsigned integers of 32 bits. Elements are numbers
-// or structs of numbers as they lie in memory.
+// or arrays of numbers; structs are saved field by field (odis/files/fields.h).
 #pragma once
 
 #include <cstdint>
@@ -101,6 +101,11 @@ class Archive {
   template <class T>
   T value(const std::string& name) const {
     return get<T>(name, 1)[0];
+  }
+  // The same; `otherwise` where the file has no such array.
+  template <class T>
+  T valueOr(const std::string& name, T otherwise) const {
+    return contains(name) ? value<T>(name) : otherwise;
   }
   // Throws FileError with the file's name unless `holds`.
   void require(bool holds, const std::string& what) const;

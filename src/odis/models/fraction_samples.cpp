@@ -43,7 +43,7 @@ bool isForFractions(uint32_t pixel, uint32_t stride) {
   return uint64_t(pixel * kGolden) * stride < (uint64_t(1) << 32);
 }
 
-std::vector<FractionSample> takeFractionSamples(ArrayView<const PathVertex> vertices, uint32_t stride,
+std::vector<FractionSample> takeFractionSamples(const VertexBatch& vertices, uint32_t stride,
                                                 const VertexRules* rules) {
   const auto isUsable = [rules](const PathVertex& v) {
     return !rules || v.discrete || checkVertex(v, *rules) == VertexState::usable;
@@ -51,11 +51,25 @@ std::vector<FractionSample> takeFractionSamples(ArrayView<const PathVertex> vert
   const auto isTaken = [stride](const PathVertex& v) {
     return isForFractions(v.pixel, stride) && knowsContributions(v);
   };
+  size_t count = 0;
+  for (const ArrayView<const PathVertex>& piece : vertices)
+    count += size_t(std::count_if(piece.begin(), piece.end(), isTaken));
   std::vector<FractionSample> samples;
-  samples.reserve(size_t(std::count_if(vertices.begin(), vertices.end(), isTaken)));
-  for (const PathVertex& v : vertices)
-    if (isTaken(v)) samples.push_back(fractionSampleOf(v, isUsable(v)));
+  samples.reserve(count);
+  for (const ArrayView<const PathVertex>& piece : vertices)
+    for (const PathVertex& v : piece)
+      if (isTaken(v)) samples.push_back(fractionSampleOf(v, isUsable(v)));
   return samples;
+}
+
+void narrow(std::vector<FractionSample>& samples, uint32_t stride) {
+  const auto isLeftOut = [stride](const FractionSample& v) { return !isForFractions(v.pixel, stride); };
+  if (std::erase_if(samples, isLeftOut) > 0) samples.shrink_to_fit();
+}
+
+void FractionSamples::makeRoom(size_t more) {
+  const size_t needed = samples.size() + more, room = samples.capacity();
+  if (needed > room) samples.reserve(std::max(needed, room + room / 4));
 }
 
 }  // namespace odis::core

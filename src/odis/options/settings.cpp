@@ -417,6 +417,25 @@ std::string settingsText(const FrameOptions& options) {
   return text;
 }
 
+std::string settingsText(const GuideOptions& options) {
+  FrameOptions all;
+  all.guide = options;
+  std::string text;
+  for (const Row& row : allRows())
+    if (row.get && row.owner == ODIS_SETTING_OF_GUIDES)
+      text += (text.empty() ? "" : " ") + row.name + "=" + row.get(all);
+  return text;
+}
+
+std::string differingSetting(const GuideOptions& a, const GuideOptions& b) {
+  FrameOptions first, second;
+  first.guide = a;
+  second.guide = b;
+  for (const Row& row : allRows())
+    if (row.get && row.get(first) != row.get(second)) return row.name;
+  return "";
+}
+
 void requireRanges(const FrameOptions& options) {
   FrameOptions checked;
   applySettings(checked, settingsText(options));

@@ -24,6 +24,12 @@ std::string readSetting(std::string_view text, std::string_view name);
 // A text that gives these options to default ones, with all settings in it.
 std::string settingsText(const FrameOptions& options);
 
+// The same of a guide alone.
+std::string settingsText(const GuideOptions& options);
+
+// The first setting in which two guides differ; "" if there is none.
+std::string differingSetting(const GuideOptions& a, const GuideOptions& b);
+
 // Throws std::invalid_argument where an option is out of its range.
 void requireRanges(const FrameOptions& options);
 
