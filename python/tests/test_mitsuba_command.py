@@ -177,7 +177,7 @@ class Command(InFolder):
                  ((scene, "-o", self.folder), "a folder"),
                  ((scene, "-o", "a.gif"), "ends with one of"), ((scene, "--variant", "scalar_rgb"), "llvm_ad_rgb"),
                  ((scene, "--variant", "metal"), "llvm_ad_rgb"),
-                 ((scene, "--set", "cels=3"), "did you mean cells"), ((scene, "--set", "refine=x"), "found x"),
+                 ((scene, "--set", "cels=3"), "Did you mean cells"), ((scene, "--set", "refine=x"), "found \"x\""),
                  ((scene, "--cached", "--integrator", "path"), "--cached: expected --integrator odis"),
                  ((scene, "--set", "refine=0", "--integrator", "path"), "--set: expected --integrator odis"),
                  ((scene, "--film", "pixel"), "--film: invalid choice: 'pixel' (choose from"),
@@ -349,7 +349,7 @@ class SceneFiles(InFolder):
         sky = str(scene_files.load_file(self.write("sky.xml", old.format('<float name="scale" value="3"/>'))).environment())
         for part in ("Sun aperture = 2.1432", "Sun scale = 3", "Sky scale = 3"):
             self.assertIn(part, sky)
-        with self.assertRaisesRegex(ValueError, "emitter sunsky: expected a number, found x"):
+        with self.assertRaisesRegex(ValueError, "emitter sunsky: expected a number, found \"x\""):
             scene_files.load_file(self.write("sky.xml", old.format('<float name="hour" value="x"/>')))
 
     def test_file_resolver_stays(self):
