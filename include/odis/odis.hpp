@@ -306,7 +306,7 @@ class GuideBuilder : public Handle<OdisGuideBuilder, odisRetainGuideBuilder, odi
 struct FrameOptions {
   uint32_t width = 0, height = 0;
   uint32_t samplesPerPixel = OdisFrameOptions().samplesPerPixel;
-  uint32_t mostSamplesPerPixel = 0;
+  uint32_t mostSamplesPerPixel = OdisFrameOptions().mostSamplesPerPixel;
   uint64_t seed = OdisFrameOptions().seed;
   bool keepPixelMeans = OdisFrameOptions().keepPixelMeans;
   uint32_t tileOffsetX = 0, tileOffsetY = 0;

@@ -135,8 +135,8 @@ Raises Error (INVALID_ARGUMENT) if there is no such setting, or a value in the t
 }  // namespace
 
 void bindOptions(nb::module_& module) {
-  bindSettings(module);
   module.attr("UNLIMITED") = ODIS_UNLIMITED;
+  bindSettings(module);
   bindGuideOptions(module);
   bindFrameOptions(module);
 }

@@ -124,9 +124,9 @@ class Frames(unittest.TestCase):
     def test_extension(self):
         """A frame that is asked for more has the counts and weights of one that was asked for as many at once."""
         at_once, _ = render(odis.FrameOptions(WIDTH, HEIGHT, samples_per_pixel=8, most_samples_per_pixel=odis.UNLIMITED,
-                                              adaptive=False))
+                                              settings="samples=even"))
         frame, _ = render(odis.FrameOptions(WIDTH, HEIGHT, samples_per_pixel=1, most_samples_per_pixel=odis.UNLIMITED,
-                                            adaptive=False))
+                                            settings="samples=even"))
         np.testing.assert_array_equal(frame.sample_counts(), 1)
         for samples_per_pixel in (3, 8):
             frame.extend(samples_per_pixel)

@@ -349,7 +349,7 @@ class SceneFiles(InFolder):
         sky = str(scene_files.load_file(self.write("sky.xml", old.format('<float name="scale" value="3"/>'))).environment())
         for part in ("Sun aperture = 2.1432", "Sun scale = 3", "Sky scale = 3"):
             self.assertIn(part, sky)
-        with self.assertRaisesRegex(ValueError, "emitter sunsky: expected a number, found \"x\""):
+        with self.assertRaisesRegex(ValueError, "emitter sunsky: expected a number, found x"):
             scene_files.load_file(self.write("sky.xml", old.format('<float name="hour" value="x"/>')))
 
     def test_file_resolver_stays(self):

@@ -85,9 +85,9 @@ const FrameOptions& checkedOptions(const FrameOptions& o) {
   requireOption(o.tileOffsetX < kTileSize && o.tileOffsetY < kTileSize,
                 "tileOffsetX, tileOffsetY: expected 0 to 15");
   requireRanges(o);
-  requireOption(!o.guided || o.mostSamplesPerPixel <= o.samplesPerPixel ||
-                    std::round(o.pilotSamplesPerPixel) <= o.samplesPerPixel,
-                "settings: pilot-spp: expected at most samplesPerPixel, which is to be extended");
+  requireOption(
+      !o.guided || o.most() == o.samplesPerPixel || std::round(o.pilotSamplesPerPixel) <= o.samplesPerPixel,
+      "samplesPerPixel: expected at least those of the pilot (pilot-spp), since it may be extended");
   return o;
 }
 

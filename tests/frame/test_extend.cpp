@@ -9,6 +9,10 @@ namespace odis::test {
 
 namespace {
 
+std::string withPilot(double samplesPerPixel) {
+  return "pilot-spp=" + std::to_string(samplesPerPixel);
+}
+
 // A frame that is asked for the first of these numbers of samples per pixel, and extended to the others. If
 // that is asked for, it is saved and loaded between all passes and extensions.
 Frame runExtended(FrameOptions options, const std::vector<uint32_t>& samplesPerPixel, bool saves = false) {
@@ -19,7 +23,7 @@ Frame runExtended(FrameOptions options, const std::vector<uint32_t>& samplesPerP
   const auto saveAndLoad = [&] {
     if (!saves) return;
     frame.save(folder.path("a.frame"));
-    frame = Frame::load(folder.path("a.frame"), options.guide.model);
+    frame = Frame::load(folder.path("a.frame"));
   };
   for (const uint32_t n : samplesPerPixel) {
     if (n > samplesPerPixel.front()) frame.extend(n);
@@ -59,8 +63,8 @@ TEST(Extend, HasTheBitsOfAFrameThatWasAskedForAsManyAtOnce) {
       for (const bool adaptive : {true, false}) {
         FrameOptions options = toyOptions(40, 24, 16);
         options.mostSamplesPerPixel = most;
-        options.set("pilot-spp=" + std::to_string(pilot) + (adaptive ? "" : " samples=even"));
-        options.guide.set("cached=on cached-error=0.3");
+        options.set(withPilot(pilot) + (adaptive ? "" : " samples=even"));
+        options.guide.set("cached=on");
         const Frame atOnce = runExtended(options, {16});
         EXPECT_EQ(atOnce.statistics().guidesBuilt, 3u);
         expectSameFrame(runExtended(options, {1, 4, 16}), atOnce, options);
@@ -122,7 +126,7 @@ TEST(Extend, GoesOnBeyondTheMostSamples) {
   for (const uint32_t first : {1u, 8u})
     for (const double pilot : {0.25, 1.0}) {
       FrameOptions options = toyOptions(40, 24, first);
-      options.set("pilot-spp=" + std::to_string(pilot));
+      options.set(withPilot(pilot));
       const Frame before = runExtended(options, {first});
       const Frame after = runExtended(options, {first, 12, 40});
       EXPECT_TRUE(core::sameView(before.guide().view(), after.guide().view()));
@@ -160,7 +164,7 @@ TEST(Extend, IsUnbiased) {
     core::libraryTasks()->forEach(images.size(), [&](size_t i) {
       FrameOptions options = toyOptions(24, 24, 1);
       options.mostSamplesPerPixel = 12;
-      options.set("pilot-spp=" + std::to_string(pilot));
+      options.set(withPilot(pilot));
       options.seed = 1000 + i;
       images[i] = luminances(runExtended(options, {1, 2, 5, 12, 15}), options);
     });
@@ -170,9 +174,10 @@ TEST(Extend, IsUnbiased) {
   }
 }
 
+// Nothing is guided without a pilot.
 FrameOptions ownFilm(uint32_t side, uint32_t samplesPerPixel, double pilot) {
   FrameOptions options = toyOptions(side, side, samplesPerPixel);
-  options.set("pilot-spp=" + std::to_string(pilot));
+  options.set(pilot > 0 ? withPilot(pilot) : "guided=off samples=adaptive");
   options.keepPixelMeans = false;
   return options;
 }
@@ -185,7 +190,6 @@ TEST(ExtendOwnFilm, WeightsOfEveryRoundAddUp) {
     for (const double pilot : {0.0, 0.25, 1.0}) {
       const uint32_t first = most == 0 ? 8 : 1;
       FrameOptions options = ownFilm(40, first, pilot);
-      if (pilot == 0) options.set("guided=off samples=adaptive");
       options.mostSamplesPerPixel = most;
       Frame frame(options);
       const ToyHost host({}, 40, 40);
@@ -224,7 +228,7 @@ TEST(ExtendOwnFilm, DecidesAsAFrameWithMeans) {
   for (const double pilot : {0.25, 1.0, 2.0}) {
     FrameOptions options = toyOptions(40, 24, 16);
     options.mostSamplesPerPixel = 24;
-    options.set("pilot-spp=" + std::to_string(pilot));
+    options.set(withPilot(pilot));
     const Frame means = runExtended(options, {16});
     options.keepPixelMeans = false;
     const Frame rounds = runExtended(options, {2, 3, 16}, true);
@@ -246,8 +250,7 @@ TEST(ExtendOwnFilm, RoundsThatAreSavedGoOnWithTheSameWeights) {
 }
 
 TEST(ExtendOwnFilm, CostsFourBytesOfAPixel) {
-  FrameOptions options = ownFilm(64, 8, 0);
-  options.set("guided=off samples=adaptive");  // so that there are no vertices
+  FrameOptions options = ownFilm(64, 8, 0);  // so that there are no vertices
   const Context context;
   Frame frame(options, context);
   runFrame(frame, options, {});
@@ -287,7 +290,7 @@ TEST(Extend, MisuseIsAnError) {
       expectRefused(ODIS_ERROR_INVALID_OPERATION, odisExtendFrame(frame.get(), 6));
       const TemporaryFolder folder;
       frame.save(folder.path("a.frame"));
-      const Frame withinPass = Frame::load(folder.path("a.frame"), options.guide.model);
+      const Frame withinPass = Frame::load(folder.path("a.frame"));
       expectRefused(ODIS_ERROR_INVALID_OPERATION, odisExtendFrame(withinPass.get(), 6));
       runPass(frame, *pass, ToyHost({}, 16, 16), 16 * 16);
       frame.endPass();

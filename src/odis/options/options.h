@@ -3,6 +3,7 @@
 // alone.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <optional>
 #include <string>
@@ -61,7 +62,7 @@ struct GuideOptions {
 struct FrameOptions {
   uint32_t width = 0, height = 0;
   uint32_t samplesPerPixel = OdisFrameOptions().samplesPerPixel;
-  uint32_t mostSamplesPerPixel = 0;  // up to which the frame may be extended; 0: samplesPerPixel
+  uint32_t mostSamplesPerPixel = 0;  // 0: samplesPerPixel
   uint64_t seed = 0;
   bool keepPixelMeans = true;
   uint32_t tileOffsetX = 0, tileOffsetY = 0;
@@ -76,11 +77,10 @@ struct FrameOptions {
   bool keepPilotVertices = false;
   float guidedCost = 1, builtCellCost = 70, recordedRayCost = 0.15f;
 
-  // The number of samples per pixel that decisions go by; 2^20 if it is unlimited.
+  // How many samples per pixel decisions go by. Those for an unlimited number are those for a million.
   uint32_t most() const {
-    constexpr uint32_t kUnlimited = 1u << 20;
-    const uint32_t asked = mostSamplesPerPixel == ODIS_UNLIMITED ? kUnlimited : mostSamplesPerPixel;
-    return asked > samplesPerPixel ? asked : samplesPerPixel;
+    const uint32_t most = mostSamplesPerPixel == ODIS_UNLIMITED ? 1u << 20 : mostSamplesPerPixel;
+    return std::max(most, samplesPerPixel);
   }
   bool adaptive() const {
     return samples == SampleSpread::adaptive || (samples == SampleSpread::automatic && guided);
