@@ -162,7 +162,7 @@ class Library(unittest.TestCase):
         self.expect_error(odis.ErrorCode.INVALID_ARGUMENT, second.rebuild, first.build())
         # A vertex of a pixel that there is no value for.
         values = np.ones(50, np.float32)
-        self.expect_error(odis.ErrorCode.INVALID_ARGUMENT, first.build, fields, values)
+        self.expect_error(odis.ErrorCode.INVALID_ARGUMENT, first.build, values)
 
     def test_order_of_calls(self):
         frame = odis.Frame(odis.FrameOptions(4, 4))
