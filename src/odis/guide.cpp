@@ -15,6 +15,7 @@
 #include "odis/models/lights.h"
 #include "odis/models/model.h"
 #include "odis/models/returned_light.h"
+#include "odis/options/settings.h"
 #include "odis/paper_method.h"
 #include "odis/record/vertex_order.h"
 #include "odis/work/progress.h"
@@ -341,11 +342,18 @@ Guide GuideBuilder::Data::build(ArrayView<const float> pixelValues) {
   return guide;
 }
 
+bool GuideBuilder::canRebuild(const Guide& previous) const {
+  if (m_data->options.cellsPerDiagonal == 0) return true;
+  if (!previous.m_data) return false;
+  const CellGrid* grid = m_data->grid();
+  return previous.m_data->index.size() == 0 || (grid && previous.m_data->grid == *grid);
+}
+
 Guide GuideBuilder::rebuild(const Guide& previous) const {
   if (m_data->options.cellsPerDiagonal == 0) return Guide();
   std::optional<CellStore> sum;
   CellStore& store = m_data->allCells(sum);
-  if (!previous.m_data || (previous.m_data->index.size() > 0 && !(previous.m_data->grid == store.grid())))
+  if (!canRebuild(previous))
     throw std::invalid_argument(
         "odisRebuildGuide: expected a guide of cells as the builder has them since odisForgetVertices or "
         "odisSetBounds");

@@ -115,6 +115,8 @@ class GuideBuilder {
   // taken from `previous`, whose cells must be of the same grid (else std::invalid_argument is thrown); cells
   // that are new have their parents' fractions.
   Guide rebuild(const Guide& previous) const;
+  // Whether rebuild() takes that guide.
+  bool canRebuild(const Guide& previous) const;
 
   // The id of what this builder gathers itself, 0 at first. Throws std::invalid_argument where a part that
   // was merged has it.

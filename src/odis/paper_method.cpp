@@ -191,7 +191,7 @@ void PaperMethod::save(ArchiveWriter& file) const {
 Guide PaperMethod::load(const Archive& file, const Guide& guide) {
   m_passesDone = file.value<uint32_t>("paper.passesDone");
   // What has become maps is not there any more.
-  const auto restore = [&]<class T>(std::unique_ptr<T>& pixels, const std::string& name, auto&& all) {
+  const auto restore = [&]<class T>(std::unique_ptr<T>& pixels, const std::string& name, auto all) {
     if (all.empty()) return pixels.reset();
     file.require(pixels && all.size() == pixels->pixels().size(), name + ": are damaged");
     pixels->restore(std::move(all));

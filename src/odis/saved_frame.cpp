@@ -366,6 +366,8 @@ Frame Frame::load(const Archive& file, std::optional<Model> model, std::shared_p
   if (saved.position.builder) {
     d.cells = d.paper ? d.paper->load(file, d.guide) : d.guide;
     d.builder->load(file);
+    file.require(saved.position.next != ODIS_PASS_GUIDED || d.builder->canRebuild(d.cells),
+                 "guide.grid: is not that of the builder");
   } else {
     d.builder.reset();
     d.paper.reset();
