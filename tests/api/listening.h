@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <mutex>
 #include <odis/odis.hpp>
 #include <string>
 #include <vector>
@@ -11,6 +12,7 @@ namespace odis::test {
 
 struct Heard {
   std::vector<std::string> messages, errors;
+  std::mutex errorsMutex;
   std::atomic<int64_t> held{0}, most{0};
 
   // How many messages have these words.
@@ -26,8 +28,11 @@ inline ContextOptions heardBy(Heard& heard) {
   options.logFunction = [](void* user, OdisLogLevel, const char* message) {
     static_cast<Heard*>(user)->messages.emplace_back(message);
   };
+  // Calls of several threads may fail at once; messages come one at a time.
   options.errorFunction = [](void* user, OdisError, const char* message) {
-    static_cast<Heard*>(user)->errors.emplace_back(message);
+    Heard& to = *static_cast<Heard*>(user);
+    const std::lock_guard lock(to.errorsMutex);
+    to.errors.emplace_back(message);
   };
   options.memoryFunction = [](void* user, int64_t change) {
     Heard& to = *static_cast<Heard*>(user);
