@@ -52,6 +52,17 @@ inline void runFrame(Frame& frame, const FrameOptions& options, const ToyRoom& r
   }
 }
 
+// Two frames that took the same samples and decided the same.
+inline void expectSameDecisionsIn(const FrameStatistics& a, const FrameStatistics& b) {
+  EXPECT_EQ(a.samples, b.samples);
+  EXPECT_EQ(a.pilotSamples, b.pilotSamples);
+  EXPECT_EQ(a.samplesPerPixel, b.samplesPerPixel);
+  EXPECT_EQ(a.pilotFraction, b.pilotFraction);
+  EXPECT_EQ(a.guidesBuilt, b.guidesBuilt);
+  EXPECT_EQ(a.measuredCostRatio, b.measuredCostRatio);
+  EXPECT_EQ(a.guidingGivenUp, b.guidingGivenUp);
+}
+
 inline FrameOptions toyOptions(uint32_t width, uint32_t height, uint32_t samplesPerPixel) {
   FrameOptions options;
   options.width = width;

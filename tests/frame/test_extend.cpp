@@ -47,13 +47,7 @@ void expectSameFrame(const Frame& a, const Frame& b, const FrameOptions& options
     for (uint32_t sample = 0; sample < a.sampleCount(pixel); ++sample)
       ASSERT_EQ(a.sampleWeight(pixel, sample), b.sampleWeight(pixel, sample));
   }
-  const FrameStatistics s = a.statistics(), t = b.statistics();
-  EXPECT_EQ(s.samples, t.samples);
-  EXPECT_EQ(s.samplesPerPixel, t.samplesPerPixel);
-  EXPECT_EQ(s.pilotFraction, t.pilotFraction);
-  EXPECT_EQ(s.guidesBuilt, t.guidesBuilt);
-  EXPECT_EQ(s.measuredCostRatio, t.measuredCostRatio);
-  EXPECT_EQ(s.guidingGivenUp, t.guidingGivenUp);
+  expectSameDecisionsIn(a.statistics(), b.statistics());
 }
 
 // The first samples alone, a place within the refinement, and one after it.

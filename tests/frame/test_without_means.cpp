@@ -69,12 +69,7 @@ void expectSameDecisions(const FrameOptions& options, bool saves, FrameStatistic
   EXPECT_EQ(without.beginPass(), nullptr);
   EXPECT_TRUE(core::sameView(means.guide().view(), without.guide().view()));
   const FrameStatistics a = means.statistics(), b = without.statistics();
-  EXPECT_EQ(a.samples, b.samples);
-  EXPECT_EQ(a.pilotSamples, b.pilotSamples);
-  EXPECT_EQ(a.pilotFraction, b.pilotFraction);
-  EXPECT_EQ(a.guidesBuilt, b.guidesBuilt);
-  EXPECT_EQ(a.measuredCostRatio, b.measuredCostRatio);
-  EXPECT_EQ(a.guidingGivenUp, b.guidingGivenUp);
+  expectSameDecisionsIn(a, b);
   for (uint32_t pixel = 0; pixel < pixels; ++pixel) {
     EXPECT_EQ(means.sampleCount(pixel), without.sampleCount(pixel));
     EXPECT_EQ(means.sampleWeight(pixel, 0), without.sampleWeight(pixel, 0));
