@@ -125,7 +125,7 @@ typedef struct OdisGuideOptions {
 
 typedef struct OdisFrameOptions {
   size_t size ODIS_DEFAULT(sizeof(OdisFrameOptions));
-  // Of the image, crop or tile in pixels; below 2^31 pixels.
+  // The size of the image, crop or tile in pixels; below 2^31 pixels in all.
   uint32_t width ODIS_DEFAULT(0), height ODIS_DEFAULT(0);
   uint32_t samplesPerPixel ODIS_DEFAULT(4);  // >= 1, pilot included
   // How many samples per pixel odisExtendFrame may ask for later, with the same image as if they had been
@@ -145,17 +145,17 @@ typedef struct OdisFrameOptions {
   // The builder to learn into, with its own options (`guide` must be NULL), which may know of earlier frames;
   // nobody else uses it until the frame has ended. NULL: one of the frame's own.
   OdisGuideBuilder builder ODIS_DEFAULT(NULL);
-  // As OdisGuideOptions.settings, those of frames and of guides: they win over those of `guide`. Those of
-  // guides have no effect with a `builder`.
+  // Settings of frames and of guides, as words like those of OdisGuideOptions.settings, over which they win.
+  // Settings of guides have no effect with a `builder`.
   const char* settings ODIS_DEFAULT(NULL);
 } OdisFrameOptions;
 
-// What a setting is about.
+// The part of a renderer that a setting changes.
 typedef enum OdisSettingOwner {
   ODIS_SETTING_OF_ALL = 0,
   ODIS_SETTING_OF_FRAMES = 1,
   ODIS_SETTING_OF_GUIDES = 2,  // and of builders
-  ODIS_SETTING_OF_PATHS = 3    // what the host's paths do, who reads it by odisReadSetting
+  ODIS_SETTING_OF_PATHS = 3    // the host's own paths: the host reads it by odisReadSetting
 } OdisSettingOwner;
 
 // A row of the table of settings. Texts stay as long as the library.
@@ -218,7 +218,8 @@ typedef struct OdisFrameStatistics {
   uint64_t cells ODIS_DEFAULT(0);
   uint64_t guideBytes ODIS_DEFAULT(0);
   uint64_t buildingBytes ODIS_DEFAULT(0);  // held at most while guides were built
-  // Of the pilot's samples in the mean of the image's weights, rounds aside (odisExtendFrame).
+  // The pilot's share in the weights of the image, in the mean over its pixels; rounds of odisExtendFrame are
+  // left out.
   double pilotFraction ODIS_DEFAULT(0);
   // Samples that passes asked for and did not get. Interrupted passes do not count.
   uint64_t missingSamples ODIS_DEFAULT(0);

@@ -16,7 +16,7 @@ inline constexpr uint32_t kTileBlock = 4;              // likewise
 // neighbours in the image. Pixels are counted row by row and must be those of the image, tiles likewise.
 class TileGrid {
  public:
-  // As in OdisFrameOptions.
+  // Width and height of the image, and the offsets of its tiles (OdisFrameOptions.tileOffsetX).
   TileGrid(uint32_t width, uint32_t height, uint32_t offsetX = 0, uint32_t offsetY = 0)
       : m_width(width),
         m_height(height),

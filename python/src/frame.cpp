@@ -224,7 +224,7 @@ A sample that the pass did not ask for, or that comes twice, raises Error.)")
 An interrupted pass may lack samples; nothing is learned from it, and it is the last one. So is a pass whose
 learning Ctrl-C calls off, which raises KeyboardInterrupt.)")
       .def("extend", &ImageFrame::extend, "samples_per_pixel"_a,
-           R"(Asks for more samples per pixel, so many in all, between two passes.
+           R"(Asks for more samples per pixel between two passes; the number counts those of before.
 
 Up to FrameOptions.most_samples_per_pixel the frame is then what it would be had it been asked for as many
 from the beginning; beyond, the guide and the pixels' shares stay as they are. Raises Error where it is no

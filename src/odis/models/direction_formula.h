@@ -9,7 +9,7 @@ namespace odis::core {
 // lobe.
 class DirectionFormula : public DirectionModel {
  public:
-  // As GuideOptions::priorSamples.
+  // `priorSamples` are those of GuideOptions.
   explicit DirectionFormula(const std::array<float, kCellLevels>& priorSamples);
   DirectionDistribution predict(const CellChain& chain, const DirectionDistribution* parent) const override;
 

@@ -130,7 +130,7 @@ Row priorSamples(const std::string& name, const std::string& help) {
   return row;
 }
 
-// What the paths of a host do is checked here and read by the host (odisReadSetting).
+// A setting of what the host's paths do: checked here, and read by the host (odisReadSetting).
 Row ofPaths(const std::string& name, const std::string& values, const std::string& defaultValue,
             const std::string& help, const std::function<void(std::string_view)>& check) {
   Row row{name, values, help, defaultValue, ODIS_SETTING_OF_PATHS};
@@ -138,9 +138,11 @@ Row ofPaths(const std::string& name, const std::string& values, const std::strin
   return row;
 }
 // One word of several; the first is the default.
-Row wordOfPaths(const std::string& name, const Words<int>& words, const std::string& help) {
-  return ofPaths(name, namesOf(words), words.front().first, help,
-                 [=](std::string_view text) { find(words, name, text); });
+Row wordOfPaths(const std::string& name, const std::vector<std::string>& words, const std::string& help) {
+  Words<bool> checked;
+  for (const std::string& word : words) checked.emplace_back(word, true);
+  return ofPaths(name, namesOf(checked), words.front(), help,
+                 [=](std::string_view text) { find(checked, name, text); });
 }
 Row guideBounces() {
   const std::string name = "guide-bounces";
@@ -161,7 +163,7 @@ Row forUsers(Row row) {
   return row;
 }
 
-constexpr Range<float> kShare{0, 1}, kCost{0, 1e6f};
+constexpr Range<float> kShare{0, 1}, kUpToAMillion{0, 1e6f};
 constexpr Range<uint32_t> kSamples{0, 1 << 20};
 
 // Paths and passes.
@@ -192,7 +194,7 @@ std::vector<Row> rowsOfPaths() {
            {"hierarchy", LightChoiceKind::hierarchy}},
           "How lights are chosen: network, formula, or hierarchy of lights.",
           [](auto& o) -> auto& { return o.guide.lights; }),
-      wordOfPaths("roulette", {{"formula", 0}, {"throughput", 0}},
+      wordOfPaths("roulette", {"formula", "throughput"},
                   "Ends guided paths by the light that comes back, or by throughput."),
       choice<bool>(
           "ended-paths", {{"mean", true}, {"nothing", false}},
@@ -202,9 +204,10 @@ std::vector<Row> rowsOfPaths() {
           "cached", kOnOff, "Whether paths may end with cached radiance, which is biased.",
           [](auto& o) -> auto& { return o.guide.cached; })),
       forUsers(number(
-          "cached-error", kCost, "How far off paths may be then, over the pixel's value. 0: by the samples.",
+          "cached-error", kUpToAMillion,
+          "How far off paths may be then, over the pixel's value. 0: by the samples.",
           [](auto& o) -> auto& { return o.guide.cachedError; })),
-      wordOfPaths("shadow-rays", {{"roulette", 0}, {"all", 0}},
+      wordOfPaths("shadow-rays", {"roulette", "all"},
                   "By roulette where the light would add little to the pixel, or all."),
       forUsers(number<uint32_t>(
           "max-depth", {0, UINT32_MAX}, "Depth at which all paths end; 0: none.",
@@ -230,17 +233,18 @@ std::vector<Row> rowsOfPilotAndCells() {
           "Guided samples per pixel that the guide learns from, too, after 1, 3, 7, ... of them.",
           [](auto& o) -> auto& { return o.refinementSamples; })),
       ofFrames(number(
-          "pilot-weight", kCost, "Weight of a pilot sample; a guided one's is 1.",
+          "pilot-weight", kUpToAMillion, "Weight of a pilot sample; a guided one's is 1.",
           [](auto& o) -> auto& { return o.pilotWeight; })),
       forUsers(ofFrames(number(
-          "guided-cost", kCost,
+          "guided-cost", kUpToAMillion,
           "Time of a guided ray over another's. 0: guide and refine even if it does not pay.",
           [](auto& o) -> auto& { return o.guidedCost; }))),
       forUsers(ofFrames(number(
-          "built-cell-cost", kCost, "Time to build a cell, over that of a ray, as odis bench measures it.",
+          "built-cell-cost", kUpToAMillion,
+          "Time to build a cell, over that of a ray, as odis bench measures it.",
           [](auto& o) -> auto& { return o.builtCellCost; }))),
       forUsers(ofFrames(number(
-          "recorded-ray-cost", kCost, "Time to record what a ray brings, likewise.",
+          "recorded-ray-cost", kUpToAMillion, "Time to record what a ray brings, likewise.",
           [](auto& o) -> auto& { return o.recordedRayCost; }))),
       number(
           "bsdf-fraction", kShare,
@@ -280,7 +284,7 @@ std::vector<Row> rowsOfPixels() {
           "Which network; model: that of the weights.",
           [](auto& o) -> auto& { return o.guide.pixelNetwork; }),
       number<uint32_t>(
-          "pixel-tile", {1, 16}, "A map for each square of so many pixels a side.",
+          "pixel-tile", {1, 16}, "Side of the square of pixels that shares a map.",
           [](auto& o) -> auto& { return o.guide.pixelTile; }),
       number(
           "pixel-share", kShare, "Share of a pixel's map; the rest is the map of its cell.",
@@ -311,8 +315,8 @@ constexpr std::string_view kPreset = "preset";
 
 std::vector<Row> makeRows() {
   std::vector<Row> rows;
-  Words<int> names;
-  for (const auto& [name, text] : presets()) names.emplace_back(name, 0);
+  std::vector<std::string> names;
+  for (const auto& [name, text] : presets()) names.push_back(name);
   Row preset =
       wordOfPaths(std::string(kPreset), names, "Settings to start from; paper: that of Bako et al. 2019.");
   preset.owner = ODIS_SETTING_OF_ALL;
@@ -375,6 +379,15 @@ void forEachSetting(std::string_view text, const Use& use) {
   }
 }
 
+// A text of the settings that options hold, of those rows that are chosen.
+template <class IsChosen>
+std::string textOfRows(const FrameOptions& options, const IsChosen& isChosen) {
+  std::string text;
+  for (const Row& row : allRows())
+    if (row.get && isChosen(row)) text += (text.empty() ? "" : " ") + row.name + "=" + row.get(options);
+  return text;
+}
+
 }  // namespace
 
 const std::vector<OdisSetting>& allSettings() {
@@ -411,20 +424,13 @@ std::string readSetting(std::string_view text, std::string_view name) {
 }
 
 std::string settingsText(const FrameOptions& options) {
-  std::string text;
-  for (const Row& row : allRows())
-    if (row.get) text += (text.empty() ? "" : " ") + row.name + "=" + row.get(options);
-  return text;
+  return textOfRows(options, [](const Row&) { return true; });
 }
 
 std::string settingsText(const GuideOptions& options) {
   FrameOptions all;
   all.guide = options;
-  std::string text;
-  for (const Row& row : allRows())
-    if (row.get && row.owner == ODIS_SETTING_OF_GUIDES)
-      text += (text.empty() ? "" : " ") + row.name + "=" + row.get(all);
-  return text;
+  return textOfRows(all, [](const Row& row) { return row.owner == ODIS_SETTING_OF_GUIDES; });
 }
 
 std::string differingSetting(const GuideOptions& a, const GuideOptions& b) {
