@@ -28,7 +28,7 @@ Setting number(const std::string& key, Number least, Number most, const std::str
     if (!value || !range.contains(*value)) fail(key, text, expectedNumber(range));
     set(options, *value);
   };
-  return {key, range.text(), defaultValue, meaning, parse, ""};
+  return {key, range.text(), defaultValue, meaning, parse};
 }
 
 // One word of several; the first is the default if none is said to be.
@@ -43,7 +43,7 @@ Setting choice(const std::string& key, const std::vector<std::pair<std::string, 
       if (word == text) return set(options, value);
     fail(key, text, "one of " + names);
   };
-  return {key, names, defaultValue, meaning, parse, ""};
+  return {key, names, defaultValue, meaning, parse};
 }
 
 // The option of the command line that a setting of the library is set by; "" if it is --set.

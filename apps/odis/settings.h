@@ -17,7 +17,8 @@ struct Setting {
   std::string meaning;       // one sentence, or two short ones: a row of docs/settings.md has 120 columns
   // Writes a value into the options; throws UsageError.
   std::function<void(render::RenderOptions& options, const std::string& value)> set;
-  std::string option;  // of the command line, which sets it in place of --set; else empty
+  // The option of the command line that sets it in place of --set; else empty.
+  std::string option = {};
 };
 
 // All settings, in the order in which help shows them.

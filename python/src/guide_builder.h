@@ -18,12 +18,11 @@ class Builder {
   Builder(const std::optional<GuideOptions>& given, const LoggingContext* context)
       : m_builder(interruptible(given), contextOrShared(context)) {}
 
-  static std::unique_ptr<Builder> load(const std::filesystem::path& path, const Model* model,
+  static std::unique_ptr<Builder> load(const std::filesystem::path& path, const std::optional<Model>& model,
                                        const LoggingContext* context) {
-    const Context owner = contextOrShared(context);
     return withoutLock([&] {
       return std::unique_ptr<Builder>(
-          new Builder(GuideBuilder::load(path.string(), model ? *model : Model(owner), owner)));
+          new Builder(GuideBuilder::load(path.string(), model, contextOrShared(context))));
     });
   }
   void save(const std::filesystem::path& path) {

@@ -38,6 +38,15 @@ Float3 finiteOrBlack(const Float3& value, std::atomic<uint64_t>& notFinite) {
   return {};
 }
 
+// The options of a frame's own guide. A pixel's noise falls with the root of its number of samples, and so
+// does how far off cached radiance may be.
+GuideOptions ownGuideOptions(const FrameOptions& options) {
+  constexpr float kErrorOfOneSample = 0.6f;
+  GuideOptions guide = options.guide;
+  if (guide.cachedError == 0) guide.cachedError = kErrorOfOneSample / std::sqrt(float(options.most()));
+  return guide;
+}
+
 }  // namespace
 
 VertexCounts countsOf(ArrayView<const VertexSamples> tiles) {
@@ -58,15 +67,6 @@ uint64_t bytesOf(const VertexTiles& tiles) {
   uint64_t bytes = 0;
   for (const std::vector<PathVertex>& tile : tiles) bytes += tile.size() * sizeof(PathVertex);
   return bytes;
-}
-
-// The options of a frame's own guide. A pixel's noise falls with the root of its number of samples, and so
-// does how far off cached radiance may be.
-GuideOptions ownGuideOptions(const FrameOptions& options) {
-  constexpr float kErrorOfOneSample = 0.6f;
-  GuideOptions guide = options.guide;
-  if (guide.cachedError == 0) guide.cachedError = kErrorOfOneSample / std::sqrt(float(options.most()));
-  return guide;
 }
 
 TileGrid tilesOf(const FrameOptions& o) {

@@ -28,8 +28,8 @@ float pilotWeight(const FrameOptions& options, const Schedule& schedule, uint32_
 // means, or what decisions need.
 PixelSamples keptOfPilot(const FrameOptions& options, const Schedule& schedule);
 PixelSamples keptOfLater(const FrameOptions& options, const Schedule& schedule);
-// Throws std::invalid_argument where an option is out of its range.
 TileGrid tilesOf(const FrameOptions& options);
+// Throws std::invalid_argument where an option is out of its range.
 const FrameOptions& checkedOptions(const FrameOptions& options);
 
 // Sums over tiles: vertices by what can be learned from them, all vertices, memory.

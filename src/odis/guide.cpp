@@ -130,11 +130,12 @@ VertexSamples GuideBuilder::Data::takeGuided(const VertexBatch& vertices) {
 VertexSamples GuideBuilder::Data::takeUnguided(const VertexBatch& vertices, uint64_t seen) {
   if (options.cellsPerDiagonal == 0) return {};
   VertexSamples result;
-  BatchSamples cells = own().store.takeWithoutCells(vertices, rules(true));
-  const VertexRules checked = rules(true);
+  const VertexRules unguided = rules(true);
+  BatchSamples cells = own().store.takeWithoutCells(vertices, unguided);
   const bool areUsable = refusedVertices(cells.counts) == cells.counts.discrete;
   result.m_data = std::make_unique<VertexSamples::Data>(VertexSamples::Data{
-      std::move(cells), takeFractionSamples(vertices, fractionStride(seen), areUsable ? nullptr : &checked)});
+      std::move(cells),
+      takeFractionSamples(vertices, fractionStride(seen), areUsable ? nullptr : &unguided)});
   return result;
 }
 VertexSamples GuideBuilder::takeGuided(ArrayView<const PathVertex> vertices) const {
@@ -351,12 +352,12 @@ bool GuideBuilder::canRebuild(const Guide& previous) const {
 
 Guide GuideBuilder::rebuild(const Guide& previous) const {
   if (m_data->options.cellsPerDiagonal == 0) return Guide();
-  std::optional<CellStore> sum;
-  CellStore& store = m_data->allCells(sum);
   if (!canRebuild(previous))
     throw std::invalid_argument(
         "odisRebuildGuide: expected a guide of cells as the builder has them since odisForgetVertices or "
         "odisSetBounds");
+  std::optional<CellStore> sum;
+  CellStore& store = m_data->allCells(sum);
   const Progress& progress = m_data->progress;
   progress.report(0);
   const std::vector<CellStatistics>& cells = store.rollUp();

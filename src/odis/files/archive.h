@@ -7,7 +7,8 @@
 //                elements (64 bits), the elements
 //          last 4 CRC-32 of all before
 // All numbers are little-endian and, but for the elements, unsigned integers of 32 bits. Elements are numbers
-// or arrays of numbers; structs are saved field by field (odis/files/fields.h).
+// or arrays of numbers. Structs are saved field by field (odis/files/fields.h), but for some of frames, which
+// lie in the file as in memory: saved frames are for the version that wrote them.
 #pragma once
 
 #include <cstdint>

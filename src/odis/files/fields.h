@@ -79,29 +79,21 @@ size_t countFields(const Archive& file, const std::string& name) {
   return *count;
 }
 
-// Sets the fields that the file has of as many structs; the others keep what they are. Throws FileError, also
-// for truth values that are none.
-template <class T>
-void loadFields(const Archive& file, const std::string& name, std::span<T> items) {
-  file.require(countFields<T>(file, name) == items.size(),
-               name + ": has another number of elements than expected");
-  forEachField(FieldsOf<T>(), [&]<class Field>(const char* field, Field T::*member) {
-    const std::string column = name + "." + field;
-    if (!file.contains(column)) return;
-    const auto bytes = file.get<FieldBytes<Field>>(column, items.size());
-    for (size_t i = 0; i < items.size(); ++i) {
-      if constexpr (std::is_same_v<Field, bool>) file.require(bytes[i][0] <= 1, column + ": is damaged");
-      std::memcpy(&(items[i].*member), bytes[i].data(), sizeof(Field));
-    }
-  });
-}
-
-// The structs of a file, of which there must be `count`.
+// The structs of a file, of which there must be `count`; fields that the file lacks have their defaults.
+// Throws FileError, also for truth values that are none.
 template <class T>
 std::vector<T> loadFields(const Archive& file, const std::string& name, size_t count) {
   file.require(countFields<T>(file, name) == count, name + ": has another number of elements than expected");
   std::vector<T> items(count);
-  loadFields(file, name, std::span<T>(items));
+  forEachField(FieldsOf<T>(), [&]<class Field>(const char* field, Field T::*member) {
+    const std::string column = name + "." + field;
+    if (!file.contains(column)) return;
+    const auto bytes = file.get<FieldBytes<Field>>(column);
+    for (size_t i = 0; i < count; ++i) {
+      if constexpr (std::is_same_v<Field, bool>) file.require(bytes[i][0] <= 1, column + ": is damaged");
+      std::memcpy(&(items[i].*member), bytes[i].data(), sizeof(Field));
+    }
+  });
   return items;
 }
 template <class T>
