@@ -80,42 +80,35 @@ static OdisGuide buildGuide(OdisContext context, const OdisPathVertex* array) {
 
 // Looks the guide up at a place on the floor, as a renderer does wherever a path is scattered.
 static void guidePath(const OdisGuideView* view) {
-  OdisPlace place = {{0.5f, 0.5f, 0}, {0, 0, 1}, 0, 0, false, 1};
+  const OdisPlace place = {{0.5f, 0.5f, 0}, {0, 0, 1}, 0, 0, false, 1, false};
   const float uv[2] = {0.3f, 0.7f};  // two random numbers
-  OdisMapSample sample;
+  OdisGuidedVertex vertex;
+  OdisFloat3 wi;
 
-  // Finds the cell that knows about this place and normal.
-  const uint32_t cell = odisFindCell(view, &place);
-  if (cell == ODIS_NO_CELL) {
+  // Finds what is known about this place and normal. There are no pixels here, so no pixel's value.
+  if (!odisLookUp(view, &place, 1, &vertex)) {
     printf("nothing is known here: the path goes on as the BSDF says\n");
     return;
   }
 
-  // With this probability the renderer samples its BSDF, else the map. 1 stands for the roughness of a
-  // diffuse surface.
-  const float bsdfFraction = odisGetBsdfFraction(view, cell, 1);
-
-  // Samples a direction from the map times the cosine to the normal.
-  if (!odisSampleMap(view, cell, &place.normal, false, uv, &sample)) {
-    printf("the map can't be sampled here: the path goes on as the BSDF says\n");
+  // The surface is diffuse, which the roughness 1 stands for; all of it may be guided, and it scatters to one
+  // side. A renderer draws a number u and samples the map if odisDrawsFromMap says so, else its BSDF.
+  if (!odisPrepareVertex(&vertex, 1, 1, false) || !odisSampleMap(&vertex, uv, &wi)) {
+    printf("directions are not guided here: the path goes on as the BSDF says\n");
     return;
   }
 
   // Whichever of the two the direction came from, its density is that of the mixture, which is what the
-  // path's weight is divided by. All of a diffuse BSDF may be guided: that part's density is the BSDF's, and
-  // its probability is 1.
-  const OdisFloat3 wi = sample.wi;
+  // path's weight is divided by. The part of the BSDF that may be guided is all of it.
   const float bsdfPdf = wi.z / PI;
-  const float pdf = odisGetMixturePdf(bsdfPdf, bsdfPdf, 1, bsdfFraction, sample.pdf);
-  printf("cell %u of %u, BSDF sampling fraction %.2f\n", (unsigned)cell, (unsigned)view->cellCount,
-         bsdfFraction);
+  const float pdf = odisGetDirectionPdf(&vertex, &wi, bsdfPdf, bsdfPdf);
   printf("direction (%.3f, %.3f, %.3f), cosine to the bright spot %.3f\n", wi.x, wi.y, wi.z,
          wi.x * BRIGHT.x + wi.y * BRIGHT.y + wi.z * BRIGHT.z);
-  printf("density: BSDF %.3f, map %.3f, mixture %.3f\n", bsdfPdf, sample.pdf, pdf);
+  printf("density: BSDF %.3f, map %.3f, mixture %.3f\n", bsdfPdf, odisGetMapPdf(&vertex, &wi),
+         pdf);
 
   // The density of any direction can be asked for, which multiple importance sampling needs.
-  printf("density of the map towards the bright spot: %.3f\n",
-         odisGetMapPdf(view, cell, &place.normal, false, &BRIGHT));
+  printf("density of the map towards the bright spot: %.3f\n", odisGetMapPdf(&vertex, &BRIGHT));
 }
 
 int main(void) {

@@ -100,11 +100,9 @@ struct Traced {
   odis::FrameSample forFrame() const { return {pixel, sample, color, rays}; }
 };
 
-// Traces a path of a pass; `recorder` is null where its vertices are not wanted.
-inline Traced trace(const Scene& scene, const Settings& settings, const odis::FramePass& pass,
-                    odis::ArrayView<const float> pixelValues, uint32_t pixel, uint32_t sample,
-                    odis::PathRecorder* recorder) {
-  const odis::GuideView& guide = *pass.guide;
+// Traces a path of a pass; `path` is where the recorder keeps its events, kNoPath if they are not wanted.
+inline Traced trace(const Scene& scene, const Settings& settings, const odis::FramePass& pass, uint32_t pixel,
+                    uint32_t sample, odis::PathRecorder& recorder, uint32_t path) {
   Random random(pass.seed, pixel, sample);
   Traced traced;
   traced.pixel = pixel, traced.sample = sample;
@@ -114,9 +112,9 @@ inline Traced trace(const Scene& scene, const Settings& settings, const odis::Fr
   const float scale = 2 / float(settings.width);
   Ray ray = scene.cameraRay(scale * traced.x - 1, 0.5f * scale * float(settings.height) - scale * traced.y);
   Vec3 throughput{1, 1, 1};
-  float rayPdf = 0;                                                              // of the ray's direction
-  std::vector<float> lights(scene.lightCount(), 1 / float(scene.lightCount()));  // the probability of each
-  const uint32_t path = recorder ? recorder->begin({pixel, sample}) : 0;
+  float rayPdf = 0;           // of the ray's direction
+  odis::GuidedVertex vertex;  // that the ray left
+  const float evenly = 1 / float(scene.lightCount());
   const auto bring = [&](const Vec3& color, size_t light) {
     traced.color = traced.color + color;
     traced.byLight[light] = traced.byLight[light] + color;
@@ -126,70 +124,60 @@ inline Traced trace(const Scene& scene, const Settings& settings, const odis::Fr
     ++traced.rays;
     if (!hit.shape) break;
     if (depth == 1) traced.albedo = hit.color, traced.normal = hit.n;
-    odis::SurfaceEvent surface;
-    surface.position = hit.p, surface.normal = hit.n, surface.wo = ray.direction * -1;
-    surface.distance = hit.distance;
-    if (recorder) recorder->surface(path, surface);
+    recorder.surface(path, odis::surfaceEvent(hit.p, hit.n, ray.direction * -1, hit.distance));
     if (maxComponent(hit.emission) > 0) {
       const size_t light = scene.lightIndex(hit.shape);
-      odis::EmissionEvent emission;
-      emission.radiance = hit.emission;
-      emission.lightPdf = hit.shape->directionPdf(ray.origin, ray.direction, hit.distance) * lights[light];
-      emission.misWeight = depth > 1 ? powerHeuristic(rayPdf, emission.lightPdf) : 1;
-      bring(throughput * hit.emission * emission.misWeight, light);
-      if (recorder) recorder->emission(path, emission);
+      const float lightPdf = hit.shape->directionPdf(ray.origin, ray.direction, hit.distance) *
+                             vertex.lightProbability(uint32_t(light), evenly);
+      const float misWeight = depth > 1 ? powerHeuristic(rayPdf, lightPdf) : 1;
+      bring(throughput * hit.emission * misWeight, light);
+      recorder.emission(path, odis::emissionEvent(hit.emission, misWeight, lightPdf));
     }
     if (depth == 16) break;
 
     // What the guide has learned here: whether the path goes on, which light is asked, where the path goes.
-    const uint32_t cell = odis::findCell(guide, {hit.p, hit.n});
-    const odis::CellDecisions told = cell != odis::kNoCell ? guide.decisions[cell] : odis::CellDecisions();
-    float survival = depth > 3 ? std::min(maxComponent(throughput), 0.95f) : 1;
-    if (cell != odis::kNoCell && depth > 1)
-      survival = odis::survivalProbability(guide.rules, told.survivalFactor,
-                                           luminance(throughput) / pixelValues[pixel], depth);
-    if (random.next() >= survival) break;
+    vertex = odis::GuidedVertex(pass, {hit.p, hit.n, pixel, sample, false, depth});
+    const float survival = vertex.survivalProbability(
+        luminance(throughput), depth > 3 ? std::min(maxComponent(throughput), 0.95f) : 1);
+    const bool survives = random.next() < survival;
+    // The mean of this is zero, so the part of any light may have it.
+    bring(throughput * vertex.standIn(survival, survives), 0);
+    if (!survives) break;
     throughput = throughput / survival;
-    if (recorder) recorder->survived(path, survival);
-    const odis::Mixture mixture(told.bsdfFraction[0], 1.0f);
-    odis::VertexMap<float> map;
-    if (mixture.guides()) map.prepare(guide.maps, int32_t(cell), hit.n, 0);
-    const auto pdfOf = [&](const Vec3& wi) {
-      const float bsdf = std::max(dot(wi, hit.n), 0.0f) / kPi;
-      return mixture.guides() ? mixture.pdf(bsdf, bsdf, map.pdf(wi)) : bsdf;
-    };
+    recorder.survived(path, survival);
+    vertex.prepare(1);
 
     // Next-event estimation.
-    const float* table = told.learnedLightFraction > 0 ? odis::learnedLights(guide, cell).cdf : nullptr;
-    for (size_t i = 0; table && i < lights.size(); ++i)
-      lights[i] = std::lerp(1 / float(lights.size()), table[i + 1] - table[i], told.learnedLightFraction);
-    const size_t chosen = lights.size() > 1 && random.next() >= lights[0] ? 1 : 0;
+    float u = random.next();
+    uint32_t chosen = vertex.drawLightGroup(u);
+    if (chosen == odis::kNoLightGroup) chosen = uint32_t(std::min(u / evenly, float(scene.lightCount() - 1)));
+    const float probability = vertex.lightProbability(chosen, evenly);
     const float u1 = random.next(), u2 = random.next();
-    LightSample light = scene.sampleLight(chosen, lights[chosen], hit.p, u1, u2);
+    LightSample light = scene.sampleLight(chosen, probability, hit.p, u1, u2);
     const float cosine = std::max(dot(light.wi, hit.n), 0.0f);
     if (cosine > 0) {
       ++traced.rays;
       if (scene.isHidden({hit.p, light.wi}, light.distance)) light.pdf = 0;
-      odis::LightEvent event;
       const Vec3 unweighted =
           light.pdf > 0 ? hit.color * light.radiance * (cosine / kPi / light.pdf) : Vec3();
-      const Vec3 weighted = unweighted * powerHeuristic(light.pdf, light.pdf > 0 ? pdfOf(light.wi) : 0);
-      event.unweighted = unweighted, event.weighted = weighted, event.wi = light.wi, event.pdf = light.pdf;
-      event.bsdfPdf = event.guidablePdf = cosine / kPi;
-      event.group = uint32_t(chosen), event.groupProbability = lights[chosen];
+      const float other = light.pdf > 0 ? vertex.pdf(light.wi, cosine / kPi, cosine / kPi) : 0;
+      const Vec3 weighted = unweighted * powerHeuristic(light.pdf, other);
       bring(throughput * weighted, chosen);
-      if (recorder) recorder->light(path, event);
+      recorder.light(path, odis::lightEvent(unweighted, weighted, light.wi,
+                                            {light.pdf, cosine / kPi, cosine / kPi, chosen, probability}));
     }
 
     // The path goes on in a direction of the BSDF, or of the map.
-    const float v1 = random.next(), v2 = random.next(), r = std::sqrt(v1), phi = 2 * kPi * v2;
-    Vec3 wi = Frame(hit.n).toWorld({r * std::cos(phi), r * std::sin(phi), std::sqrt(1 - v1)});
-    if (random.next() >= mixture.bsdfFraction()) wi = map.sample(v1, v2).wi;
-    rayPdf = pdfOf(wi);
-    odis::BounceEvent bounce;
-    const Vec3 weight = rayPdf > 0 ? hit.color * (std::max(dot(wi, hit.n), 0.0f) / kPi / rayPdf) : Vec3();
-    bounce.wi = wi, bounce.weight = weight, bounce.pdf = rayPdf;
-    if (recorder) recorder->bounce(path, bounce);
+    float v1 = random.next();
+    const float v2 = random.next();
+    const bool fromMap = vertex.drawsFromMap(v1);
+    const float r = std::sqrt(v1), phi = 2 * kPi * v2;
+    const Vec3 wi = fromMap ? Vec3(vertex.sampleMap(v1, v2))
+                            : Frame(hit.n).toWorld({r * std::cos(phi), r * std::sin(phi), std::sqrt(1 - v1)});
+    const float bsdfPdf = std::max(dot(wi, hit.n), 0.0f) / kPi;
+    rayPdf = vertex.pdf(wi, bsdfPdf, bsdfPdf);
+    const Vec3 weight = rayPdf > 0 ? hit.color * (bsdfPdf / rayPdf) : Vec3();
+    recorder.bounce(path, odis::bounceEvent(wi, weight, rayPdf));
     throughput = throughput * weight;
     ray = {hit.p, wi};
     if (maxComponent(throughput) == 0) break;
@@ -206,10 +194,11 @@ inline std::vector<Traced> traceTile(const Scene& scene, const Settings& setting
   std::vector<Traced> samples;
   std::vector<odis::FrameSample> forFrame;
   tiles.forEachPixel(tile, [&](uint32_t pixel) {
-    odis::PathRecorder* const records = frame.wantsVertices(pixel) ? &recorder : nullptr;
+    const bool recorded = frame.wantsVertices(pixel);
     const odis::SampleRange range = frame.samples(pixel);
     for (uint32_t i = range.first; i < range.first + range.count; ++i) {
-      samples.push_back(trace(scene, settings, pass, frame.pixelValues(), pixel, i, records));
+      const uint32_t path = recorded ? recorder.begin({pixel, i}) : odis::kNoPath;
+      samples.push_back(trace(scene, settings, pass, pixel, i, recorder, path));
       samples.back().weight = range.weight;
       forFrame.push_back(samples.back().forFrame());
     }

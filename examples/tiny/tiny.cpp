@@ -60,7 +60,7 @@ class Bsdf {
 
 // ---- paths ----
 
-constexpr int kMaxDepth = 16, kRouletteDepth = 4;
+constexpr uint32_t kMaxDepth = 16, kRouletteDepth = 4;
 
 struct Settings {
   std::string scene = "door", output = "image.ppm";
@@ -89,7 +89,7 @@ Traced trace(const Scene& scene, const Settings& settings, const Sample& of) {
   Vec3 throughput{1, 1, 1};
   float rayPdf = 0;                                                              // of the ray's direction
   std::vector<float> lights(scene.lightCount(), 1 / float(scene.lightCount()));  // the probability of each
-  for (int depth = 1;; ++depth) {
+  for (uint32_t depth = 1;; ++depth) {
     const Hit hit = scene.intersect(ray);
     const Vec3 wo = ray.direction * -1;
     ++traced.rays;
@@ -106,7 +106,8 @@ Traced trace(const Scene& scene, const Settings& settings, const Sample& of) {
 
     // Russian roulette ends paths that have lost most of their throughput.
     float survival = depth >= kRouletteDepth ? std::min(maxComponent(throughput), 0.95f) : 1;
-    if (random.next() >= survival) break;
+    const bool survives = random.next() < survival;
+    if (!survives) break;
     throughput = throughput / survival;
 
     // Next-event estimation: a shadow ray towards a light.
@@ -121,14 +122,15 @@ Traced trace(const Scene& scene, const Settings& settings, const Sample& of) {
       ++traced.rays;
       if (scene.isHidden({hit.p, light.wi}, light.distance)) light.pdf = 0;
       const Vec3 unweighted = light.pdf > 0 ? toLight.value * light.radiance / light.pdf : Vec3();
-      float other = toLight.pdf;  // with which the path might go on in this direction
+      // The density with which the path might go on in this direction.
+      const float other = toLight.pdf;
       const Vec3 direct = unweighted * powerHeuristic(light.pdf, other);
       traced.radiance = traced.radiance + throughput * direct;
     }
 
     // The path goes on in a direction of the BSDF.
-    const float v1 = random.next(), v2 = random.next();
-    Vec3 wi = bsdf.sample(v1, v2);
+    float v1 = random.next(), v2 = random.next();
+    const Vec3 wi = bsdf.sample(v1, v2);
     Bsdf::Value next = bsdf.evaluate(wi);
     const Vec3 weight = next.pdf > 0 ? next.value / next.pdf : Vec3();
     throughput = throughput * weight;

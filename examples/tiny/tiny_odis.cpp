@@ -62,7 +62,7 @@ class Bsdf {
 
 // ---- paths ----
 
-constexpr int kMaxDepth = 16, kRouletteDepth = 4;
+constexpr uint32_t kMaxDepth = 16, kRouletteDepth = 4;
 
 struct Settings {
   std::string scene = "door", output = "image.ppm";
@@ -79,8 +79,8 @@ struct Traced {
 struct Sample {
   uint32_t pixel, sample;
   uint64_t seed;
-  const odis::GuideView& guide;
-  const float* pixelValues;  // null as long as the guide has no cells
+  const odis::FramePass& pass;
+  bool recorded;
 };
 // Gathers what the paths of this thread met, for the guide to learn from.
 thread_local odis::PathRecorder recorder;
@@ -95,13 +95,14 @@ Traced trace(const Scene& scene, const Settings& settings, const Sample& of) {
   Vec3 throughput{1, 1, 1};
   float rayPdf = 0;                                                              // of the ray's direction
   std::vector<float> lights(scene.lightCount(), 1 / float(scene.lightCount()));  // the probability of each
-  const uint32_t path = recorder.begin({of.pixel, of.sample});
-  for (int depth = 1;; ++depth) {
+  odis::GuidedVertex vertex;
+  const uint32_t path = of.recorded ? recorder.begin({of.pixel, of.sample}) : odis::kNoPath;
+  for (uint32_t depth = 1;; ++depth) {
     const Hit hit = scene.intersect(ray);
     const Vec3 wo = ray.direction * -1;
     ++traced.rays;
     if (!hit.shape) break;
-    recorder.surface(path, {.position = hit.p, .normal = hit.n, .wo = wo, .distance = hit.distance});
+    recorder.surface(path, odis::surfaceEvent(hit.p, hit.n, wo, hit.distance));
 
     // Emission counts in full where the camera sees it, later by its weight against next-event estimation.
     if (maxComponent(hit.emission) > 0) {
@@ -109,33 +110,26 @@ Traced trace(const Scene& scene, const Settings& settings, const Sample& of) {
                              lights[scene.lightIndex(hit.shape)];
       const float weight = depth > 1 ? powerHeuristic(rayPdf, lightPdf) : 1;
       traced.radiance = traced.radiance + throughput * hit.emission * weight;
-      recorder.emission(path, {.radiance = hit.emission, .misWeight = weight, .lightPdf = lightPdf});
+      recorder.emission(path, odis::emissionEvent(hit.emission, weight, lightPdf));
     }
     if (depth == kMaxDepth) break;
-
-    // What the guide has learned here.
-    const uint32_t cell = odis::findCell(of.guide, {hit.p, hit.n});
-    const odis::CellDecisions told = cell != odis::kNoCell ? of.guide.decisions[cell] : odis::CellDecisions();
 
     // Russian roulette ends paths that have lost most of their throughput; under a guide those that it
     // expects little of.
     float survival = depth >= kRouletteDepth ? std::min(maxComponent(throughput), 0.95f) : 1;
-    if (cell != odis::kNoCell && depth > 1)
-      survival = odis::survivalProbability(of.guide.rules, told.survivalFactor,
-                                           luminance(throughput) / of.pixelValues[of.pixel], depth);
-    if (random.next() >= survival) break;
+    vertex = odis::GuidedVertex(of.pass, {hit.p, hit.n, of.pixel, of.sample, false, depth});
+    survival = vertex.survivalProbability(luminance(throughput), survival);
+    const bool survives = random.next() < survival;
+    traced.radiance = traced.radiance + throughput * vertex.standIn(survival, survives);
+    if (!survives) break;
     throughput = throughput / survival;
     recorder.survived(path, survival);
 
     // Next-event estimation: a shadow ray towards a light.
     const Bsdf bsdf(hit, wo);
-    const odis::Mixture mixture(told.bsdfFraction[odis::roughnessClass(of.guide.rules, hit.roughness)], 1.0f);
-    odis::VertexMap<float> map;
-    if (mixture.guides()) map.prepare(of.guide.maps, int32_t(cell), hit.n, 0);
-    // A cell that knows nothing of lights leaves their probabilities as they are.
-    const float* table = told.learnedLightFraction > 0 ? odis::learnedLights(of.guide, cell).cdf : nullptr;
-    for (size_t i = 0; table && i < lights.size(); ++i)
-      lights[i] = std::lerp(1 / float(lights.size()), table[i + 1] - table[i], told.learnedLightFraction);
+    vertex.prepare(hit.roughness);
+    for (uint32_t i = 0; i < lights.size(); ++i)
+      lights[i] = vertex.lightProbability(i, 1 / float(lights.size()));
     size_t chosen = 0;
     for (float u = random.next(); chosen + 1 < lights.size() && u >= lights[chosen]; ++chosen)
       u -= lights[chosen];
@@ -146,22 +140,21 @@ Traced trace(const Scene& scene, const Settings& settings, const Sample& of) {
       ++traced.rays;
       if (scene.isHidden({hit.p, light.wi}, light.distance)) light.pdf = 0;
       const Vec3 unweighted = light.pdf > 0 ? toLight.value * light.radiance / light.pdf : Vec3();
-      float other = toLight.pdf;  // with which the path might go on in this direction
-      if (light.pdf > 0 && mixture.guides()) other = mixture.pdf(toLight.pdf, toLight.pdf, map.pdf(light.wi));
+      // The density with which the path might go on in this direction.
+      const float other = light.pdf > 0 ? vertex.pdf(light.wi, toLight.pdf, toLight.pdf) : 0;
       const Vec3 direct = unweighted * powerHeuristic(light.pdf, other);
       traced.radiance = traced.radiance + throughput * direct;
-      recorder.light(path, {sizeof(odis::LightEvent), unweighted, direct, light.wi, light.pdf, toLight.pdf,
-                            toLight.pdf, uint32_t(chosen), lights[chosen]});
+      const odis::LightDraw draw{light.pdf, toLight.pdf, toLight.pdf, uint32_t(chosen), lights[chosen]};
+      recorder.light(path, odis::lightEvent(unweighted, direct, light.wi, draw));
     }
 
     // The path goes on in a direction of the BSDF, or of the map.
-    const float v1 = random.next(), v2 = random.next();
-    Vec3 wi = bsdf.sample(v1, v2);
-    if (random.next() >= mixture.bsdfFraction()) wi = map.sample(v1, v2).wi;
+    float v1 = random.next(), v2 = random.next();
+    const Vec3 wi = vertex.drawsFromMap(v1) ? Vec3(vertex.sampleMap(v1, v2)) : bsdf.sample(v1, v2);
     Bsdf::Value next = bsdf.evaluate(wi);
-    if (mixture.guides()) next.pdf = mixture.pdf(next.pdf, next.pdf, map.pdf(wi));
+    next.pdf = vertex.pdf(wi, next.pdf, next.pdf);
     const Vec3 weight = next.pdf > 0 ? next.value / next.pdf : Vec3();
-    recorder.bounce(path, {.wi = wi, .weight = weight, .pdf = next.pdf, .roughness = hit.roughness});
+    recorder.bounce(path, odis::bounceEvent(wi, weight, next.pdf, hit.roughness));
     throughput = throughput * weight;
     rayPdf = next.pdf;
     ray = {hit.p, wi};
@@ -199,15 +192,16 @@ void forEachTile(const Settings& settings, const std::function<void(const std::v
 
 // Renders the image.
 void render(const Scene& scene, const Settings& settings, Image& image) {
-  odis::FrameOptions options{.width = settings.width, .height = settings.height, .seed = settings.seed};
+  odis::FrameOptions options;
+  options.width = settings.width, options.height = settings.height, options.seed = settings.seed;
   options.samplesPerPixel = settings.spp, options.guide.lightGroups = uint32_t(scene.lightCount());
-  odis::Frame frame(options, odis::Context({.threads = settings.threads}));
+  odis::Frame frame(options, odis::Context({sizeof(odis::ContextOptions), settings.threads}));
   const odis::FramePass* pass;
   const auto renderTile = [&](const std::vector<uint32_t>& pixels) {
     std::vector<odis::FrameSample> samples;
     for (const uint32_t pixel : pixels) {
       for (odis::SampleRange left = frame.samples(pixel); left.count > 0; ++left.first, --left.count) {
-        const Sample of{pixel, left.first, pass->seed, *pass->guide, frame.pixelValues().data()};
+        const Sample of{pixel, left.first, pass->seed, *pass, frame.wantsVertices(pixel)};
         const Traced traced = trace(scene, settings, of);
         samples.push_back({pixel, left.first, traced.radiance, traced.rays});
         image.rays += traced.rays;

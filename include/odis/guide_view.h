@@ -47,8 +47,10 @@ ODIS_HOST_DEVICE inline uint32_t findAround(const GuideView& view, uint64_t key,
   return cell;
 }
 
-// The finest cell that there is for a vertex; kNoCell where the guide has seen nothing at all.
+// The finest cell that there is for a vertex; kNoCell at discrete ones and where the guide has seen nothing at
+// all.
 ODIS_HOST_DEVICE inline uint32_t findCell(const GuideView& view, const Place& place) {
+  if (place.discrete) return kNoCell;
   const uint32_t cell = pixelCell(view, place);
   if (cell != kNoCell) return cell;
   const uint64_t key = CellGrid(view.grid).key(place.position, place.normal, 0);
@@ -83,10 +85,9 @@ inline void findCells(const GuideView& view, const Place* places, size_t count, 
     }
     findAround(view, keys, hashes, size, cells + begin);
   }
-  if (!view.pixels.cells) return;
   for (size_t i = 0; i < count; ++i) {
     const uint32_t own = pixelCell(view, places[i]);
-    cells[i] = own == kNoCell ? cells[i] : own;
+    cells[i] = places[i].discrete ? kNoCell : own == kNoCell ? cells[i] : own;
   }
 }
 

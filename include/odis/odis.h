@@ -310,40 +310,54 @@ ODIS_API bool odisSaveVertices(const OdisPathVertices* vertices, const char* pat
 // Copies the vertices of a file; returns how many there are. NULL: counts them only.
 ODIS_API size_t odisLoadVertices(const char* path, OdisPathVertex* vertices, size_t capacity);
 
-// ---- look-ups, for hosts in C: those in C++ and CUDA use odis/guide_view.h ----
+// ---- look-ups at a vertex, for hosts in C: odis::GuidedVertex of odis/guided_vertex.h, call by call ----
+//
+// A vertex of which nothing is known, and NULL for one, are answered as if there were no guide.
 
-// The finest cell that there is for a vertex; ODIS_NO_CELL where the guide has seen nothing at all.
-ODIS_API uint32_t odisFindCell(const OdisGuideView* view, const OdisPlace* place);
-// The probability that a draw from lobes that may be guided stays with the BSDF, in (0, 1]; 1 without a cell.
-ODIS_API float odisGetBsdfFraction(const OdisGuideView* view, uint32_t cell, float roughness);
-// Samples a direction from the cell's map times the cosine to `normal` (or its absolute value, if the surface
-// scatters to both sides), from u, v uniform in [0, 1). False: the map can't be sampled at this vertex.
-ODIS_API bool odisSampleMap(const OdisGuideView* view, uint32_t cell, const OdisFloat3* normal,
-                            bool bothSides, const float uv[2], OdisMapSample* sample);
-// The density of that.
-ODIS_API float odisGetMapPdf(const OdisGuideView* view, uint32_t cell, const OdisFloat3* normal,
-                             bool bothSides, const OdisFloat3* wi);
-// The density of the mixture of BSDF and map (odis/mixture.h).
-ODIS_API float odisGetMixturePdf(float bsdfPdf, float guidablePdf, float guidableProbability,
-                                 float bsdfFraction, float mapPdf);
-// The probability, in (0, 1], with which a path should go on from a vertex in this cell; `throughput` is that
-// of the path over the pixel's value, both as luminance. `depth` is that of the vertex, 1 for the first: from
-// 32 on the answer is at most .95, so that every path ends. At vertices with delta lobes only (mirrors,
-// glass), of which cells know nothing, it is to be asked for with ODIS_NO_CELL.
-ODIS_API float odisGetSurvivalProbability(const OdisGuideView* view, uint32_t cell, float throughput,
-                                          uint32_t depth ODIS_DEFAULT(1));
+// Looks up what the guide knows at a vertex, which the calls below are made with; true if it knows anything.
+// The view must stay valid meanwhile. `pixelValue` is an estimate of the luminance of the path's pixel
+// (odisGetPixelValues; 1 while there is none).
+ODIS_API bool odisLookUp(const OdisGuideView* view, const OdisPlace* place, float pixelValue,
+                         OdisGuidedVertex* vertex);
+// The probability, in (0, 1], with which the path should go on from the vertex, asked for before next-event
+// estimation. `throughput` is the path's, as luminance; `unguided` the probability by the host's own
+// roulette, which is the answer where nothing has been learned yet. From depth 32 on the answer is at most
+// .95, so that every path ends.
+ODIS_API float odisGetSurvivalProbability(const OdisGuidedVertex* vertex, float throughput, float unguided);
+// The radiance that a path adds, times its throughput before roulette, as it ends there or goes on.
+ODIS_API void odisGetStandIn(const OdisGuidedVertex* vertex, float survival, bool survived,
+                             OdisFloat3* radiance);
+// Whether the path may end here (setting `cached`), and with what radiance in place of what it would find;
+// asked before roulette. `footprint`: the sum over the path's segments of distance / sqrt(density of the
+// direction * cosine at its end), nothing for discrete ones.
+ODIS_API bool odisGetCachedRadiance(const OdisGuidedVertex* vertex, float throughput, float footprint,
+                                    OdisFloat3* radiance);
+// Draws a group of lights from what was learned by `u`, uniform in [0, 1), which is stretched again to draw a
+// light of the group. ODIS_NO_LIGHT_GROUP: the host chooses by `u` as it would without a guide.
+ODIS_API uint32_t odisDrawLightGroup(const OdisGuidedVertex* vertex, float* u);
+// The probability of a light by both ways: `unguided` is that of the host's own choice, `withinGroup` that of
+// the light once its group is drawn.
+ODIS_API float odisGetLightProbability(const OdisGuidedVertex* vertex, uint32_t group, float unguided,
+                                       float withinGroup);
 // The probability, in (0, 1], with which a shadow ray should be traced for light that, if nothing hides it,
-// adds `contribution` to the pixel, over the pixel's value, as luminance.
-ODIS_API float odisGetShadowRayProbability(const OdisGuideView* view, float contribution);
-// The fraction of the choices of a light that follow the cell's table, in [0, 1), and the table: cumulative
-// probabilities of the groups, from 0 to 1. 0 and NULL where nothing is known.
-ODIS_API float odisGetLearnedLights(const OdisGuideView* view, uint32_t cell, const float** cdf);
-
-// Whether a path that arrives in a cell may end there (OdisGuideOptions.cachedError), and with what radiance
-// in place of what it would find. `throughput` as for odisGetSurvivalProbability; `footprint`: the sum over
-// its segments of distance / sqrt(density of the direction * cosine at its end), nothing for discrete ones.
-ODIS_API bool odisGetCachedRadiance(const OdisGuideView* view, const OdisPlace* place, uint32_t cell,
-                                    float throughput, float footprint, OdisFloat3* radiance);
+// adds `contribution` to the pixel, as luminance.
+ODIS_API float odisGetShadowRayProbability(const OdisGuidedVertex* vertex, float contribution);
+// Says what the BSDF is like: its roughness (alpha; 1 for diffuse), how often it draws from lobes that may be
+// guided, in [0, 1], and whether it scatters to both sides. True if directions are to be drawn from the map,
+// too.
+ODIS_API bool odisPrepareVertex(OdisGuidedVertex* vertex, float roughness, float guidableProbability,
+                                bool bothSides);
+// Whether the map draws the direction, if the lobe that is drawn may be guided. `u`, uniform in [0, 1), is
+// stretched again to draw the direction.
+ODIS_API bool odisDrawsFromMap(const OdisGuidedVertex* vertex, float* u);
+// Samples a direction from the map times the cosine, from u, v uniform in [0, 1). False: there is none.
+ODIS_API bool odisSampleMap(const OdisGuidedVertex* vertex, const float uv[2], OdisFloat3* wi);
+// The map's density of a direction; 0 without one.
+ODIS_API float odisGetMapPdf(const OdisGuidedVertex* vertex, const OdisFloat3* wi);
+// The density with which BSDF and map together draw a direction (odis/mixture.h), of which the BSDF's density
+// and the part of that from lobes that may be guided are these.
+ODIS_API float odisGetDirectionPdf(const OdisGuidedVertex* vertex, const OdisFloat3* wi, float bsdfPdf,
+                                   float guidablePdf);
 
 #ifdef __cplusplus
 }

@@ -8,8 +8,8 @@
 //   while (const odis::FramePass* pass = frame.beginPass()) {
 //     for each pixel, in any order, on any number of threads:
 //       for each sample of frame.samples(pixel):
-//         trace a path, guided by *pass->guide (odis/guide_view.h, odis/mixture.h);
-//         record its vertices with a PathRecorder if frame.wantsVertices(pixel)
+//         trace a path, guided by *pass->guide (odis/guided_vertex.h);
+//         record its vertices with a PathRecorder (odis/events.h) if frame.wantsVertices(pixel)
 //       frame.add(samples, vertices);  // of one path, of a tile, of everything
 //     frame.endPass();
 //   }
@@ -25,8 +25,8 @@
 #include <utility>
 #include <vector>
 
-#include "odis/guide_view.h"
-#include "odis/mixture.h"
+#include "odis/events.h"
+#include "odis/guided_vertex.h"
 #include "odis/odis.h"
 #include "odis/path_vertex.h"
 #include "odis/pixel_sums.h"
@@ -178,6 +178,9 @@ inline OdisPathVertices describe(ArrayView<const PathVertex> vertices) {
   return described;
 }
 
+// Stands for a path that is not recorded: its events are ignored.
+inline constexpr uint32_t kNoPath = UINT32_MAX;
+
 class PathRecorder : public Handle<OdisRecorder, odisRetainRecorder, odisReleaseRecorder> {
  public:
   explicit PathRecorder(const Context& context = Context::shared())
@@ -186,16 +189,14 @@ class PathRecorder : public Handle<OdisRecorder, odisRetainRecorder, odisRelease
   uint32_t begin(const PathIdentity& identity) {
     return checked(UINT32_MAX, [&] { return odisBeginPath(get(), &identity); });
   }
-  void surface(uint32_t path, const SurfaceEvent& e) { require(odisRecordSurface(get(), path, &e)); }
-  void escape(uint32_t path) { require(odisRecordEscape(get(), path)); }
-  void emission(uint32_t path, const EmissionEvent& e) { require(odisRecordEmission(get(), path, &e)); }
-  void cached(uint32_t path, const Float3& radiance) {
-    require(odisRecordCachedRadiance(get(), path, &radiance));
-  }
-  void survived(uint32_t path, float probability) { require(odisRecordSurvival(get(), path, probability)); }
-  void light(uint32_t path, const LightEvent& e) { require(odisRecordLight(get(), path, &e)); }
-  void lightHidden(uint32_t path) { require(odisRecordLightHidden(get(), path)); }
-  void bounce(uint32_t path, const BounceEvent& e) { require(odisRecordBounce(get(), path, &e)); }
+  void surface(uint32_t path, const SurfaceEvent& e) { record(path, odisRecordSurface, &e); }
+  void escape(uint32_t path) { record(path, odisRecordEscape); }
+  void emission(uint32_t path, const EmissionEvent& e) { record(path, odisRecordEmission, &e); }
+  void cached(uint32_t path, const Float3& radiance) { record(path, odisRecordCachedRadiance, &radiance); }
+  void survived(uint32_t path, float probability) { record(path, odisRecordSurvival, probability); }
+  void light(uint32_t path, const LightEvent& e) { record(path, odisRecordLight, &e); }
+  void lightHidden(uint32_t path) { record(path, odisRecordLightHidden); }
+  void bounce(uint32_t path, const BounceEvent& e) { record(path, odisRecordBounce, &e); }
   // Closes all paths; their vertices stay until the next begin().
   ArrayView<const PathVertex> finish() {
     size_t count = 0;
@@ -205,6 +206,10 @@ class PathRecorder : public Handle<OdisRecorder, odisRetainRecorder, odisRelease
   }
 
  private:
+  template <class Function, class... Event>
+  void record(uint32_t path, const Function& function, Event... event) {
+    if (path != kNoPath) require(function(get(), path, event...));
+  }
   static void require(bool succeeded) {
     if (!succeeded) throwError();
   }

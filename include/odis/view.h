@@ -16,13 +16,14 @@ typedef struct OdisPlace {
   bool first ODIS_DEFAULT(false);
   // The vertex's depth, as in OdisPathVertex; cached radiance needs it if OdisGuideOptions.maxDepth is set.
   uint32_t depth ODIS_DEFAULT(0);
+  // Whether the surface has delta lobes only, as mirrors and glass: these have no cell.
+  bool discrete ODIS_DEFAULT(false);
 } OdisPlace;
 
-// A direction drawn from a map, and its density.
-typedef struct OdisMapSample {
-  OdisFloat3 wi;
-  float pdf ODIS_DEFAULT(0);
-} OdisMapSample;
+// What a guide says at a vertex: odis::GuidedVertex, for hosts in C, filled in by odisLookUp.
+typedef struct OdisGuidedVertex {
+  uint64_t words[32] ODIS_DEFAULT({});
+} OdisGuidedVertex;
 
 // Where the cells lie: the first corner of the first cell, 1 / edge of the finest, and 1 / the number of them
 // up to which they are all the same size, 0 if they are everywhere (odis/cell_grid.h).
@@ -142,6 +143,8 @@ typedef struct OdisFramePass {
   uint64_t stageSamples ODIS_DEFAULT(0);
   // Guides paths by what was learned; without cells where nothing was. Valid until the pass ends.
   const OdisGuideView* guide ODIS_DEFAULT(NULL);
+  // An estimate of each pixel's luminance: odisGetPixelValues. NULL in the pilot.
+  const float* pixelValues ODIS_DEFAULT(NULL);
 } OdisFramePass;
 
 #endif

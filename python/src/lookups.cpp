@@ -42,6 +42,32 @@ Rows<float> randomNumbers(const Array& uv, size_t count) {
   return rows;
 }
 
+// A guide as all of this looks it up: numbers that are no cell's are answered as vertices without a cell.
+class Lookup {
+ public:
+  explicit Lookup(const Guide& guide) : m_view(guide.view()) {}
+
+  // The map of a cell; false where there is none that can be sampled.
+  bool prepareMap(uint32_t cell, const Float3& normal, bool bothSides, VertexMap<float>& map) const {
+    if (cell >= m_view.cellCount) return false;
+    map.prepare(m_view.maps, int32_t(cell), normal, bothSides ? -1.0f : 0.0f);
+    return map.sampleable();
+  }
+  float bsdfFraction(uint32_t cell, float roughness) const {
+    return cell < m_view.cellCount ? odis::bsdfFraction(m_view, int32_t(cell), roughness) : 1;
+  }
+  float survivalProbability(uint32_t cell, float throughput, uint32_t depth) const {
+    const float factor = cell < m_view.cellCount ? m_view.decisions[cell].survivalFactor : INFINITY;
+    return odis::survivalProbability(m_view.rules, factor, throughput, depth);
+  }
+  float shadowRayProbability(float contribution) const {
+    return odis::shadowRayProbability(m_view.rules, contribution);
+  }
+
+ private:
+  GuideView m_view;
+};
+
 Cells findCells(const Guide& guide, const Array& positions, const Array& normals) {
   const Rows<float> at(positions, "positions", 3), normal(normals, "normals", 3, at.size());
   const Cells result = newArray<Cells>({at.size()});
@@ -67,12 +93,12 @@ std::pair<Vectors, Numbers> sample(const Guide& guide, const Array& cells, const
   const Vectors directions = newArray<Vectors>({count, 3});
   const Numbers pdfs = newArray<Numbers>({count});
   withoutLock([&] {
-    const GuideView view = guide.view();
+    const Lookup lookup(guide);
     for (size_t i = 0; i < count; ++i) {
-      const Float3 n = vectorAt(normal, i);
-      const float numbers[2] = {random(i, 0), random(i, 1)};
-      OdisMapSample drawn;
-      odisSampleMap(&view, cell(i), &n, both(i), numbers, &drawn);
+      VertexMap<float> map;
+      VertexMap<float>::Sample drawn;
+      if (lookup.prepareMap(cell(i), vectorAt(normal, i), both(i), map))
+        drawn = map.sample(random(i, 0), random(i, 1));
       std::memcpy(directions.data() + 3 * i, &drawn.wi, sizeof drawn.wi);
       pdfs.data()[i] = drawn.pdf;
     }
@@ -88,11 +114,13 @@ Numbers pdf(const Guide& guide, const Array& cells, const Array& normals, const 
   const FlagAt both(bothSides, "both_sides", count);
   const Numbers result = newArray<Numbers>({count});
   withoutLock([&] {
-    const GuideView view = guide.view();
+    const Lookup lookup(guide);
     for (size_t i = 0; i < count; ++i) {
-      const Float3 n = vectorAt(normal, i), wi = vectorAt(direction, i);
+      const Float3 wi = vectorAt(direction, i);
       const bool finite = std::isfinite(wi.x) && std::isfinite(wi.y) && std::isfinite(wi.z);
-      result.data()[i] = finite ? odisGetMapPdf(&view, cell(i), &n, both(i), &wi) : 0;
+      VertexMap<float> map;
+      const bool known = finite && lookup.prepareMap(cell(i), vectorAt(normal, i), both(i), map);
+      result.data()[i] = known ? map.pdf(wi) : 0;
     }
   });
   return result;
@@ -103,8 +131,8 @@ Numbers bsdfFraction(const Guide& guide, const Array& cells, const Array& roughn
   const Rows<float> alpha(roughness, "roughness", 0, cell.size());
   const Numbers result = newArray<Numbers>({cell.size()});
   withoutLock([&] {
-    const GuideView view = guide.view();
-    for (size_t i = 0; i < cell.size(); ++i) result.data()[i] = odisGetBsdfFraction(&view, cell(i), alpha(i));
+    const Lookup lookup(guide);
+    for (size_t i = 0; i < cell.size(); ++i) result.data()[i] = lookup.bsdfFraction(cell(i), alpha(i));
   });
   return result;
 }
@@ -121,10 +149,9 @@ Numbers survivalProbability(const Guide& guide, const Array& cells, const Array&
   const uint32_t* same = std::get_if<uint32_t>(&depths);
   const Numbers result = newArray<Numbers>({cell.size()});
   withoutLock([&] {
-    const GuideView view = guide.view();
+    const Lookup lookup(guide);
     for (size_t i = 0; i < cell.size(); ++i)
-      result.data()[i] =
-          odisGetSurvivalProbability(&view, cell(i), relative(i), same ? *same : (*depthAt)(i));
+      result.data()[i] = lookup.survivalProbability(cell(i), relative(i), same ? *same : (*depthAt)(i));
   });
   return result;
 }
@@ -133,9 +160,8 @@ Numbers shadowRayProbability(const Guide& guide, const Array& contribution) {
   const Rows<float> relative(contribution, "contribution");
   const Numbers result = newArray<Numbers>({relative.size()});
   withoutLock([&] {
-    const GuideView view = guide.view();
-    for (size_t i = 0; i < relative.size(); ++i)
-      result.data()[i] = odisGetShadowRayProbability(&view, relative(i));
+    const Lookup lookup(guide);
+    for (size_t i = 0; i < relative.size(); ++i) result.data()[i] = lookup.shadowRayProbability(relative(i));
   });
   return result;
 }

@@ -151,6 +151,7 @@ void Frame::Data::describePass() {
   pass.guide = &view;
   if (next == ODIS_PASS_GUIDED) {
     end = schedule.passEnd(done);
+    pass.pixelValues = pixelValues.empty() ? nullptr : pixelValues.data();
     pass.stageSamples = schedule.remainingSamples();
     pass.wantsVertices = learns();
     pass.weightsLater = !schedule.countsAreKnown(done);

@@ -36,6 +36,13 @@ inline bool sameBits(const OdisGuideView& a, const OdisGuideView& b) {
          same(a.decisions, b.decisions, a.cellCount);
 }
 
+// The density of a direction by the map of a cell, at a vertex that reflects only.
+inline float mapPdfOf(const OdisGuideView& view, uint32_t cell, const Float3& normal, const Float3& wi) {
+  VertexMap<float> map;
+  map.prepare(view.maps, int32_t(cell), normal, 0);
+  return map.pdf(wi);
+}
+
 // Takes a frame through its passes with made-up samples that each bring one vertex. Ends where a call fails;
 // returns whether none did.
 inline bool runFrame(OdisFrame frame, uint32_t pixels) {

@@ -59,11 +59,11 @@ TEST(ApiFiles, AGuideIsReadAsItWasWritten) {
   EXPECT_EQ(b.rules.cachedError, 0.5f);
   for (const OdisPathVertex& v : vertices) {
     const OdisPlace place{v.position, v.normal, v.pixel, v.sample};
-    const uint32_t cell = odisFindCell(&a, &place);
-    EXPECT_EQ(cell, odisFindCell(&b, &place));
+    const GuidedVertex vertex(b, place, 1);
+    EXPECT_EQ(findCell(a, place), vertex.cell());
     OdisFloat3 radiance;
-    EXPECT_FALSE(odisGetCachedRadiance(&b, &place, cell, 1e-6f, 0, &radiance));
-    ASSERT_TRUE(odisGetCachedRadiance(&b, &place, cell, 1e-6f, 1e6f, &radiance));
+    EXPECT_FALSE(vertex.cachedRadiance(1e-6f, 0, radiance));
+    ASSERT_TRUE(vertex.cachedRadiance(1e-6f, 1e6f, radiance));
     EXPECT_GT(luminance(radiance), 0);
   }
 }
@@ -86,7 +86,7 @@ void tracePartOfPass(Frame& frame, const FramePass& pass, const ToyHost& host, u
     std::vector<FrameSample> samples;
     const SampleRange range = frame.samples(pixel);
     for (uint32_t i = 0; i < range.count; ++i)
-      samples.push_back(host.trace(pass, frame.pixelValues(), pixel, range.first + i, recorder));
+      samples.push_back(host.trace(pass, pixel, range.first + i, recorder));
     frame.add(samples, recorder.finish());
   }
 }

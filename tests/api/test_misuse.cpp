@@ -161,7 +161,6 @@ TEST(ApiMisuse, WhatStandsForNothingIsHarmless) {
   EXPECT_STREQ(odisGetErrorName(OdisError(99)), "unknown error");
   EXPECT_EQ(odisGetVersion(), uint32_t(ODIS_VERSION));
   EXPECT_NE(std::string(odisGetVersionText()).find('.'), std::string::npos);
-  EXPECT_EQ(odisGetMixturePdf(0.5f, 0.5f, 1, 1, 7), 0.5f) << "no draw follows the map";
 }
 
 TEST(ApiMisuse, StructsOfAnotherSizeAreRefused) {
@@ -231,27 +230,70 @@ TEST(ApiMisuse, IsTriedOfEveryFunction) {
   EXPECT_GT(functions, 80);
 }
 
+// What is asked of a vertex of which nothing is known.
+void expectUnguided(OdisGuidedVertex* vertex) {
+  const float uv[2] = {0.5f, 0.5f};
+  float u = 0.25f;
+  OdisFloat3 wi{0, 0, 1}, radiance;
+  EXPECT_EQ(odisGetSurvivalProbability(vertex, 0.1f, 0.7f), 0.7f);
+  odisGetStandIn(vertex, 0.5f, false, &radiance);
+  odisGetStandIn(vertex, 0.5f, false, nullptr);
+  EXPECT_EQ(luminance(radiance), 0);
+  EXPECT_FALSE(odisGetCachedRadiance(vertex, 0, INFINITY, &radiance));
+  EXPECT_EQ(odisDrawLightGroup(vertex, &u), ODIS_NO_LIGHT_GROUP);
+  EXPECT_EQ(odisGetLightProbability(vertex, 0, 0.3f, 1), 0.3f);
+  EXPECT_EQ(odisGetShadowRayProbability(vertex, 0.001f), 1);
+  EXPECT_FALSE(odisPrepareVertex(vertex, 1, 1, false));
+  EXPECT_FALSE(odisDrawsFromMap(vertex, &u));
+  EXPECT_EQ(u, 0.25f);
+  EXPECT_FALSE(odisSampleMap(vertex, uv, &wi));
+  EXPECT_EQ(odisGetMapPdf(vertex, &wi), 0);
+  EXPECT_EQ(odisGetDirectionPdf(vertex, &wi, 0.2f, 0.2f), 0.2f);
+}
+
 TEST(ApiMisuse, LookUpsWithoutAGuideAnswerThatThereIsNone) {
   const OdisPlace place;
-  const OdisFloat3 up{0, 0, 1};
-  const float uv[2] = {0.5f, 0.5f};
-  OdisMapSample sample;
-  OdisFloat3 radiance;
-  const float* cdf = uv;
   const OdisGuideView empty;
+  OdisGuidedVertex vertex;
+  expectUnguided(nullptr);
+  expectUnguided(&vertex);  // all zeros
   for (const OdisGuideView* view : {static_cast<const OdisGuideView*>(nullptr), &empty}) {
-    EXPECT_EQ(odisFindCell(view, &place), ODIS_NO_CELL);
-    EXPECT_EQ(odisGetBsdfFraction(view, 0, 1), 1);
-    EXPECT_FALSE(odisSampleMap(view, 0, &up, false, uv, &sample));
-    EXPECT_EQ(odisGetMapPdf(view, 0, &up, false, &up), 0);
-    EXPECT_EQ(odisGetSurvivalProbability(view, 0, 0.1f), 1);
-    EXPECT_EQ(odisGetSurvivalProbability(view, ODIS_NO_CELL, 0.1f, 31), 1);
-    EXPECT_EQ(odisGetSurvivalProbability(view, ODIS_NO_CELL, 0.1f, 32), 0.95f);
-    EXPECT_FALSE(odisGetCachedRadiance(view, &place, 0, 0, INFINITY, &radiance));
-    EXPECT_EQ(odisGetLearnedLights(view, 0, &cdf), 0);
-    EXPECT_EQ(cdf, nullptr);
+    EXPECT_FALSE(odisLookUp(view, &place, 1, &vertex));
+    expectUnguided(&vertex);
   }
-  EXPECT_EQ(odisGetShadowRayProbability(nullptr, 0.001f), 1);
+  EXPECT_FALSE(odisLookUp(&empty, nullptr, 1, &vertex));
+  EXPECT_FALSE(odisLookUp(&empty, &place, 1, nullptr));
+}
+
+// Where there is a guide: what is left out, and what is no direction.
+TEST(ApiMisuse, LookUpsRefuseWhatIsMissing) {
+  GuideBuilder builder;
+  builder.add(apiVertices());
+  const Guide guide = builder.build();
+  const GuideView view = guide.view();
+  const OdisPathVertex& v = apiVertices().front();
+  OdisPlace place{v.position, v.normal};
+  OdisGuidedVertex vertex;
+  ASSERT_TRUE(odisLookUp(&view, &place, 1, &vertex));
+  ASSERT_TRUE(odisPrepareVertex(&vertex, 1, 1, false));
+  const float uv[2] = {0.5f, 0.5f};
+  OdisFloat3 wi;
+  EXPECT_TRUE(odisSampleMap(&vertex, uv, &wi));
+  EXPECT_GT(odisGetMapPdf(&vertex, &wi), 0);
+  EXPECT_FALSE(odisSampleMap(&vertex, nullptr, &wi));
+  EXPECT_FALSE(odisSampleMap(&vertex, uv, nullptr));
+  EXPECT_EQ(odisDrawLightGroup(&vertex, nullptr), ODIS_NO_LIGHT_GROUP);
+  EXPECT_FALSE(odisDrawsFromMap(&vertex, nullptr));
+  EXPECT_FALSE(odisGetCachedRadiance(&vertex, 1, 1, nullptr));
+  EXPECT_EQ(odisGetMapPdf(&vertex, nullptr), 0);
+  EXPECT_EQ(odisGetDirectionPdf(&vertex, nullptr, 1, 1), 0);
+  for (const OdisFloat3& nowhere : {OdisFloat3{NAN, 0, 1}, OdisFloat3{0, -INFINITY, 0}}) {
+    EXPECT_EQ(odisGetMapPdf(&vertex, &nowhere), 0);
+    EXPECT_EQ(odisGetDirectionPdf(&vertex, &nowhere, 1, 1), 0);
+  }
+  place.discrete = true;
+  EXPECT_FALSE(odisLookUp(&view, &place, 1, &vertex)) << "mirrors have no cell";
+  EXPECT_EQ(odisGetSurvivalProbability(&vertex, 0.1f, 0.7f), 1) << "no cell, but not the host's roulette";
 }
 
 TEST(ApiMisuse, TheOrderOfEventsIsChecked) {
@@ -349,11 +391,10 @@ TEST(ApiMisuse, SpoiledVerticesLeaveAGuideOfNumbers) {
   ASSERT_GT(view.cellCount, 0u);
   const OdisFloat3 up{0, 0, 1};
   for (uint32_t cell = 0; cell < view.cellCount; ++cell) {
-    const float uv[2] = {0.3f, 0.6f};
-    OdisMapSample sample;
-    ASSERT_TRUE(odisSampleMap(&view, cell, &up, true, uv, &sample));
-    for (const OdisFloat3& nowhere : {OdisFloat3{NAN, 0, 1}, OdisFloat3{0, -INFINITY, 0}})
-      EXPECT_EQ(odisGetMapPdf(&view, cell, &up, true, &nowhere), 0);
+    VertexMap<float> map;
+    map.prepare(view.maps, int32_t(cell), up, -1);
+    ASSERT_TRUE(map.sampleable());
+    const VertexMap<float>::Sample sample = map.sample(0.3f, 0.6f);
     EXPECT_GT(sample.pdf, 0);
     EXPECT_LT(sample.pdf, INFINITY);
     const OdisCellDecisions& d = view.decisions[cell];

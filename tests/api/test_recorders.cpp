@@ -3,7 +3,7 @@
 #include <thread>
 
 #include "api/api_scene.h"
-#include "support/events.h"
+#include "odis/events.h"
 
 namespace odis::test {
 namespace {

@@ -41,14 +41,16 @@ int main() {
   const odis::Guide guide = builder.build();
   const odis::GuideView view = guide.view();
   const odis::Place place{{5, 5, 0}, {0, 0, 1}, 0, 0};
-  const uint32_t cell = odis::findCell(view, place);
-  if (cell == odis::kNoCell) return 1;
+  odis::GuidedVertex vertex(view, place, 1);
+  if (!vertex.isKnown()) return 1;
 
   // The look-ups in the headers and those in the library answer the same.
-  odis::VertexMap<float> map;
-  map.prepare(view.maps, int32_t(cell), place.normal, 0);
+  vertex.prepare(1);
+  OdisGuidedVertex words;
+  odisLookUp(&view, &place, 1, &words);
+  odisPrepareVertex(&words, 1, 1, false);
   const odis::Float3 wi{0.6f, 0, 0.8f};
-  const float inHeaders = map.pdf(wi), inLibrary = odisGetMapPdf(&view, cell, &place.normal, false, &wi);
+  const float inHeaders = vertex.mapPdf(wi), inLibrary = odisGetMapPdf(&words, &wi);
   std::printf("ODIS %s: %u cells, density %g and %g\n", odisGetVersionText(), view.cellCount,
               double(inHeaders), double(inLibrary));
   return inHeaders > 0 && inHeaders == inLibrary && odisGetVersion() == ODIS_VERSION && throwsErrors() ? 0

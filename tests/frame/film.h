@@ -61,8 +61,8 @@ struct FilmSample {
   FrameSample sample;
   SplatFilm::Splat splat;
 };
-using TraceForFilm = std::function<FilmSample(const FramePass& pass, ArrayView<const float> pixelValues,
-                                              uint32_t pixel, uint32_t sample, PathRecorder& recorder)>;
+using TraceForFilm =
+    std::function<FilmSample(const FramePass& pass, uint32_t pixel, uint32_t sample, PathRecorder& recorder)>;
 
 // Renders a frame into a film. Samples whose weights are settled by the end of their pass are kept until
 // then. With `weightOne` each weighs 1, which is a mistake.
@@ -76,7 +76,7 @@ inline void renderInto(SplatFilm& film, Frame& frame, uint32_t pixels, const Tra
       const SampleRange range = frame.samples(pixel);
       std::vector<FrameSample> samples;
       for (uint32_t i = 0; i < range.count; ++i) {
-        const FilmSample traced = trace(*pass, frame.pixelValues(), pixel, range.first + i, recorder);
+        const FilmSample traced = trace(*pass, pixel, range.first + i, recorder);
         samples.push_back(traced.sample);
         if (isInImage && weightsLater)
           kept.push_back(traced);
@@ -109,11 +109,10 @@ inline Frame renderRounds(SplatFilm& film, FrameOptions options, std::vector<uin
 
 // What the toy host sees.
 inline TraceForFilm toyTrace(const ToyHost& host) {
-  return [&host](const FramePass& pass, ArrayView<const float> pixelValues, uint32_t pixel, uint32_t sample,
-                 PathRecorder& recorder) {
+  return [&host](const FramePass& pass, uint32_t pixel, uint32_t sample, PathRecorder& recorder) {
     ToySight sight;
     FilmSample result;
-    result.sample = host.trace(pass, pixelValues, pixel, sample, recorder, &sight);
+    result.sample = host.trace(pass, pixel, sample, recorder, &sight);
     result.splat = {sight.x,
                     sight.y,
                     {result.sample.value.y, sight.distance, sight.normal.z, sight.byLamp[0], sight.byLamp[1],

@@ -27,7 +27,7 @@ inline TracedPass tracePass(const Frame& frame, const FramePass& pass, const Toy
   for (uint32_t pixel = 0; pixel < pixels; ++pixel) {
     const SampleRange range = frame.samples(pixel);
     for (uint32_t i = 0; i < range.count; ++i)
-      traced.samples.push_back(host.trace(pass, frame.pixelValues(), pixel, range.first + i, recorder));
+      traced.samples.push_back(host.trace(pass, pixel, range.first + i, recorder));
     const ArrayView<const PathVertex> vertices = recorder.finish();
     traced.vertices.insert(traced.vertices.end(), vertices.begin(), vertices.end());
     if (!pass.wantsVertices) traced.vertices.clear();

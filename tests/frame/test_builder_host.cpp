@@ -14,11 +14,11 @@ TracedPass traceAll(const GuideView& guide, ArrayView<const float> values, uint6
   FramePass pass;
   pass.seed = seed;
   pass.guide = &guide;
+  pass.pixelValues = values.data();
   PathRecorder recorder;
   TracedPass traced;
   for (uint32_t pixel = 0; pixel < kBuilderPixels; ++pixel)
-    for (uint32_t i = begin; i < end; ++i)
-      traced.samples.push_back(host.trace(pass, values, pixel, i, recorder));
+    for (uint32_t i = begin; i < end; ++i) traced.samples.push_back(host.trace(pass, pixel, i, recorder));
   const ArrayView<const PathVertex> vertices = recorder.finish();
   traced.vertices.assign(vertices.begin(), vertices.end());
   return traced;

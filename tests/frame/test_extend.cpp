@@ -154,7 +154,7 @@ TEST(Extend, IsUnbiased) {
   path.set("guided=off samples=even");
   const Estimate expected = estimate(path, {}, 24, 1);
   for (const double pilot : {0.25, 1.0}) {
-    std::vector<std::vector<float>> images(static_cast<size_t>(imagesToCompare(32)));
+    std::vector<std::vector<float>> images(static_cast<size_t>(imagesToCompare(64)));
     core::libraryTasks()->forEach(images.size(), [&](size_t i) {
       FrameOptions options = toyOptions(24, 24, 1);
       options.mostSamplesPerPixel = 12;

@@ -45,7 +45,7 @@ void runShuffled(Frame& frame, const FrameOptions& options, std::mt19937& engine
           PathRecorder recorder;
           std::vector<FrameSample> samples;
           for (size_t i = begin; i < std::min(begin + portion, end); ++i)
-            samples.push_back(host.trace(*pass, frame.pixelValues(), all[i].first, all[i].second, recorder));
+            samples.push_back(host.trace(*pass, all[i].first, all[i].second, recorder));
           const ArrayView<const PathVertex> met = recorder.finish();
           std::vector<PathVertex> vertices(met.begin(), met.end());
           std::reverse(vertices.begin(), vertices.end());

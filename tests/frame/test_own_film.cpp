@@ -31,8 +31,7 @@ TEST(OwnFilm, WithABoxFilterIsTheMean) {
 // were asked for, white ones three times as many, or nearly twice where few pilot samples tell of the noise.
 constexpr uint32_t kWallWidth = 160, kWallHeight = 8, kEdge = 132;
 
-FilmSample traceWall(const FramePass& pass, ArrayView<const float>, uint32_t pixel, uint32_t sample,
-                     PathRecorder&) {
+FilmSample traceWall(const FramePass& pass, uint32_t pixel, uint32_t sample, PathRecorder&) {
   ToyNumbers numbers(pass.seed, pixel, sample);
   const uint32_t column = pixel % kWallWidth;
   FilmSample result;

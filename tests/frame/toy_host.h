@@ -5,7 +5,7 @@
 #include <odis/odis.hpp>
 
 #include "frame/toy_room.h"
-#include "support/events.h"
+#include "odis/events.h"
 
 namespace odis::test {
 
@@ -75,17 +75,16 @@ struct ToySight {
 
 class ToyHost {
  public:
-  static constexpr int kMaxDepth = 5;
+  static constexpr uint32_t kMaxDepth = 5;
 
   ToyHost(const ToyRoom& room, uint32_t width, uint32_t height)
       : m_room(room), m_width(width), m_height(height) {}
 
   // Traces one sample of the pass and records its vertices; `sight`, if it is given, receives the rest.
-  FrameSample trace(const FramePass& pass, ArrayView<const float> pixelValues, uint32_t pixel,
-                    uint32_t sample, PathRecorder& recorder, ToySight* sight = nullptr) const {
+  FrameSample trace(const FramePass& pass, uint32_t pixel, uint32_t sample, PathRecorder& recorder,
+                    ToySight* sight = nullptr) const {
     State s{pass,  recorder, ToyNumbers(pass.seed, pixel, sample), recorder.begin({pixel, sample}),
             pixel, sample};
-    s.pixelValue = pixelValues.empty() ? 1 : pixelValues[pixel];
     s.sight.x = float(pixel % m_width) + s.numbers.next();
     s.sight.y = float(pixel / m_width) + s.numbers.next();
     const float x = s.sight.x / float(m_width) - 0.5f, y = 0.5f - s.sight.y / float(m_height);
@@ -103,11 +102,11 @@ class ToyHost {
     PathRecorder& recorder;
     ToyNumbers numbers;
     uint32_t path, pixel, sample;
-    float pixelValue = 1, throughput = 1, radiance = 0;
-    float pdf = 0;         // of the ray's direction
-    LearnedLights lights;  // of the vertex that the ray left
+    float throughput = 1, radiance = 0;
+    float pdf = 0;        // of the ray's direction
+    GuidedVertex vertex;  // that the ray left
     Float3 origin, direction;
-    int depth = 1;
+    uint32_t depth = 1;
     uint32_t rays = 0;
     ToySight sight;
   };
@@ -115,11 +114,6 @@ class ToyHost {
   static void bring(State& s, float radiance, int lamp = -1) {
     s.radiance += radiance;
     (lamp < 0 ? s.sight.otherLight : s.sight.byLamp[lamp]) += radiance;
-  }
-  // The probability of a lamp, learned or not.
-  static float lampProbability(const LearnedLights& lights, int lamp) {
-    const float learned = lights.fraction > 0 ? lights.cdf[lamp + 1] - lights.cdf[lamp] : 0;
-    return lights.fraction * learned + (1 - lights.fraction) * 0.5f;
   }
   // The density, with respect to solid angle, of a point on a lamp.
   float lampPdf(const Float3& to) const {
@@ -133,30 +127,22 @@ class ToyHost {
     if (s.depth == 1) s.sight.distance = hit.distance, s.sight.normal = hit.normal;
     s.recorder.surface(s.path, surfaceEvent(hit.position, hit.normal, s.direction * -1.0f, hit.distance));
     if (hit.emission.x > 0) {
-      const float lightPdf = s.depth > 1 && hit.lamp >= 0
-                                 ? lampPdf(hit.position - s.origin) * lampProbability(s.lights, hit.lamp)
-                                 : 0;
+      const float lightPdf =
+          s.depth > 1 && hit.lamp >= 0
+              ? lampPdf(hit.position - s.origin) * s.vertex.lightProbability(uint32_t(hit.lamp), 0.5f)
+              : 0;
       const float weight = s.depth > 1 ? powerHeuristic(s.pdf, lightPdf) : 1;
       bring(s, s.throughput * hit.emission.x * weight, hit.lamp);
       s.recorder.emission(s.path, emissionEvent(hit.emission, weight, lightPdf));
     }
     if (s.depth == kMaxDepth) return false;
-    const GuideView& guide = *s.pass.guide;
-    const uint32_t cell =
-        guide.cellCount > 0 ? findCell(guide, {hit.position, hit.normal, s.pixel, s.sample}) : kNoCell;
-    if (cell != kNoCell && s.depth > 1 && !playRoulette(s, guide.decisions[cell])) return false;
-
-    Mixture<float> mixture;
-    VertexMap<float> map;
-    if (cell != kNoCell) {
-      map.prepare(guide.maps, int32_t(cell), hit.normal, 0);
-      if (map.sampleable()) mixture = {bsdfFraction(guide, int32_t(cell), 1.0f), 1};
-    }
+    s.vertex = GuidedVertex(s.pass, {hit.position, hit.normal, s.pixel, s.sample, false, s.depth});
+    if (!playRoulette(s)) return false;
+    s.vertex.prepare(1);
     const ToyBsdf bsdf{hit.normal, m_room.albedo};
-    s.lights = cell != kNoCell && guide.lightGroups > 0 ? learnedLights(guide, cell) : LearnedLights();
-    estimateDirectLight(s, hit, bsdf, mixture, map);
+    estimateDirectLight(s, hit, bsdf);
     const float u = s.numbers.next(), v = s.numbers.next();
-    const ToyBsdf::Sample next = mixture.sample(map, u, v, bsdf);
+    const ToyBsdf::Sample next = s.vertex.sample(u, v, bsdf);
     if (!(next.weight > 0)) return false;
     BounceEvent bounce = bounceEvent(next.wi, gray(next.weight), next.pdf);
     bounce.guidablePdf = bsdf.density(next.wi);
@@ -169,41 +155,39 @@ class ToyHost {
     return true;
   }
 
-  bool playRoulette(State& s, const CellDecisions& cell) const {
-    const float survival = survivalProbability(s.pass.guide->rules, cell.survivalFactor,
-                                               s.throughput / s.pixelValue, uint32_t(s.depth));
-    const float standIn = s.throughput * cell.outgoingRadiance.x;
-    if (s.numbers.next() >= survival) {
-      bring(s, standIn);
-      return false;
-    }
-    bring(s, standIn * (1 - 1 / survival));
+  bool playRoulette(State& s) const {
+    const float survival = s.vertex.survivalProbability(s.throughput, 1);
+    if (survival == 1) return true;
+    const bool survives = s.numbers.next() < survival;
+    bring(s, s.throughput * s.vertex.standIn(survival, survives).x);
+    if (!survives) return false;
     s.throughput /= survival;
     s.recorder.survived(s.path, survival);
     return true;
   }
 
-  void estimateDirectLight(State& s, const ToyRoom::Hit& hit, const ToyBsdf& bsdf,
-                           const Mixture<float>& mixture, const VertexMap<float>& map) const {
-    const int lamp = s.numbers.next() < lampProbability(s.lights, 0) ? 0 : 1;
+  // Chooses one of the two lamps, as often one as the other where nothing is known.
+  static int chooseLamp(const GuidedVertex& vertex, float u) {
+    const uint32_t group = vertex.drawLightGroup(u);
+    return group != kNoLightGroup ? int(group) : u < 0.5f ? 0 : 1;
+  }
+
+  void estimateDirectLight(State& s, const ToyRoom::Hit& hit, const ToyBsdf& bsdf) const {
+    const int lamp = chooseLamp(s.vertex, s.numbers.next());
+    const float lampProbability = s.vertex.lightProbability(uint32_t(lamp), 0.5f);
     const float u = s.numbers.next(), v = s.numbers.next(), uShadow = s.numbers.next();
     const Float3 point{m_room.lampLeft(lamp) + u * m_room.lampSize, 0.4f + v * m_room.lampSize, 1};
     const Float3 to = point - hit.position, wi = to / lengthOf(to);
     const float bsdfPdf = bsdf.density(wi);
     if (!(bsdfPdf > 0) || !(wi.z > 1e-4f)) return;
-    const float pdf = lampPdf(to) * lampProbability(s.lights, lamp);
+    const float pdf = lampPdf(to) * lampProbability;
     const float unweighted = m_room.albedo * bsdfPdf * m_room.lampRadiance[lamp] / pdf;
-    const float mixed = mixture.guides() ? mixture.pdf(bsdfPdf, bsdfPdf, map.pdf(wi)) : bsdfPdf;
-    const float weighted = unweighted * powerHeuristic(pdf, mixed);
-    const float traced =
-        s.pass.guide->cellCount == 0
-            ? 1
-            : shadowRayProbability(s.pass.guide->rules, s.throughput * weighted / s.pixelValue);
+    const float weighted = unweighted * powerHeuristic(pdf, s.vertex.pdf(wi, bsdfPdf, bsdfPdf));
+    const float traced = s.vertex.shadowRayProbability(s.throughput * weighted);
     if (!(uShadow < traced)) return;
     ++s.rays;
     s.recorder.light(s.path, lightEvent(gray(unweighted / traced), gray(weighted / traced), wi,
-                                        {pdf, bsdfPdf, bsdfPdf, uint32_t(lamp),
-                                         traced * lampProbability(s.lights, lamp)}));
+                                        {pdf, bsdfPdf, bsdfPdf, uint32_t(lamp), traced * lampProbability}));
     if (m_room.isHidden(hit.position, point))
       s.recorder.lightHidden(s.path);
     else

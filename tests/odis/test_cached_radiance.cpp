@@ -4,12 +4,12 @@
 #include <random>
 
 #include "odis/cells/samples.h"
+#include "odis/events.h"
 #include "odis/floor_under_patch.h"
 #include "odis/guide.h"
 #include "odis/models/cached_radiance.h"
 #include "odis/record/recorder.h"
 #include "support/average.h"
-#include "support/events.h"
 
 namespace odis::core {
 namespace {
@@ -184,14 +184,14 @@ TEST_F(CacheOfOneCell, BringsWhatALimitOfDepthLeaves) {
 TEST(CachedRadiance, ArrivesAtTheVertexBefore) {
   PathRecorder recorder;
   const uint32_t path = recorder.begin({7, 3, 1});
-  recorder.surface(path, test::surfaceEvent({1, 2, 3}, {0, 0, 1}, {0, 1, 0}, 9));
+  recorder.surface(path, odis::surfaceEvent({1, 2, 3}, {0, 0, 1}, {0, 1, 0}, 9));
   BounceEvent bounce;
   bounce.wi = {0, 0, 1};
   bounce.weight = {0.5f, 0.5f, 0.5f};
   bounce.pdf = 1;
   recorder.bounce(path, bounce);
-  recorder.surface(path, test::surfaceEvent({1, 2, 4}, {0, 0, -1}, {0, 0, -1}, 1));
-  recorder.emission(path, test::emissionEvent({2, 2, 2}, 0.5f, 1));
+  recorder.surface(path, odis::surfaceEvent({1, 2, 4}, {0, 0, -1}, {0, 0, -1}, 1));
+  recorder.emission(path, odis::emissionEvent({2, 2, 2}, 0.5f, 1));
   recorder.cached(path, {4, 4, 4});
   const ArrayView<const PathVertex> vertices = recorder.finish();
   ASSERT_EQ(vertices.size(), 1u);

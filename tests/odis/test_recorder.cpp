@@ -7,7 +7,7 @@
 #include <functional>
 #include <random>
 
-#include "support/events.h"
+#include "odis/events.h"
 
 namespace odis::core {
 namespace {
@@ -29,7 +29,7 @@ void append(std::vector<PathVertex>& vertices, ArrayView<const PathVertex> more)
 // Begins a path of one vertex under a sky of radiance 1, up to its bounce.
 uint32_t beginUnderSky(PathRecorder& recorder, const Float3& weight) {
   const uint32_t path = recorder.begin({});
-  recorder.surface(path, test::surfaceEvent({0, 0, 0}, {0, 0, 1}, {0, 0, 1}, 1));
+  recorder.surface(path, odis::surfaceEvent({0, 0, 0}, {0, 0, 1}, {0, 0, 1}, 1));
   BounceEvent bounce;
   bounce.wi = {0, 0, 1};
   bounce.weight = weight;
@@ -46,12 +46,12 @@ TEST(PathRecorder, ReportsAPathWithItsContributionsAndRays) {
   EXPECT_EQ(path, 0u);
 
   // The first surface glows, which is not the light of any vertex.
-  SurfaceEvent surface = test::surfaceEvent({1, 2, 3}, {0, 0, 1}, {0, 1, 0}, 9);
+  SurfaceEvent surface = odis::surfaceEvent({1, 2, 3}, {0, 0, 1}, {0, 1, 0}, 9);
   surface.lightableGroups = 5;
   surface.time = 0.5f;
   recorder.surface(path, surface);
-  recorder.emission(path, test::emissionEvent(grey(100), 1, 0));
-  recorder.light(path, test::lightEvent(grey(2), grey(1), {0.6f, 0, 0.8f}, {0.5f, 0.25f, 0.125f, 3, 0.75f}));
+  recorder.emission(path, odis::emissionEvent(grey(100), 1, 0));
+  recorder.light(path, odis::lightEvent(grey(2), grey(1), {0.6f, 0, 0.8f}, {0.5f, 0.25f, 0.125f, 3, 0.75f}));
   BounceEvent bounce;
   bounce.wi = {0.8f, 0, 0.6f};
   bounce.weight = grey(0.5f);
@@ -65,10 +65,10 @@ TEST(PathRecorder, ReportsAPathWithItsContributionsAndRays) {
   recorder.bounce(path, bounce);
 
   // The second one glows, too; roulette is played, and the path goes on.
-  recorder.surface(path, test::surfaceEvent({4, 5, 6}, {1, 0, 0}, {0, 0, 1}, 2));
-  recorder.emission(path, test::emissionEvent(grey(4), 0.25f, 0.0625f));
+  recorder.surface(path, odis::surfaceEvent({4, 5, 6}, {1, 0, 0}, {0, 0, 1}, 2));
+  recorder.emission(path, odis::emissionEvent(grey(4), 0.25f, 0.0625f));
   recorder.survived(path, 0.5f);
-  recorder.light(path, test::lightEvent(grey(8), grey(4), {1, 0, 0}, {0, 0, 0, 1, 0.5f}));
+  recorder.light(path, odis::lightEvent(grey(8), grey(4), {1, 0, 0}, {0, 0, 0, 1, 0.5f}));
   BounceEvent second;
   second.wi = {1, 0, 0};
   second.weight = grey(0.25f);
@@ -77,8 +77,8 @@ TEST(PathRecorder, ReportsAPathWithItsContributionsAndRays) {
   recorder.bounce(path, second);
 
   // At the third one something hides the light, which is found out after the bounce.
-  recorder.surface(path, test::surfaceEvent({7, 8, 9}, {0, 1, 0}, {-1, 0, 0}, 3));
-  recorder.light(path, test::lightEvent(grey(5), grey(3), {0, 1, 0}, {0.5f, 0.5f, 0.5f, 2, 0.5f}));
+  recorder.surface(path, odis::surfaceEvent({7, 8, 9}, {0, 1, 0}, {-1, 0, 0}, 3));
+  recorder.light(path, odis::lightEvent(grey(5), grey(3), {0, 1, 0}, {0.5f, 0.5f, 0.5f, 2, 0.5f}));
   BounceEvent third;
   third.wi = {0, 1, 0};
   third.weight = grey(2);
@@ -88,8 +88,8 @@ TEST(PathRecorder, ReportsAPathWithItsContributionsAndRays) {
 
   // Two environments are met at once.
   recorder.escape(path);
-  recorder.emission(path, test::emissionEvent(grey(3), 1, 0.3f));
-  recorder.emission(path, test::emissionEvent(grey(1), 0.5f, 0.7f));
+  recorder.emission(path, odis::emissionEvent(grey(3), 1, 0.3f));
+  recorder.emission(path, odis::emissionEvent(grey(1), 0.5f, 0.7f));
 
   std::vector<PathVertex> vertices;
   append(vertices, recorder.finish());
@@ -190,13 +190,13 @@ TEST(PathRecorder, ALightThatIsHiddenBeforeTheBounceGivesNothingEither) {
   PathRecorder recorder;
   for (const bool before : {true, false}) {
     const uint32_t path = recorder.begin({});
-    recorder.surface(path, test::surfaceEvent({0, 0, 0}, {0, 0, 1}, {0, 0, 1}, 1));
-    recorder.light(path, test::lightEvent(grey(5), grey(3), {0, 1, 0}, {0.5f, 0.5f, 0.5f, 2, 0.5f}));
+    recorder.surface(path, odis::surfaceEvent({0, 0, 0}, {0, 0, 1}, {0, 0, 1}, 1));
+    recorder.light(path, odis::lightEvent(grey(5), grey(3), {0, 1, 0}, {0.5f, 0.5f, 0.5f, 2, 0.5f}));
     if (before) recorder.lightHidden(path);
-    recorder.bounce(path, test::bounceEvent({0, 0, 1}, grey(1), 1));
+    recorder.bounce(path, odis::bounceEvent({0, 0, 1}, grey(1), 1));
     if (!before) recorder.lightHidden(path);
     recorder.escape(path);
-    recorder.emission(path, test::emissionEvent(grey(1), 1, 0));
+    recorder.emission(path, odis::emissionEvent(grey(1), 1, 0));
   }
   append(vertices, recorder.finish());
   ASSERT_EQ(vertices.size(), 2u);
@@ -208,11 +208,11 @@ TEST(PathRecorder, BlackEmissionIsAsGoodAsNone) {
   PathRecorder recorder;
   for (int path = 0; path < 2; ++path) {
     recorder.escape(beginUnderSky(recorder, grey(0.5f)));
-    if (path == 1) recorder.emission(1, test::emissionEvent(grey(0), 0.5f, 0.25f));
-    recorder.emission(uint32_t(path), test::emissionEvent(grey(2), 0.5f, 0.125f));
+    if (path == 1) recorder.emission(1, odis::emissionEvent(grey(0), 0.5f, 0.25f));
+    recorder.emission(uint32_t(path), odis::emissionEvent(grey(2), 0.5f, 0.125f));
   }
   recorder.escape(beginUnderSky(recorder, grey(0.5f)));
-  recorder.emission(2, test::emissionEvent(grey(0), 0.5f, 0.25f));
+  recorder.emission(2, odis::emissionEvent(grey(0), 0.5f, 0.25f));
   std::vector<PathVertex> vertices;
   append(vertices, recorder.finish());
   ASSERT_EQ(vertices.size(), 3u);
@@ -227,15 +227,15 @@ TEST(PathRecorder, ASurfaceWithoutBounceLeavesNoVertex) {
   PathRecorder recorder;
   const uint32_t first = recorder.begin({1, 0});
   recorder.surface(first,
-                   test::surfaceEvent({0, 0, 0}, {0, 0, 1}, {0, 0, 1}, 1));  // the path ends by its depth
+                   odis::surfaceEvent({0, 0, 0}, {0, 0, 1}, {0, 0, 1}, 1));  // the path ends by its depth
   const uint32_t second = recorder.begin({2, 0});
   recorder.escape(second);  // the camera ray meets nothing
-  recorder.emission(second, test::emissionEvent(grey(1), 1, 0));
+  recorder.emission(second, odis::emissionEvent(grey(1), 1, 0));
   const uint32_t third = recorder.begin({3, 0});
-  recorder.surface(third, test::surfaceEvent({0, 0, 0}, {0, 0, 1}, {0, 0, 1}, 1));
-  recorder.bounce(third, test::bounceEvent({0, 0, 1}, grey(0.5f), 1));
+  recorder.surface(third, odis::surfaceEvent({0, 0, 0}, {0, 0, 1}, {0, 0, 1}, 1));
+  recorder.bounce(third, odis::bounceEvent({0, 0, 1}, grey(0.5f), 1));
   recorder.surface(
-      third, test::surfaceEvent({0, 0, 4}, {0, 0, -1}, {0, 0, -1}, 4));  // it ends by roulette on arrival
+      third, odis::surfaceEvent({0, 0, 4}, {0, 0, -1}, {0, 0, -1}, 4));  // it ends by roulette on arrival
   std::vector<PathVertex> vertices;
   append(vertices, recorder.finish());
   ASSERT_EQ(vertices.size(), 1u);
@@ -262,14 +262,14 @@ TEST(PathRecorder, FinishForgetsAndAppends) {
   std::vector<PathVertex> vertices;
   append(vertices, recorder.finish());
   EXPECT_TRUE(vertices.empty());
-  recorder.emission(beginUnderSky(recorder, grey(1)), test::emissionEvent(grey(3), 1, 0));
+  recorder.emission(beginUnderSky(recorder, grey(1)), odis::emissionEvent(grey(3), 1, 0));
   append(vertices, recorder.finish());
   append(vertices, recorder.finish());
   EXPECT_EQ(vertices.size(), 1u);
   // Handles begin anew, and nothing of the first path is left in the next one.
   const uint32_t path = beginUnderSky(recorder, grey(0.5f));
   EXPECT_EQ(path, 0u);
-  recorder.emission(path, test::emissionEvent(grey(1), 1, 0));
+  recorder.emission(path, odis::emissionEvent(grey(1), 1, 0));
   append(vertices, recorder.finish());
   ASSERT_EQ(vertices.size(), 2u);
   EXPECT_EQ(vertices[0].radiance.x, 3);

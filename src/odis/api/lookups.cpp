@@ -1,82 +1,96 @@
-// Look-ups for hosts in C: the templates of the public headers, for one float. A wrong handle or cell is
-// answered as if there were no cell; nothing else is checked here.
-#include "odis/guide_view.h"
-#include "odis/mixture.h"
+// Look-ups for hosts in C: an odis::GuidedVertex that lies in the words of an OdisGuidedVertex.
+#include <cmath>
+#include <new>
+#include <type_traits>
+
+#include "odis/guided_vertex.h"
 #include "odis/odis.h"
 
 namespace odis::core {
 
 namespace {
 
-bool hasCell(const OdisGuideView* view, uint32_t cell) {
-  return view && cell < view->cellCount;
+static_assert(sizeof(GuidedVertex) <= sizeof(OdisGuidedVertex));
+static_assert(alignof(GuidedVertex) <= alignof(OdisGuidedVertex));
+static_assert(std::is_trivially_copyable_v<GuidedVertex>, "hosts in C copy it");
+
+// The vertex in these words; one without a guide where there are none, or only zeros.
+const GuidedVertex& vertexIn(const OdisGuidedVertex* words) {
+  static const GuidedVertex unguided{};
+  if (!words || words->words[0] == 0) return unguided;
+  return *std::launder(reinterpret_cast<const GuidedVertex*>(words));
 }
 
-// The map at a vertex; false where there is none that can be sampled.
-bool prepareMap(const OdisGuideView* view, uint32_t cell, const OdisFloat3* normal, bool bothSides,
-                VertexMap<float>& map) {
-  if (!hasCell(view, cell) || !normal) return false;
-  map.prepare(view->maps, int32_t(cell), *normal, bothSides ? -1.0f : 0.0f);
-  return map.sampleable();
+bool isFinite(const OdisFloat3& v) {
+  return std::isfinite(dot(v, v));
 }
 
 }  // namespace
 
 }  // namespace odis::core
 
-using odis::core::hasCell;
-using odis::core::prepareMap;
+using odis::GuidedVertex;
+using odis::core::isFinite;
+using odis::core::vertexIn;
 
-uint32_t odisFindCell(const OdisGuideView* view, const OdisPlace* place) {
-  return view && place ? odis::findCell(*view, *place) : ODIS_NO_CELL;
+bool odisLookUp(const OdisGuideView* view, const OdisPlace* place, float pixelValue,
+                OdisGuidedVertex* vertex) {
+  if (!vertex) return false;
+  *vertex = {};
+  return view && place && (new (vertex) GuidedVertex(*view, *place, pixelValue))->isKnown();
 }
 
-float odisGetBsdfFraction(const OdisGuideView* view, uint32_t cell, float roughness) {
-  return hasCell(view, cell) ? odis::bsdfFraction(*view, int32_t(cell), roughness) : 1;
+float odisGetSurvivalProbability(const OdisGuidedVertex* vertex, float throughput, float unguided) {
+  return vertexIn(vertex).survivalProbability(throughput, unguided);
 }
 
-bool odisSampleMap(const OdisGuideView* view, uint32_t cell, const OdisFloat3* normal, bool bothSides,
-                   const float uv[2], OdisMapSample* sample) {
-  odis::VertexMap<float> map;
-  if (!uv || !sample || !prepareMap(view, cell, normal, bothSides, map)) return false;
-  const odis::VertexMap<float>::Sample drawn = map.sample(uv[0], uv[1]);
-  *sample = {drawn.wi, drawn.pdf};
+void odisGetStandIn(const OdisGuidedVertex* vertex, float survival, bool survived, OdisFloat3* radiance) {
+  if (radiance) *radiance = vertexIn(vertex).standIn(survival, survived);
+}
+
+bool odisGetCachedRadiance(const OdisGuidedVertex* vertex, float throughput, float footprint,
+                           OdisFloat3* radiance) {
+  odis::Float3 cached;
+  if (!radiance || !vertexIn(vertex).cachedRadiance(throughput, footprint, cached)) return false;
+  *radiance = cached;
   return true;
 }
 
-float odisGetMapPdf(const OdisGuideView* view, uint32_t cell, const OdisFloat3* normal, bool bothSides,
-                    const OdisFloat3* wi) {
-  odis::VertexMap<float> map;
-  const bool isDirection = wi && std::isfinite(odis::dot(*wi, *wi));
-  return isDirection && prepareMap(view, cell, normal, bothSides, map) ? map.pdf(*wi) : 0;
+uint32_t odisDrawLightGroup(const OdisGuidedVertex* vertex, float* u) {
+  return u ? vertexIn(vertex).drawLightGroup(*u) : ODIS_NO_LIGHT_GROUP;
 }
 
-float odisGetMixturePdf(float bsdfPdf, float guidablePdf, float guidableProbability, float bsdfFraction,
-                        float mapPdf) {
-  return odis::mixturePdf(bsdfPdf, guidablePdf, guidableProbability, bsdfFraction, mapPdf);
+float odisGetLightProbability(const OdisGuidedVertex* vertex, uint32_t group, float unguided,
+                              float withinGroup) {
+  return vertexIn(vertex).lightProbability(group, unguided, withinGroup);
 }
 
-float odisGetSurvivalProbability(const OdisGuideView* view, uint32_t cell, float throughput, uint32_t depth) {
-  const float factor = hasCell(view, cell) ? view->decisions[cell].survivalFactor : INFINITY;
-  return odis::survivalProbability(view ? view->rules : odis::GuideRules(), factor, throughput, depth);
+float odisGetShadowRayProbability(const OdisGuidedVertex* vertex, float contribution) {
+  return vertexIn(vertex).shadowRayProbability(contribution);
 }
 
-float odisGetShadowRayProbability(const OdisGuideView* view, float contribution) {
-  return view ? odis::shadowRayProbability(view->rules, contribution) : 1;
+bool odisPrepareVertex(OdisGuidedVertex* vertex, float roughness, float guidableProbability, bool bothSides) {
+  if (!vertex || vertex->words[0] == 0) return false;
+  GuidedVertex& guided = *std::launder(reinterpret_cast<GuidedVertex*>(vertex));
+  guided.prepare(roughness, guidableProbability, bothSides);
+  return guided.guides();
 }
 
-float odisGetLearnedLights(const OdisGuideView* view, uint32_t cell, const float** cdf) {
-  const bool known = hasCell(view, cell) && view->lightGroups > 0;
-  const odis::LearnedLights lights = known ? odis::learnedLights(*view, cell) : odis::LearnedLights();
-  if (cdf) *cdf = lights.cdf;
-  return lights.fraction;
+bool odisDrawsFromMap(const OdisGuidedVertex* vertex, float* u) {
+  return u && vertexIn(vertex).drawsFromMap(*u);
 }
 
-bool odisGetCachedRadiance(const OdisGuideView* view, const OdisPlace* place, uint32_t cell, float throughput,
-                           float footprint, OdisFloat3* radiance) {
-  if (!hasCell(view, cell) || !place || !radiance) return false;
-  odis::Float3 cached;
-  const bool ends = odis::cachedRadiance(*view, *place, cell, throughput, footprint, cached);
-  if (ends) *radiance = cached;
-  return ends;
+bool odisSampleMap(const OdisGuidedVertex* vertex, const float uv[2], OdisFloat3* wi) {
+  if (!uv || !wi || !vertexIn(vertex).guides()) return false;
+  *wi = vertexIn(vertex).sampleMap(uv[0], uv[1]);
+  return true;
+}
+
+float odisGetMapPdf(const OdisGuidedVertex* vertex, const OdisFloat3* wi) {
+  return wi && isFinite(*wi) ? vertexIn(vertex).mapPdf(*wi) : 0;
+}
+
+float odisGetDirectionPdf(const OdisGuidedVertex* vertex, const OdisFloat3* wi, float bsdfPdf,
+                          float guidablePdf) {
+  return wi && isFinite(*wi) ? vertexIn(vertex).pdf(*wi, bsdfPdf, guidablePdf) : 0;
 }

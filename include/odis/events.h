@@ -1,9 +1,10 @@
-// The events of a path, written in a line.
+// The events of a path (odis/structs.h), each made in a line: what is not named here keeps its default.
 #pragma once
 
+#include "odis/path_vertex.h"
 #include "odis/structs.h"
 
-namespace odis::test {
+namespace odis {
 
 inline OdisSurfaceEvent surfaceEvent(const Float3& position, const Float3& normal, const Float3& wo,
                                      float distance) {
@@ -23,10 +24,10 @@ inline OdisEmissionEvent emissionEvent(const Float3& radiance, float misWeight, 
   return event;
 }
 
-// How next-event estimation drew a light.
+// How next-event estimation drew a light: see OdisLightEvent.
 struct LightDraw {
   float pdf = 0, bsdfPdf = 0, guidablePdf = 0;
-  uint32_t group = ODIS_NO_LIGHT_GROUP;
+  uint32_t group = kNoLightGroup;
   float groupProbability = 0;
 };
 inline OdisLightEvent lightEvent(const Float3& unweighted, const Float3& weighted, const Float3& wi,
@@ -43,12 +44,13 @@ inline OdisLightEvent lightEvent(const Float3& unweighted, const Float3& weighte
   return event;
 }
 
-inline OdisBounceEvent bounceEvent(const Float3& wi, const Float3& weight, float pdf) {
+inline OdisBounceEvent bounceEvent(const Float3& wi, const Float3& weight, float pdf, float roughness = 1) {
   OdisBounceEvent event;
   event.wi = wi;
   event.weight = weight;
   event.pdf = pdf;
+  event.roughness = roughness;
   return event;
 }
 
-}  // namespace odis::test
+}  // namespace odis
