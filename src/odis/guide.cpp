@@ -28,7 +28,8 @@ namespace {
 const GuideOptions& checked(const GuideOptions& options) {
   if (options.lightGroups > kMaxLightGroups)
     throw std::invalid_argument("OdisGuideOptions.lightGroups: expected at most " +
-                                std::to_string(kMaxLightGroups));
+                                std::to_string(kMaxLightGroups) + ", found " +
+                                std::to_string(options.lightGroups));
   for (const auto& [first, count] : options.lightParts)
     if (options.lightGroups > 0 && (first > options.lightGroups || count > options.lightGroups - first))
       throw std::invalid_argument("OdisGuideOptions.lightParts: expected groups below lightGroups");

@@ -48,21 +48,48 @@ inline void requireArgument(const void* pointer, const char* name) {
   if (!pointer) throw std::invalid_argument(std::string(name) + ": found NULL");
 }
 
-// Complains of a struct whose size is none that there ever was.
-[[noreturn]] void refuseSize(const char* name, size_t found, size_t expected);
+// Complains of a struct whose size is none that there ever was, and says what the host should have done.
+[[noreturn]] void refuseSize(const std::string& name, size_t found, size_t expected,
+                             const std::string& remedy);
+
+// The functions that initialize the structs that hosts fill in.
+inline const char* initializerOf(const OdisContextOptions&) {
+  return "odisInitContextOptions";
+}
+inline const char* initializerOf(const OdisGuideOptions&) {
+  return "odisInitGuideOptions";
+}
+inline const char* initializerOf(const OdisFrameOptions&) {
+  return "odisInitFrameOptions";
+}
+inline const char* initializerOf(const OdisPathVertices&) {
+  return "odisInitPathVertices";
+}
+inline const char* initializerOf(const OdisSurfaceEvent&) {
+  return "odisInitSurfaceEvent";
+}
+inline const char* initializerOf(const OdisEmissionEvent&) {
+  return "odisInitEmissionEvent";
+}
+inline const char* initializerOf(const OdisLightEvent&) {
+  return "odisInitLightEvent";
+}
+inline const char* initializerOf(const OdisBounceEvent&) {
+  return "odisInitBounceEvent";
+}
 
 // A struct that may grow has had fewer fields once, but never none, nor a size that compilers don't give it.
 template <class Struct>
-void requireSize(size_t size, const char* name) {
+void requireSize(size_t size, const std::string& name, const std::string& remedy) {
   if (size <= sizeof(size_t) || size > sizeof(Struct) || size % alignof(Struct) != 0)
-    refuseSize(name, size, sizeof(Struct));
+    refuseSize(name, size, sizeof(Struct), remedy);
 }
 
 // A struct of the host's, which may have been compiled with fewer fields: those have their defaults.
 template <class Struct>
 Struct adopt(const Struct& given, const char* name) {
   Struct result;
-  requireSize<Struct>(given.size, name);
+  requireSize<Struct>(given.size, name, std::string("initialize it by ") + initializerOf(given) + "()");
   std::memcpy(static_cast<void*>(&result), &given, given.size);
   result.size = sizeof(Struct);
   return result;
@@ -71,7 +98,7 @@ Struct adopt(const Struct& given, const char* name) {
 // Fills in as many fields as the host knows.
 template <class Struct>
 void fillIn(Struct& host, Struct value, const char* name) {
-  requireSize<Struct>(host.size, name);
+  requireSize<Struct>(host.size, name, std::string("set its size to sizeof(") + name + ")");
   value.size = host.size;
   std::memcpy(static_cast<void*>(&host), &value, host.size);
 }
@@ -83,10 +110,10 @@ void initialize(Struct* host, size_t size, const char* name) noexcept {
     requireArgument(host, name);
     Struct value;
     if constexpr (requires { value.size; }) {
-      requireSize<Struct>(size, name);
+      requireSize<Struct>(size, name, std::string("pass sizeof(") + name + ")");
       value.size = size;
     } else if (size != sizeof(Struct)) {
-      refuseSize(name, size, sizeof(Struct));
+      refuseSize(name, size, sizeof(Struct), std::string("pass sizeof(") + name + ")");
     }
     std::memcpy(static_cast<void*>(host), &value, size);
     return true;
