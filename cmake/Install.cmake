@@ -11,35 +11,42 @@ install(TARGETS odis odis_static EXPORT odis-targets
 install(DIRECTORY include/odis DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} COMPONENT development
   FILES_MATCHING PATTERN *.h PATTERN *.hpp)
 install(FILES LICENSE CHANGELOG.md DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT library)
-install(FILES README.md CITATION.cff DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT development)
-file(GLOB pages docs/*.md)
-install(FILES ${pages} DESTINATION ${CMAKE_INSTALL_DOCDIR}/docs COMPONENT development)
-install(DIRECTORY examples DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT development)
+install(FILES README.md CONTRIBUTING.md CITATION.cff DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT development)
+install(DIRECTORY docs examples DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT development)
+# Pages lead to sources, too, which are not installed.
+configure_file(cmake/installed_links.cmake.in generated/installed_links.cmake @ONLY)
+install(SCRIPT ${PROJECT_BINARY_DIR}/generated/installed_links.cmake COMPONENT development)
 
 # For CMake. A version 0.x promises nothing to users of another x.
 install(EXPORT odis-targets NAMESPACE odis:: DESTINATION ${package} COMPONENT development)
+set(ODIS_CXX_RUNTIME ${CMAKE_CXX_IMPLICIT_LINK_LIBRARIES})
+list(FILTER ODIS_CXX_RUNTIME INCLUDE REGEX "^(stdc\\+\\+|c\\+\\+|m)$")
+list(REMOVE_DUPLICATES ODIS_CXX_RUNTIME)
 configure_package_config_file(cmake/odis-config.cmake.in generated/odis-config.cmake INSTALL_DESTINATION ${package})
 write_basic_package_version_file(${PROJECT_BINARY_DIR}/generated/odis-config-version.cmake
   COMPATIBILITY SameMinorVersion)
 install(FILES ${PROJECT_BINARY_DIR}/generated/odis-config.cmake ${PROJECT_BINARY_DIR}/generated/odis-config-version.cmake
   DESTINATION ${package} COMPONENT development)
 
-# For pkg-config. With --static it adds what the static library needs: threads, the C++ runtime and oneTBB.
-# The latter is no Requires.private, which would ask users of the shared library for oneTBB's headers.
+# For pkg-config: `odis` is the shared library, and `odis_static` the static one with what that needs: threads, the
+# C++ runtime and oneTBB. A linker that is told -lodis takes the shared library where both are, so that
+# `--static odis` serves only programs that are static in all parts. What it adds is no Requires.private, which
+# would ask users of the shared library for oneTBB's headers.
 file(RELATIVE_PATH ODIS_PC_TO_PREFIX ${CMAKE_INSTALL_FULL_LIBDIR}/pkgconfig ${CMAKE_INSTALL_PREFIX})
 string(REGEX REPLACE "/$" "" ODIS_PC_TO_PREFIX "${ODIS_PC_TO_PREFIX}")
-set(runtime ${CMAKE_CXX_IMPLICIT_LINK_LIBRARIES})
-list(FILTER runtime INCLUDE REGEX "^(stdc\\+\\+|c\\+\\+|m)$")
-list(REMOVE_DUPLICATES runtime)
+set(needed ${ODIS_CXX_RUNTIME} ${CMAKE_DL_LIBS})
 if(ODIS_TBB)
-  list(PREPEND runtime tbb)
+  list(PREPEND needed tbb)
 endif()
-list(TRANSFORM runtime PREPEND -l)
-list(APPEND runtime ${CMAKE_THREAD_LIBS_INIT})
-list(JOIN runtime " " ODIS_PC_LIBS_PRIVATE)
-configure_file(cmake/odis.pc.in generated/odis.pc @ONLY)
-install(FILES ${PROJECT_BINARY_DIR}/generated/odis.pc DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig
-  COMPONENT development)
+list(TRANSFORM needed PREPEND -l)
+list(APPEND needed ${CMAKE_THREAD_LIBS_INIT})
+list(JOIN needed " " ODIS_PC_LIBS_PRIVATE)
+foreach(name odis odis_static)
+  configure_file(cmake/${name}.pc.in generated/${name}.pc.in @ONLY)
+  file(GENERATE OUTPUT ${PROJECT_BINARY_DIR}/generated/${name}.pc INPUT ${PROJECT_BINARY_DIR}/generated/${name}.pc.in)
+  install(FILES ${PROJECT_BINARY_DIR}/generated/${name}.pc DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig
+    COMPONENT development)
+endforeach()
 
 # Command and library find what they load by their own place.
 if(TARGET odis_app)

@@ -1,7 +1,5 @@
 # The commands of the manual run, and print what the manual says. (Under sanitizers the tests of the command run
 # the same code.)
-find_program(ODIS_MANUAL_PYTHON python3)
-mark_as_advanced(ODIS_MANUAL_PYTHON)
 if(TARGET odis_app AND ODIS_MANUAL_PYTHON AND NOT CMAKE_CXX_FLAGS MATCHES "-fsanitize")
   set(run ${ODIS_MANUAL_PYTHON} ${CMAKE_CURRENT_LIST_DIR}/run_commands.py --odis $<TARGET_FILE:odis_app>)
   add_test(NAME Manual.CommandsRun COMMAND ${run})

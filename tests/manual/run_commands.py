@@ -2,6 +2,7 @@
 """Runs the commands that the manual shows, and compares what they print with what the manual says.
 
     run_commands.py --odis build/release/apps/odis/odis [PAGE...]
+    run_commands.py --installed PREFIX [PAGE...]
 
 Pages are README.md, docs/*.md and those of the examples. Each runs in an empty folder of its own, which has the files
 of FILES under the names that the manual uses. The language of a block decides:
@@ -11,7 +12,8 @@ of FILES under the names that the manual uses. The language of a block decides:
               any lines, numbers may be 2 % off, numbers of seconds and bytes by any amount.
     others    c, cpp, cmake, json, python, text, xml: do not run.
 
-Commands that run are those of RUNNABLE. Those of LEFT_OUT do not, but what they name has to be there. A comment in the
+Commands that run are those of RUNNABLE, and `cc` if there is an installed library: PREFIX takes the place of /opt/odis,
+and pkg-config looks there. Those of LEFT_OUT do not, but what they name has to be there. A comment in the
 lines above a block says what else does not run, and why:
 
     <!-- blocks: skip, takes an hour -->                     the block
@@ -49,7 +51,7 @@ FILES = {
     "render.guide": "fuzz/corpus/saved/guide", "fuzz/corpus/saved": "fuzz/corpus/saved",
     "scene.xml": "scenes/demo/scene.xml", "a.xml": "scenes/demo/scene.xml", "b.xml": "scenes/demo/scene.xml",
     "kitchen/scene.xml": "scenes/demo/scene.xml", "lamp/scene.xml": "scenes/demo/scene.xml",
-    "knot.ply": "scenes/demo/knot.ply", "kitchen/knot.ply": "scenes/demo/knot.ply",
+    "minimal.c": "examples/minimal.c", "knot.ply": "scenes/demo/knot.ply", "kitchen/knot.ply": "scenes/demo/knot.ply",
     "lamp/knot.ply": "scenes/demo/knot.ply", "my.weights": "weights/odis.weights",
 }
 PLACEHOLDERS = {"SCENE…": "scene.xml", "SCENE": "scene.xml"}
@@ -181,8 +183,8 @@ def same_lines(expected, found):
 
 
 class Runner:
-    def __init__(self, odis, folder):
-        self.odis, self.folder, self.missing, self.failed = odis, folder, {}, False
+    def __init__(self, odis, installed, folder):
+        self.odis, self.installed, self.folder, self.missing, self.failed = odis, installed, folder, {}, False
         self.counts = {"ran": 0, "left out": 0}
 
     def enter(self, page):
@@ -201,6 +203,8 @@ class Runner:
     def run(self, command, as_written):
         environment = dict(os.environ, PATH=f"{self.place}/bin:{os.environ['PATH']}")
         environment["ODIS_MANUAL_AS_WRITTEN"] = "1" if as_written else ""
+        if self.installed:
+            environment["PKG_CONFIG_PATH"] = str(next(self.installed.rglob("odis.pc")).parent)
         return subprocess.run(["bash", "-e", "-o", "pipefail", "-c", command], cwd=self.place, env=environment,
                               stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True,
                               errors="replace", timeout=300)
@@ -242,7 +246,7 @@ class Runner:
         for command, output in block.commands():
             if why := self.why_not(block, command):
                 left_out[why] = left_out.get(why, 0) + 1
-            elif (word := command.split()[0]) in RUNNABLE:
+            elif (word := command.split()[0]) in RUNNABLE or word == "cc" and self.installed:
                 scripts.append((command, output))
             elif word in LEFT_OUT:
                 self.check_names(block, command)
@@ -256,7 +260,8 @@ class Runner:
               + "".join(f"; {count} not run: {why}" for why, count in left_out.items()), flush=True)
         if block.language == "sh" and scripts:
             text = "\n".join(command for command, _ in scripts)
-            for word, value in PLACEHOLDERS.items():
+            placeholders = {**PLACEHOLDERS, "/opt/odis": str(self.installed)} if self.installed else PLACEHOLDERS
+            for word, value in placeholders.items():
                 text = re.sub(rf"(?<![\w/$]){word}(?!\w)", value, text)
             self.expect_success(block, text, False)
         for command, output in scripts if block.language == "console" else []:
@@ -273,13 +278,15 @@ class Runner:
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--odis", required=True, type=pathlib.Path, help="the program")
+    parser.add_argument("--odis", default="/nowhere", type=pathlib.Path, help="the program")
+    parser.add_argument("--installed", metavar="PREFIX", type=pathlib.Path, help="where the library is installed")
     parser.add_argument("pages", nargs="*", metavar="PAGE", help="default: all")
     arguments = parser.parse_args()
     pages = arguments.pages or ["README.md", *sorted(str(p.relative_to(ROOT)) for p in ROOT.glob("docs/*.md")),
                                 "examples/README.md", "examples/tiny/README.md", "examples/film/README.md"]
     with tempfile.TemporaryDirectory(prefix="odis-manual-") as folder:
-        runner = Runner(arguments.odis.resolve(), pathlib.Path(folder))
+        runner = Runner(arguments.odis.resolve(), arguments.installed and arguments.installed.resolve(),
+                        pathlib.Path(folder))
         for page in pages:
             try:
                 blocks = list(blocks_of(page, (ROOT / page).read_text(encoding="utf-8")))

@@ -2,6 +2,10 @@
 // that they call; where these versions differ, what only one of them passes comes last and is not read.
 #pragma once
 
+#ifndef __cplusplus
+#error "Open PGL's interface is C++ (its functions take references); odis/odis.h is one in C."
+#endif
+
 #include "data.h"
 #include "version.h"
 

@@ -1,0 +1,1 @@
+#include <openpgl/openpgl.h>
