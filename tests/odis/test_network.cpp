@@ -72,6 +72,16 @@ TEST(Weights, DamagedFilesAreRefused) {
             std::string::npos);
 }
 
+TEST(Weights, OfOtherNumbersMakeAnotherModel) {
+  const auto idWith = [](float first) {
+    std::vector<float> blend(kBasisMaps);
+    blend[0] = first;
+    return idOf(Model::parse("some.weights", constantBlend(blend).bytes()));
+  };
+  EXPECT_EQ(idWith(1), idWith(1));
+  EXPECT_NE(idWith(1), idWith(2));
+}
+
 TEST(Weights, OfOtherShapesAreRefused) {
   EXPECT_THROW(DirectionNetwork(Weights("{}", {})), WeightsError);
   std::vector<Tensor> tensors = constantBlend(std::vector<float>(kBasisMaps)).tensors();

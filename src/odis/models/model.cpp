@@ -9,6 +9,13 @@ namespace odis::core {
 
 namespace {
 
+// A checksum of all but the checksum that the bytes end with: with that it would be one number for all
+// weights.
+uint32_t checksumOf(const Weights& weights) {
+  const std::string bytes = weights.bytes();
+  return crc32(std::string_view(bytes).substr(0, bytes.size() - sizeof(uint32_t)));
+}
+
 // The networks that there are weights for.
 Model fromWeights(const Weights& weights) {
   Model model;
@@ -16,7 +23,7 @@ Model fromWeights(const Weights& weights) {
     model.directions = std::make_shared<DirectionNetwork>(weights);
   if (weights.contains("lights.0.weight")) model.lights = std::make_shared<LightNetwork>(weights);
   if (weights.contains("pixels.output.weight")) model.pixels = std::make_shared<PixelNetwork>(weights);
-  model.checksum = crc32(weights.bytes());
+  model.checksum = checksumOf(weights);
   return model;
 }
 
@@ -39,7 +46,7 @@ Model Model::withPixelNetwork(const std::string& name) const {
   Model model = *this;
   const Weights weights = Weights::parse(name, pixelWeightsNamed(name));
   model.pixels = std::make_shared<PixelNetwork>(weights);
-  model.checksum ^= crc32(weights.bytes());
+  model.checksum ^= checksumOf(weights);
   return model;
 }
 
