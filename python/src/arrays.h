@@ -20,6 +20,8 @@ using NumpyArray = nb::ndarray<nb::numpy, T, nb::shape<kShape...>>;
 
 inline constexpr size_t kAnyCount = SIZE_MAX;
 
+// "float32".
+std::string typeName(nb::dlpack::dtype type);
 // "float32 of shape (10, 3)".
 std::string describe(const Array& array);
 // Raises ValueError: "NAME: expected EXPECTED, found FOUND".

@@ -2,7 +2,7 @@
 
 #include <thread>
 
-#include "bindings.h"
+#include "printing.h"
 
 namespace odis::python {
 
@@ -50,16 +50,19 @@ const Context& contextOrShared(const LoggingContext* context) {
 }
 
 void bindContext(nb::module_& module) {
-  nb::class_<LoggingContext>(module, "Context", R"(Threads and memory of the objects that are made in it.
+  nb::class_<LoggingContext> context(module, "Context",
+                                     R"(Threads and memory of the objects that are made in it.
 
 Objects that are told of no context share one with the defaults. What there is to tell of (a guide that
-became coarser to keep to the limit of memory, say) goes to logging.getLogger("odis").)")
+became coarser to keep to the limit of memory, say) goes to logging.getLogger("odis").)");
+  context
       .def(nb::init<uint32_t, uint64_t>(), nb::kw_only(), "threads"_a = 0, "memory_limit"_a = 0,
            R"(threads: the library's own work is spread over this many, at most 4096; 0: one a core.
 memory_limit: the most bytes that all objects of the context may hold together; 0: no limit.)")
       .def_prop_ro("threads", &LoggingContext::threads,
                    "Number of threads that the library's work is spread over.")
       .def_prop_ro("memory_use", &LoggingContext::memoryUse, "Bytes that the objects of the context hold.");
+  printAttributes(context, {"threads", "memory_use"});
 }
 
 }  // namespace odis::python

@@ -2,11 +2,13 @@
 #include <nanobind/stl/filesystem.h>
 #include <nanobind/stl/optional.h>
 #include <nanobind/stl/pair.h>
+#include <nanobind/stl/string.h>
 #include <nanobind/stl/variant.h>
 
 #include <optional>
 
 #include "guide_builder.h"
+#include "printing.h"
 
 namespace odis::python {
 
@@ -140,6 +142,17 @@ class ImageFrame {
   VertexCounts vertexCounts() {
     return callAlone(m_calls, [&] { return m_frame.vertexCounts(); });
   }
+  std::string text() {
+    const std::string size = std::to_string(m_width) + " x " + std::to_string(m_height) + " pixels, ";
+    try {
+      const FrameStatistics now = statistics();
+      return "<odis.Frame: " + size + std::to_string(now.samples) +
+             " samples by now, samples_per_pixel=" + std::to_string(now.samplesPerPixel) +
+             ", cells=" + std::to_string(now.cells) + ">";
+    } catch (const Error& error) {
+      return "<odis.Frame: " + size + error.what() + ">";
+    }
+  }
   Guide guide() {
     return callAlone(m_calls, [&] { return m_frame.guide(); });
   }
@@ -160,8 +173,8 @@ void bindPass(nb::module_& module) {
       .value("PILOT", ODIS_PASS_PILOT, "The first, unguided samples, which the first guide is made from.")
       .value("ORACLE", ODIS_PASS_ORACLE, "Samples that are no part of the image.")
       .value("GUIDED", ODIS_PASS_GUIDED, "The others.");
-  nb::class_<Pass>(module, "FramePass", "What a frame asks the host to trace.")
-      .def_prop_ro("kind", [](const Pass& pass) { return pass.described.kind; })
+  nb::class_<Pass> pass(module, "FramePass", "What a frame asks the host to trace.");
+  pass.def_prop_ro("kind", [](const Pass& pass) { return pass.described.kind; })
       .def_prop_ro(
           "wants_vertices", [](const Pass& pass) { return pass.described.wantsVertices; },
           "Whether the samples should come with their vertices.")
@@ -177,8 +190,10 @@ void bindPass(nb::module_& module) {
           "stage_samples", [](const Pass& pass) { return pass.described.stageSamples; },
           "About how many samples all passes of this kind have, over all pixels: for progress.")
       .def_ro("guide", &Pass::guide, "What guides the samples; without cells where nothing was learned.");
-  nb::class_<FrameStatistics>(module, "FrameStatistics", "Numbers of a frame.")
-      .def_ro("samples", &FrameStatistics::samples)
+  printAttributes(
+      pass, {"kind", "wants_vertices", "part_of_image", "weights_later", "seed", "stage_samples", "guide"});
+  nb::class_<FrameStatistics> statistics(module, "FrameStatistics", "Numbers of a frame.");
+  statistics.def_ro("samples", &FrameStatistics::samples)
       .def_ro("samples_per_pixel", &FrameStatistics::samplesPerPixel, "That are asked for by now.")
       .def_ro("pilot_samples", &FrameStatistics::pilotSamples)
       .def_ro("not_finite", &FrameStatistics::notFinite, "Samples that counted as black.")
@@ -199,6 +214,10 @@ void bindPass(nb::module_& module) {
               "Variance times cost of the first guided samples over the pilot's; 0: not measured.")
       .def_ro("guiding_given_up", &FrameStatistics::guidingGivenUp,
               "Whether samples are not guided any more, because that does not pay.");
+  printAttributes(statistics, {"samples", "samples_per_pixel", "pilot_samples", "not_finite",
+                               "pilot_vertices", "cells", "guide_bytes", "building_bytes", "pilot_fraction",
+                               "missing_samples", "passes_without_vertices", "guides_built",
+                               "predicted_variance_ratio", "measured_cost_ratio", "guiding_given_up"});
 }
 
 void bindPasses(nb::class_<ImageFrame>& frame) {
@@ -259,7 +278,7 @@ pass. A pixel outside of the frame, or a sample that its pixel never has, raises
 }
 
 void bindFiles(nb::class_<ImageFrame>& frame) {
-  frame
+  frame.def("__repr__", &ImageFrame::text)
       .def("save", &ImageFrame::save, "path"_a,
            R"(Writes all that the frame is, between two passes or within one. Raises Error (FILE).
 

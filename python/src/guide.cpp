@@ -1,12 +1,16 @@
 // Guide: its arrays, shown where they lie. Look-ups are in lookups.cpp.
 #include <nanobind/stl/array.h>
 #include <nanobind/stl/filesystem.h>
+#include <nanobind/stl/string.h>
 
 #include <odis/odis.hpp>
 
 #include "arrays.h"
+#include "calls.h"
 #include "context.h"
 #include "lookups.h"
+#include "printing.h"
+#include "saved_bytes.h"
 
 namespace odis::python {
 
@@ -144,7 +148,9 @@ void bindDecisions(nb::class_<Guide>& guide) {
 }
 
 void bindRules(nb::module_& module) {
-  nb::class_<Rules>(module, "GuideRules", "The constants of a host's own look-ups (odis/guide_view.h).")
+  nb::class_<Rules> rules(module, "GuideRules",
+                          "The constants of a host's own look-ups (odis/guide_view.h).");
+  rules
       .def_prop_ro(
           "roughness_bounds", [](const Rules& self) { return std::to_array(self.decisions.roughnessBounds); },
           "Lower bounds of the roughness of the classes: diffuse, rough, glossy.")
@@ -168,6 +174,21 @@ void bindRules(nb::module_& module) {
           "And whose footprint is at least this many times the cell's edge.")
       .def_prop_ro(
           "rim", [](const Rules& self) { return self.rim; }, "What maps add to every cosine.");
+  printAttributes(rules, {"roughness_bounds", "least_survival", "full_shadow_ray_contribution",
+                          "least_shadow_ray_probability", "cached_error", "least_cached_footprint", "rim"});
+}
+
+// A guide's file as bytes, for pickle.
+nb::bytes bytesOf(const Guide& guide) {
+  const TemporaryFile file;
+  withoutLock([&] { guide.save(file.path()); });
+  return file.read();
+}
+void guideOfBytes(Guide& guide, const nb::bytes& bytes) {
+  const TemporaryFile file;
+  file.write(bytes);
+  const Context& context = contextOrShared(nullptr);
+  new (&guide) Guide(withoutLock([&] { return Guide::load(file.path(), context); }));
 }
 
 }  // namespace
@@ -177,7 +198,8 @@ void bindGuide(nb::module_& module) {
   nb::class_<Guide> guide(
       module, "Guide", R"(What was learned: nested cells in world space, a sampling map and decisions in each.
 
-Fixed once built, and safe to use by many threads. Its arrays are read-only, lie in the guide's own memory,
+Fixed once built, and safe to use by many threads; copies are the guide itself. It can be pickled, and comes
+back in the shared context. Its arrays are read-only, lie in the guide's own memory,
 and keep it alive. About 830 bytes a cell.)");
   guide
       .def(
@@ -192,6 +214,16 @@ and keep it alive. About 830 bytes a cell.)");
             return Guide::load(path.string(), contextOrShared(context));
           },
           "path"_a, "context"_a = nb::none(), "The guide of a file. Raises Error (FILE).")
+      .def("__getstate__", bytesOf)
+      .def("__setstate__", guideOfBytes)
+      .def("__copy__", [](nb::object self) { return self; })
+      .def("__deepcopy__", [](nb::object self, const nb::handle&) { return self; })
+      .def("__repr__",
+           [](nb::handle self) {
+             return "<odis.Guide: " + std::to_string(nb::len(self)) + " cells, " +
+                    attributesOf(self, {"finest_edge", "light_groups", "predicted_variance_ratio", "bytes"}) +
+                    ">";
+           })
       .def_prop_ro("predicted_variance_ratio", &Guide::predictedVarianceRatio,
                    "The variance of a guided sample that the pilot predicts, as a ratio to an unguided one.")
       .def_prop_ro(

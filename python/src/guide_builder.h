@@ -9,6 +9,7 @@
 
 #include "calls.h"
 #include "context.h"
+#include "saved_bytes.h"
 #include "vertices.h"
 
 namespace odis::python {
@@ -16,14 +17,39 @@ namespace odis::python {
 class Builder {
  public:
   Builder(const std::optional<GuideOptions>& given, const LoggingContext* context)
-      : m_builder(interruptible(given), contextOrShared(context)) {}
+      : m_builder(interruptible(given), contextOrShared(context)),
+        m_model(given ? given->model : std::nullopt),
+        m_context(contextOrShared(context)) {}
 
   static std::unique_ptr<Builder> load(const std::filesystem::path& path, const std::optional<Model>& model,
                                        const LoggingContext* context) {
-    return withoutLock([&] {
-      return std::unique_ptr<Builder>(
-          new Builder(GuideBuilder::load(path.string(), model, contextOrShared(context))));
-    });
+    return std::unique_ptr<Builder>(new Builder(path.string(), model, contextOrShared(context)));
+  }
+  // For pickle: as bytes of a file, without the model.
+  nb::bytes state() {
+    const TemporaryFile file;
+    save(file.path());
+    return file.read();
+  }
+  static void setState(Builder& builder, const nb::bytes& bytes) {
+    const TemporaryFile file;
+    file.write(bytes);
+    new (&builder) Builder(file.path(), std::nullopt, contextOrShared(nullptr));
+  }
+  // Another builder with the same content, model and context.
+  std::unique_ptr<Builder> copy() {
+    const TemporaryFile file;
+    save(file.path());
+    return std::unique_ptr<Builder>(new Builder(file.path(), m_model, m_context));
+  }
+  std::string text() {
+    try {
+      const uint64_t accepted = vertexCounts().accepted;
+      return "<odis.GuideBuilder: " + std::to_string(accepted) +
+             " vertices, bytes=" + std::to_string(bytes()) + ">";
+    } catch (const Error& error) {
+      return "<odis.GuideBuilder: " + std::string(error.what()) + ">";
+    }
   }
   void save(const std::filesystem::path& path) {
     callAlone(m_calls, [&] { m_builder.save(path.string()); });
@@ -80,7 +106,10 @@ class Builder {
   const GuideBuilder& handle() const { return m_builder; }
 
  private:
-  explicit Builder(GuideBuilder builder) : m_builder(std::move(builder)) {}
+  Builder(const std::string& path, const std::optional<Model>& model, const Context& context)
+      : m_builder(withoutLock([&] { return GuideBuilder::load(path, model, context); })),
+        m_model(model),
+        m_context(context) {}
   static GuideOptions interruptible(const std::optional<GuideOptions>& given) {
     GuideOptions options = given ? *given : GuideOptions();
     options.progressFunction = goOn;
@@ -88,6 +117,8 @@ class Builder {
   }
 
   GuideBuilder m_builder;
+  std::optional<Model> m_model;
+  Context m_context;
   Calls m_calls;
 };
 

@@ -5,10 +5,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <optional>
 
-#include "arrays.h"
 #include "calls.h"
+#include "numbers.h"
 
 namespace odis::python {
 
@@ -17,20 +16,6 @@ namespace {
 using Cells = NumpyArray<uint32_t, -1>;
 using Numbers = NumpyArray<float, -1>;
 using Vectors = NumpyArray<float, -1, 3>;
-// For all vertices alike, or for each.
-using Flags = std::variant<bool, Array>;
-
-class FlagAt {
- public:
-  FlagAt(const Flags& flags, const char* name, size_t count) : m_all(std::get_if<bool>(&flags)) {
-    if (!m_all) m_rows.emplace_back(std::get<Array>(flags), name, 0, count);
-  }
-  bool operator()(size_t i) const { return m_all ? *m_all : m_rows[0](i); }
-
- private:
-  const bool* m_all;
-  std::vector<Rows<bool>> m_rows;
-};
 
 // Random numbers, two for each of `count` rows; raises ValueError for one outside of [0, 1).
 Rows<float> randomNumbers(const Array& uv, size_t count) {
@@ -85,11 +70,11 @@ Cells findCells(const Guide& guide, const Array& positions, const Array& normals
 }
 
 std::pair<Vectors, Numbers> sample(const Guide& guide, const Array& cells, const Array& normals,
-                                   const Array& uv, const Flags& bothSides) {
+                                   const Array& uv, const Given<bool>& bothSides) {
   const Rows<uint32_t> cell(cells, "cells");
   const size_t count = cell.size();
   const Rows<float> normal(normals, "normals", 3, count), random = randomNumbers(uv, count);
-  const FlagAt both(bothSides, "both_sides", count);
+  const Each<bool> both(bothSides, "both_sides", count);
   const Vectors directions = newArray<Vectors>({count, 3});
   const Numbers pdfs = newArray<Numbers>({count});
   withoutLock([&] {
@@ -107,11 +92,11 @@ std::pair<Vectors, Numbers> sample(const Guide& guide, const Array& cells, const
 }
 
 Numbers pdf(const Guide& guide, const Array& cells, const Array& normals, const Array& directions,
-            const Flags& bothSides) {
+            const Given<bool>& bothSides) {
   const Rows<uint32_t> cell(cells, "cells");
   const size_t count = cell.size();
   const Rows<float> normal(normals, "normals", 3, count), direction(directions, "directions", 3, count);
-  const FlagAt both(bothSides, "both_sides", count);
+  const Each<bool> both(bothSides, "both_sides", count);
   const Numbers result = newArray<Numbers>({count});
   withoutLock([&] {
     const Lookup lookup(guide);
@@ -126,9 +111,9 @@ Numbers pdf(const Guide& guide, const Array& cells, const Array& normals, const 
   return result;
 }
 
-Numbers bsdfFraction(const Guide& guide, const Array& cells, const Array& roughness) {
+Numbers bsdfFraction(const Guide& guide, const Array& cells, const Given<float>& roughness) {
   const Rows<uint32_t> cell(cells, "cells");
-  const Rows<float> alpha(roughness, "roughness", 0, cell.size());
+  const Each<float> alpha(roughness, "roughness", cell.size());
   const Numbers result = newArray<Numbers>({cell.size()});
   withoutLock([&] {
     const Lookup lookup(guide);
@@ -137,21 +122,16 @@ Numbers bsdfFraction(const Guide& guide, const Array& cells, const Array& roughn
   return result;
 }
 
-// For all vertices alike, or for each.
-using Depths = std::variant<uint32_t, Array>;
-
-Numbers survivalProbability(const Guide& guide, const Array& cells, const Array& throughput,
-                            const Depths& depths) {
+Numbers survivalProbability(const Guide& guide, const Array& cells, const Given<float>& throughput,
+                            const Given<uint32_t>& depths) {
   const Rows<uint32_t> cell(cells, "cells");
-  const Rows<float> relative(throughput, "throughput", 0, cell.size());
-  std::optional<Rows<uint32_t>> depthAt;
-  if (const Array* array = std::get_if<Array>(&depths)) depthAt.emplace(*array, "depth", 0, cell.size());
-  const uint32_t* same = std::get_if<uint32_t>(&depths);
+  const Each<float> relative(throughput, "throughput", cell.size());
+  const Each<uint32_t> depth(depths, "depth", cell.size());
   const Numbers result = newArray<Numbers>({cell.size()});
   withoutLock([&] {
     const Lookup lookup(guide);
     for (size_t i = 0; i < cell.size(); ++i)
-      result.data()[i] = lookup.survivalProbability(cell(i), relative(i), same ? *same : (*depthAt)(i));
+      result.data()[i] = lookup.survivalProbability(cell(i), relative(i), depth(i));
   });
   return result;
 }
@@ -188,12 +168,13 @@ directions: float32 of shape (count, 3), unit; 0 also where they are not finite.
       .def("bsdf_fraction", bsdfFraction, "cells"_a, "roughness"_a,
            R"(Probabilities that draws that may be guided stay with the BSDF: (count,), float32 in (0, 1].
 
-roughness: float32 of shape (count,): alpha of a microfacet distribution, 1 for diffuse. 1 without a cell.)")
+roughness: a number, or float32 of shape (count,): alpha of a microfacet distribution, 1 for diffuse.
+1 without a cell.)")
       .def("survival_probability", survivalProbability, "cells"_a, "throughput"_a, "depth"_a = 1u,
            R"(Probabilities with which paths should go on: (count,), float32 in (0, 1].
 
-throughput: float32 of shape (count,): of the path over the pixel's value, both as luminance.
-depth: uint32, or uint32 of shape (count,): of the vertices, 1 for the first. From 32 on at most .95 is
+throughput: a number, or float32 of shape (count,): of the path over the pixel's value, both as luminance.
+depth: an int, or uint32 of shape (count,): of the vertices, 1 for the first. From 32 on at most .95 is
 answered, without a cell as well, so that every path ends.)")
       .def("shadow_ray_probability", shadowRayProbability, "contribution"_a,
            R"(Probabilities with which shadow rays should be traced: (count,), float32 in (0, 1].

@@ -1,6 +1,7 @@
 #include <nanobind/stl/filesystem.h>
 #include <nanobind/stl/string.h>
 
+#include <cstdio>
 #include <odis/odis.hpp>
 
 #include "bindings.h"
@@ -14,6 +15,12 @@ void bindModel(nb::module_& module) {
           "__init__",
           [](Model* self, const LoggingContext* context) { new (self) Model(contextOrShared(context)); },
           "context"_a = nb::none(), "The networks that come with the library.")
+      .def("__repr__",
+           [](const Model& self) {
+             char text[64];  // the same for all objects of Python that stand for this model
+             std::snprintf(text, sizeof text, "<odis.Model at %p>", static_cast<const void*>(self.get()));
+             return std::string(text);
+           })
       .def_static(
           "from_file",
           [](const std::filesystem::path& path, const LoggingContext* context) {

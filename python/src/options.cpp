@@ -6,7 +6,7 @@
 
 #include <odis/odis.hpp>
 
-#include "bindings.h"
+#include "printing.h"
 
 namespace odis::python {
 
@@ -52,7 +52,8 @@ Values out of their range raise Error (INVALID_ARGUMENT) where the options are u
 
 void bindGuideOptions(nb::module_& module) {
   const GuideOptions defaults;
-  nb::class_<GuideOptions>(module, "GuideOptions", kGuideOptions)
+  nb::class_<GuideOptions> options(module, "GuideOptions", kGuideOptions);
+  options
       .def(
           "__init__",
           [](GuideOptions* self, std::optional<Model> model, uint32_t lightGroups, const Ranges& parts,
@@ -69,11 +70,13 @@ void bindGuideOptions(nb::module_& module) {
       .def_rw("light_groups", &GuideOptions::lightGroups)
       .def_prop_rw("light_parts", lightParts, setLightParts)
       .def_rw("settings", &GuideOptions::settings);
+  printAttributes(options, {"model", "light_groups", "light_parts", "settings"});
 }
 
 void bindFrameOptions(nb::module_& module) {
   const FrameOptions defaults;
-  nb::class_<FrameOptions>(module, "FrameOptions", kFrameOptions)
+  nb::class_<FrameOptions> options(module, "FrameOptions", kFrameOptions);
+  options
       .def(
           "__init__",
           [](FrameOptions* self, uint32_t width, uint32_t height, uint32_t samplesPerPixel,
@@ -103,6 +106,8 @@ void bindFrameOptions(nb::module_& module) {
       .def_rw("tile_offset_y", &FrameOptions::tileOffsetY)
       .def_rw("guide", &FrameOptions::guide)
       .def_rw("settings", &FrameOptions::settings);
+  printAttributes(options, {"width", "height", "samples_per_pixel", "most_samples_per_pixel", "seed",
+                            "tile_offset_x", "tile_offset_y", "guide", "settings"});
 }
 
 void bindSettings(nb::module_& module) {
@@ -111,20 +116,21 @@ void bindSettings(nb::module_& module) {
       .value("FRAMES", ODIS_SETTING_OF_FRAMES)
       .value("GUIDES", ODIS_SETTING_OF_GUIDES)
       .value("PATHS", ODIS_SETTING_OF_PATHS);
-  nb::class_<Setting>(module, "Setting", R"(A row of the table of settings.
+  nb::class_<Setting> setting(module, "Setting", R"(A row of the table of settings.
 
 name: str
 values: str, what it may be: "0 to 1", "roulette|all"
 default: str
 help: str, a line
 owner: SettingOwner; settings of PATHS are read by the host (read_setting)
-research: bool: it takes the method apart; users have no use for it)")
-      .def_ro("name", &Setting::name)
+research: bool: it takes the method apart; users have no use for it)");
+  setting.def_ro("name", &Setting::name)
       .def_ro("values", &Setting::values)
       .def_ro("default", &Setting::defaultValue)
       .def_ro("help", &Setting::help)
       .def_ro("owner", &Setting::owner)
       .def_ro("research", &Setting::research);
+  printAttributes(setting, {"name", "values", "default", "help", "owner", "research"});
   module.def("settings", &odis::settings, "The table of all settings: a list of Setting.");
   module.def("read_setting", &odis::readSetting, "settings"_a, "name"_a,
              R"(The value that a text of settings gives to the one of this name, or its default.

@@ -1,8 +1,12 @@
 #include "vertices.h"
 
+#include <nanobind/stl/string.h>
 #include <nanobind/stl/variant.h>
 
 #include <cstring>
+
+#include "numbers.h"
+#include "printing.h"
 
 namespace odis::python {
 
@@ -100,11 +104,38 @@ OdisVertexField describeField(const Field& field, const Array& array, size_t cou
   return result;
 }
 
+// The number that is given for a field of all vertices, `count` times one after another.
+template <class T>
+std::vector<uint8_t> writtenOut(const Field& field, nb::handle given, const Array* array, size_t count) {
+  T number{};
+  if (array)
+    number = numberIn<T>(*array, field.name);
+  else if (std::is_same_v<T, bool> != PyBool_Check(given.ptr()) || !nb::try_cast(given, number))
+    refuseArray(field.name, typeName(nb::dtype<T>()), nb::repr(given).c_str());
+  std::vector<uint8_t> bytes(count * sizeof(T));
+  for (size_t i = 0; i < count; ++i) std::memcpy(bytes.data() + i * sizeof(T), &number, sizeof(T));
+  return bytes;
+}
+
+std::vector<uint8_t> writtenOut(const Field& field, nb::handle given, const Array* array, size_t count) {
+  switch (field.elements) {
+    case Elements::whole32:
+      return writtenOut<uint32_t>(field, given, array, count);
+    case Elements::whole16:
+      return writtenOut<uint16_t>(field, given, array, count);
+    case Elements::flags:
+      return writtenOut<bool>(field, given, array, count);
+    default:
+      return writtenOut<float>(field, given, array, count);
+  }
+}
+
 constexpr const char* kPathVertices = R"(Path vertices, described by arrays of their fields.
 
-PathVertices(position=..., normal=..., ...) copies nothing and keeps the arrays alive. An array is numpy's or
-anything with DLPack or a buffer, of any length `count`, the same for all, and any positive stride. World
+PathVertices(position=..., normal=..., ...) copies no array and keeps the arrays alive. An array is numpy's
+or anything with DLPack or a buffer, of any length `count`, the same for all, and any positive stride. World
 space, unit directions, densities with respect to solid angle, linear colours, radiance in the host's units.
+A field of shape (count,) may be one number for all vertices: roughness=0.5, depth=1.
 
 Of shape (count, 3), float32 or float16:
     position         required
@@ -148,7 +179,17 @@ VertexArrays::VertexArrays(const nb::dict& fields) {
   bool counted = false;
   const auto add = [&](const Field& field, nb::handle value) {
     Array array;
-    if (!nb::try_cast(value, array))
+    const bool isArray = nb::try_cast(value, array), isVector = field.elements == Elements::vectors;
+    const bool isNumber =
+        isArray ? array.ndim() == 0 : PyFloat_Check(value.ptr()) || PyLong_Check(value.ptr());
+    if (isNumber && !isVector) {
+      const size_t count = m_described.count;
+      m_writtenOut.push_back(std::make_shared<const std::vector<uint8_t>>(
+          writtenOut(field, value, isArray ? &array : nullptr, count)));
+      (m_described.*field.described).data = count > 0 ? m_writtenOut.back()->data() : nullptr;
+      return;
+    }
+    if (!isArray)
       refuseArray(field.name, "an array with DLPack or a buffer, whose strides are multiples of its elements",
                   nb::repr(value.type()).c_str());
     if (!counted && array.ndim() > 0) m_described.count = array.shape(0);
@@ -167,6 +208,13 @@ VertexArrays::VertexArrays(const nb::dict& fields) {
       refuseArray(field.name, "an array", "none");
 }
 
+std::string VertexArrays::fieldNames() const {
+  std::string names;
+  for (const Field& field : kFields)
+    if ((m_described.*field.described).data) names.append(names.empty() ? "" : ", ").append(field.name);
+  return names;
+}
+
 VertexArrays vertexArrays(const VerticesArgument& vertices) {
   if (const nb::dict* fields = std::get_if<nb::dict>(&vertices)) return VertexArrays(*fields);
   return std::get<VertexArrays>(vertices);
@@ -176,11 +224,15 @@ void bindVertices(nb::module_& module) {
   nb::class_<VertexArrays>(module, "PathVertices", kPathVertices)
       .def("__init__",
            [](VertexArrays* self, const nb::kwargs& fields) { new (self) VertexArrays(nb::dict(fields)); })
-      .def("__len__", [](const VertexArrays& self) { return self.described().count; });
+      .def("__len__", [](const VertexArrays& self) { return self.described().count; })
+      .def("__repr__", [](const VertexArrays& self) {
+        return "<odis.PathVertices: " + std::to_string(self.described().count) +
+               " vertices, fields: " + self.fieldNames() + ">";
+      });
 
-  nb::class_<VertexCounts>(module, "VertexCounts",
-                           "How many vertices were taken, and how many refused by reason.")
-      .def_ro("accepted", &VertexCounts::accepted)
+  nb::class_<VertexCounts> counts(module, "VertexCounts",
+                                  "How many vertices were taken, and how many refused by reason.");
+  counts.def_ro("accepted", &VertexCounts::accepted)
       .def_ro("discrete", &VertexCounts::discrete, "Delta lobes: there is nothing to learn from.")
       .def_ro("not_finite", &VertexCounts::notFinite, "Position, normal, wi, radiance, pdf or cosine.")
       .def_ro("no_density", &VertexCounts::noDensity, "pdf or survival not positive.")
@@ -195,6 +247,9 @@ void bindVertices(nb::module_& module) {
       .def_ro("unknown_lights", &VertexCounts::unknownLights, "light_group beyond GuideOptions.light_groups.")
       .def_ro("twice", &VertexCounts::twice,
               "pixel, sample and depth of a vertex before; counted by frames alone.");
+  printAttributes(
+      counts, {"accepted", "discrete", "not_finite", "no_density", "not_unit", "no_depth", "outside_frame",
+               "wrong_side", "out_of_range", "guidable_above_pdf", "unknown_lights", "twice"});
 }
 
 }  // namespace odis::python
