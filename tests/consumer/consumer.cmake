@@ -29,7 +29,7 @@ set(run --test-command ${CMAKE_CTEST_COMMAND} --output-on-failure --timeout 60)
 odis_consumer_test(FindsItByCMake ${CMAKE_CTEST_COMMAND}
   --build-and-test ${CMAKE_CURRENT_LIST_DIR} ${folder}/build --build-generator ${CMAKE_GENERATOR} --build-options ${options}
     -DCMAKE_CXX_COMPILER=${CMAKE_CXX_COMPILER} "-DCMAKE_CXX_FLAGS=${CMAKE_CXX_FLAGS}" ${run})
-if(NOT CMAKE_CXX_FLAGS MATCHES "-fsanitize")
+if(NOT CMAKE_CROSSCOMPILING AND NOT CMAKE_CXX_FLAGS MATCHES "-fsanitize")
   odis_consumer_test(FindsItByCMakeInC ${CMAKE_CTEST_COMMAND}
     --build-and-test ${CMAKE_CURRENT_LIST_DIR}/c_only ${folder}/build_c --build-generator ${CMAKE_GENERATOR}
     --build-options ${options} ${run})
