@@ -1,3 +1,8 @@
+if(ODIS_MANUAL_PYTHON)
+  add_test(NAME Manual.NamesEveryCallOfOpenPgl
+    COMMAND ${ODIS_MANUAL_PYTHON} ${CMAKE_CURRENT_LIST_DIR}/check_openpgl_page.py)
+endif()
+
 # The commands of the manual run, and print what the manual says. (Under sanitizers the tests of the command run
 # the same code.)
 if(TARGET odis_app AND ODIS_MANUAL_PYTHON AND NOT CMAKE_CXX_FLAGS MATCHES "-fsanitize")
