@@ -34,6 +34,12 @@ if(NOT CMAKE_CROSSCOMPILING AND NOT CMAKE_CXX_FLAGS MATCHES "-fsanitize")
     --build-and-test ${CMAKE_CURRENT_LIST_DIR}/c_only ${folder}/build_c --build-generator ${CMAKE_GENERATOR}
     --build-options ${options} ${run})
 endif()
+if(openpgl)
+  odis_consumer_test(FindsOpenPgl8ByCMake ${CMAKE_CTEST_COMMAND}
+    --build-and-test ${CMAKE_CURRENT_LIST_DIR}/openpgl_8 ${folder}/build_openpgl_8
+    --build-generator ${CMAKE_GENERATOR} --build-options ${openpgl} -DCMAKE_CXX_COMPILER=${CMAKE_CXX_COMPILER}
+    "-DCMAKE_CXX_FLAGS=${CMAKE_CXX_FLAGS}" -DCMAKE_BUILD_TYPE=${CMAKE_BUILD_TYPE} ${run})
+endif()
 
 find_program(ODIS_PKG_CONFIG pkg-config)
 mark_as_advanced(ODIS_PKG_CONFIG)

@@ -2,6 +2,7 @@
 #include <openpgl/cpp/OpenPGL.h>
 
 #include <cstdio>
+#include <cstring>
 
 int main() {
   openpgl::cpp::Device device(PGL_DEVICE_TYPE_CPU_4);
@@ -11,8 +12,14 @@ int main() {
   openpgl::cpp::SampleStorage samples;
   for (int i = 0; i < 1000; ++i)
     samples.AddSample({{float(i % 10), float(i / 10 % 10), 0}, {0.6f, 0, 0.8f}, 5, 0.25f, 3, 0});
+  // What lies beside a flag in memory is no flag.
+  openpgl::cpp::ZeroValueSampleData zero;
+  std::memset(static_cast<void*>(&zero), 0xfe, sizeof zero);
+  zero = {{1, 2, 0}, {0, 0.6f, 0.8f}, false};
+  samples.AddZeroValueSample(zero);
+  const bool taken = samples.GetSizeSurface() == 1001;
   field.Update(samples);
   std::printf("%zu update, version %d.%d\n", field.GetIteration(), OPENPGL_VERSION_MAJOR,
               OPENPGL_VERSION_MINOR);
-  return field.GetIteration() == 1 ? 0 : 1;
+  return taken && field.GetIteration() == 1 ? 0 : 1;
 }

@@ -121,7 +121,7 @@ void PathSegmentStorage::addSampleOf(const odis::PathVertex& vertex) {
     m_samples.push_back({fromOdis(vertex.position), fromOdis(vertex.wi), radiance / vertex.pdf, vertex.pdf,
                          std::min(vertex.distance, maxDistance), 0});
   else
-    m_zeroSamples.push_back({fromOdis(vertex.position), fromOdis(vertex.wi), false});
+    m_zeroSamples.push_back({fromOdis(vertex.position), fromOdis(vertex.wi), 0});
 }
 
 size_t PathSegmentStorage::prepare() {

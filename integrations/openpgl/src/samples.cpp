@@ -102,7 +102,8 @@ void SampleStorage::add(const PGLSampleData& sample) {
 }
 
 void SampleStorage::add(const PGLZeroValueSampleData& sample) {
-  if (sample.volume) return;
+  // Of a host of 0.7 only the first byte counts.
+  if (sample.flags & PGLSampleData::EInsideVolume) return;
   odis::PathVertex vertex = vertexOf(sample.position, sample.direction);
   vertex.pdf = 1;
   add({&vertex, 1});

@@ -1,9 +1,11 @@
-// The structs of Open PGL's C interface, as its versions 0.4 to 0.7 lay them out in memory. World space, unit
+// The structs of Open PGL's C interface, as its versions 0.4 to 0.8 lay them out in memory. World space, unit
 // directions, densities with respect to solid angle.
 #pragma once
 
 #include <cstddef>
 #include <cstdint>
+
+#include "version.h"
 
 struct pgl_vec3f {
   float x, y, z;
@@ -32,8 +34,8 @@ inline void pglVec3fAdd(pgl_vec3f& sum, const pgl_vec3f& v) {
 
 // Radiance that arrived at a place from a direction.
 struct PGLSampleData {
-  // Numbers of version 0.7; in 0.4 the flag of volumes is 2.
-  enum Flags { EInsideVolume = 1 << 0, EDirectLight = 1 << 1 };
+  // Numbers of version 0.8, whose first two are those of 0.7; in 0.4 the flag of volumes is 2.
+  enum Flags { EInsideVolume = 1 << 0, EDirectLight = 1 << 1, ENextEventVolume = 1 << 2 };
 
   pgl_point3f position;
   pgl_direction direction;  // where the radiance comes from
@@ -47,7 +49,11 @@ struct PGLSampleData {
 struct PGLZeroValueSampleData {
   pgl_point3f position;
   pgl_direction direction;
+#ifdef ODIS_OPENPGL_8
+  uint32_t flags;  // the first byte is what `volume` was, but for flags of 0.8
+#else
   bool volume;
+#endif
 };
 
 // A vertex of a path, and the ray from there to the next one.
@@ -69,6 +75,31 @@ struct PGLPathSegmentData {
   float roughness{1};  // square root of a microfacet distribution's alpha
   const void* regionPtr{nullptr};
 };
+
+#ifdef ODIS_OPENPGL_8
+// What a path brought to its pixel.
+struct PGLImageSpaceSample {
+  enum Flags { EVolumeEvent = 1 << 0 };
+
+  pgl_vec3f contribution{0, 0, 0};
+  pgl_vec3f albedo{0, 0, 0};  // of the first hit; not read, nor is the normal
+  pgl_vec3f normal{0, 0, -1};
+  uint32_t flags{0};
+
+  void SetSurfaceEvent(bool onSurface) {
+    flags = onSurface ? flags & ~uint32_t(EVolumeEvent) : flags | uint32_t(EVolumeEvent);
+  }
+  bool IsSurfaceEvent() const { return !(flags & EVolumeEvent); }
+};
+
+// Estimates of contributions are those of either type: of their mean.
+enum PGLContributionTypes { EContribContribution = 0, EContribVariance };
+struct PGLImageSpaceGuidingBufferConfig {
+  pgl_point2i resolution{0, 0};
+  bool contributionEstimate{true};
+  PGLContributionTypes contributionType{EContribContribution};
+};
+#endif
 
 struct PGLString {
   char* m_str;

@@ -1,4 +1,4 @@
-// Open PGL's C interface as ODIS answers it. Hosts that were compiled for versions 0.4 to 0.7 find the functions
+// Open PGL's C interface as ODIS answers it. Hosts that were compiled for versions 0.4 to 0.8 find the functions
 // that they call; where these versions differ, what only one of them passes comes last and is not read.
 #pragma once
 
@@ -26,6 +26,10 @@ using PGLPathSegment = PGLPathSegmentData*;
 using PGLSurfaceSamplingDistribution = SurfaceSamplingDistribution*;
 using PGLVolumeSamplingDistribution = VolumeSamplingDistribution*;
 using PGLFieldStatistics = FieldStatistics*;
+#ifdef ODIS_OPENPGL_8
+struct ImageSpaceGuidingBuffer;
+using PGLImageSpaceGuidingBuffer = ImageSpaceGuidingBuffer*;
+#endif
 
 enum PGL_SPATIAL_STRUCTURE_TYPE { PGL_SPATIAL_STRUCTURE_KDTREE = 0 };
 enum PGL_DIRECTIONAL_DISTRIBUTION_TYPE {
@@ -179,5 +183,22 @@ uint32_t pglVolumeSamplingDistributionGetId(PGLVolumeSamplingDistribution distri
 bool pglVolumeSamplingDistributionValidate(PGLVolumeSamplingDistribution distribution);
 void pglVolumeSamplingDistributionClear(PGLVolumeSamplingDistribution distribution);
 PGLRegion pglVolumeSamplingGetRegion(PGLVolumeSamplingDistribution distribution);
+
+#ifdef ODIS_OPENPGL_8
+// ---- estimates of pixels: any thread may add samples, of different pixels at once ----
+
+PGLImageSpaceGuidingBuffer pglFieldNewImageSpaceGuidingBuffer(PGLImageSpaceGuidingBufferConfig config);
+PGLImageSpaceGuidingBuffer pglFieldNewImageSpaceGuidingBufferFromFile(const char* file);
+void pglReleaseImageSpaceGuidingBuffer(PGLImageSpaceGuidingBuffer buffer);
+void pglImageSpaceGuidingBufferUpdate(PGLImageSpaceGuidingBuffer buffer);
+void pglImageSpaceGuidingBufferAddSample(PGLImageSpaceGuidingBuffer buffer, pgl_point2i pixel,
+                                         PGLImageSpaceSample sample);
+void pglImageSpaceGuidingBufferStore(PGLImageSpaceGuidingBuffer buffer, const char* file);
+// The estimate of the last update, grey: the mean luminance of a block of 8 x 8 pixels and a tenth of the image's.
+pgl_vec3f pglImageSpaceGuidingBufferGetContributionEstimate(PGLImageSpaceGuidingBuffer buffer,
+                                                            pgl_point2i pixel);
+bool pglImageSpaceGuidingBufferIsReady(PGLImageSpaceGuidingBuffer buffer);
+void pglImageSpaceGuidingBufferReset(PGLImageSpaceGuidingBuffer buffer);
+#endif
 
 }  // extern "C"

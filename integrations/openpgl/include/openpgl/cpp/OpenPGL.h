@@ -305,4 +305,44 @@ struct VolumeSamplingDistribution {
   PGLVolumeSamplingDistribution handle;
 };
 
+#ifdef ODIS_OPENPGL_8
+namespace util {
+
+struct ImageSpaceGuidingBuffer {
+  struct Config {
+    explicit Config(pgl_point2i resolution) { arguments.resolution = resolution; }
+    pgl_point2i GetResolution() const { return arguments.resolution; }
+    void EnableContributionEstimate(bool enabled) { arguments.contributionEstimate = enabled; }
+    bool ContributionEstimate() const { return arguments.contributionEstimate; }
+    void SetContributionType(PGLContributionTypes type) { arguments.contributionType = type; }
+    PGLContributionTypes GetContributionType() const { return arguments.contributionType; }
+    PGLImageSpaceGuidingBufferConfig arguments;
+  };
+  using Sample = PGLImageSpaceSample;
+
+  explicit ImageSpaceGuidingBuffer(const Config& config)
+      : handle(pglFieldNewImageSpaceGuidingBuffer(config.arguments)) {}
+  explicit ImageSpaceGuidingBuffer(const std::string& file)
+      : handle(pglFieldNewImageSpaceGuidingBufferFromFile(file.c_str())) {
+    if (!handle) throw std::runtime_error(file + ": no buffer can be read");
+  }
+  ~ImageSpaceGuidingBuffer() { pglReleaseImageSpaceGuidingBuffer(handle); }
+  ImageSpaceGuidingBuffer(const ImageSpaceGuidingBuffer&) = delete;
+  ImageSpaceGuidingBuffer& operator=(const ImageSpaceGuidingBuffer&) = delete;
+  void Update() { pglImageSpaceGuidingBufferUpdate(handle); }
+  void AddSample(pgl_point2i pixel, const Sample& sample) {
+    pglImageSpaceGuidingBufferAddSample(handle, pixel, sample);
+  }
+  void Store(const std::string& file) const { pglImageSpaceGuidingBufferStore(handle, file.c_str()); }
+  pgl_vec3f GetContributionEstimate(pgl_point2i pixel) const {
+    return pglImageSpaceGuidingBufferGetContributionEstimate(handle, pixel);
+  }
+  bool IsReady() const { return pglImageSpaceGuidingBufferIsReady(handle); }
+  void Reset() { pglImageSpaceGuidingBufferReset(handle); }
+  PGLImageSpaceGuidingBuffer handle;
+};
+
+}  // namespace util
+#endif
+
 }  // namespace openpgl::cpp
