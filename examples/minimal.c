@@ -1,8 +1,6 @@
 // The smallest host there is: it makes up what paths saw on a floor under a bright spot of sky, lets ODIS
 // learn from that, and asks for a direction. A renderer does the same with the vertices of its own first
-// paths.
-//
-//   cc -std=c99 minimal.c $(pkg-config --cflags --libs odis) -lm -o minimal && ./minimal
+// paths. examples/README.md says how it is compiled.
 #include <math.h>
 #include <odis/odis.h>
 #include <stdio.h>

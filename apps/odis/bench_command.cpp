@@ -10,6 +10,7 @@
 #include "console.h"
 #include "eval/benchmark.h"
 #include "eval/compare.h"
+#include "eval/vertex_costs.h"
 #include "scene_warnings.h"
 #include "validators.h"
 
@@ -22,31 +23,53 @@ struct BenchArguments {
   eval::BenchmarkSettings settings;
   std::string sampler = "independent";
   int pixels = 57600;
-  bool json = false, quiet = false;
+  bool vertex = false, json = false, quiet = false;
 };
 
 struct Row {
   std::string scene;
   double secondsLoad = 0;
   eval::BenchmarkResult result;
+  eval::VertexCosts vertex;
 };
 
-nlohmann::ordered_json toJson(const Row& row) {
+// Nanoseconds of a core.
+double ofRay(const eval::BenchmarkResult& r) {
+  return 1e9 / (r.samplesPerCpuSecond * r.raysPerSecond / r.samplesPerSecond);
+}
+
+nlohmann::ordered_json toJson(const Row& row, bool vertex) {
   const eval::BenchmarkResult& r = row.result;
-  return {{"scene", row.scene},
-          {"pixels", r.pixels},
-          {"secondsLoad", row.secondsLoad},
-          {"samplesPerSecond", r.samplesPerSecond},
-          {"samplesPerCpuSecond", r.samplesPerCpuSecond},
-          {"raysPerSecond", r.raysPerSecond},
-          {"guidedCost", r.guidedCost},
-          {"guidingShare", r.guidingShare},
-          {"frameCost", r.frameCost},
-          {"bytesPerVertex", r.bytesPerVertex},
-          {"bytesMaps", r.bytesMaps},
-          {"guidedRayCost", r.costs.guidedRay},
-          {"builtCellCost", r.costs.builtCell},
-          {"recordedRayCost", r.costs.recordedRay}};
+  nlohmann::ordered_json json = {{"scene", row.scene},
+                                 {"pixels", r.pixels},
+                                 {"secondsLoad", row.secondsLoad},
+                                 {"samplesPerSecond", r.samplesPerSecond},
+                                 {"samplesPerCpuSecond", r.samplesPerCpuSecond},
+                                 {"raysPerSecond", r.raysPerSecond},
+                                 {"guidedCost", r.guidedCost},
+                                 {"guidingShare", r.guidingShare},
+                                 {"frameCost", r.frameCost},
+                                 {"bytesPerVertex", r.bytesPerVertex},
+                                 {"bytesMaps", r.bytesMaps},
+                                 {"guidedRayCost", r.costs.guidedRay},
+                                 {"builtCellCost", r.costs.builtCell},
+                                 {"recordedRayCost", r.costs.recordedRay}};
+  const eval::VertexCosts& v = row.vertex;
+  if (vertex)
+    json["vertex"] = {{"lookUp", v.lookUp},       {"prepare", v.prepare}, {"pdf", v.pdf},
+                      {"direction", v.direction}, {"guided", v.guided},   {"ray", ofRay(r)}};
+  return json;
+}
+
+void printVertexCosts(const std::vector<Row>& rows) {
+  fmt::print(
+      "\n| scene | cell, ns | prepare | density | direction | guided vertices | ray of path |\n"
+      "|---|---|---|---|---|---|---|\n");
+  for (const Row& row : rows) {
+    const eval::VertexCosts& v = row.vertex;
+    fmt::print("| {} | {:.1f} | {:.1f} | {:.1f} | {:.1f} | {:.0f} % | {:.0f} |\n", row.scene, v.lookUp,
+               v.prepare, v.pdf, v.direction, 100 * v.guided, ofRay(row.result));
+  }
 }
 
 void printRow(const Row& row) {
@@ -61,12 +84,13 @@ void printRow(const Row& row) {
 }
 
 // The means over the scenes of what operations cost, as a frame can be told of them.
-void printCosts(const std::vector<eval::OperationCosts>& scenes) {
+void printCosts(const std::vector<Row>& rows) {
   double guidedRay = 0, builtCell = 0, recordedRay = 0;
-  for (const eval::OperationCosts& costs : scenes) {
-    guidedRay += costs.guidedRay / double(scenes.size());
-    builtCell += costs.builtCell / double(scenes.size());
-    recordedRay += costs.recordedRay / double(scenes.size());
+  for (const Row& row : rows) {
+    const eval::OperationCosts& costs = row.result.costs;
+    guidedRay += costs.guidedRay / double(rows.size());
+    builtCell += costs.builtCell / double(rows.size());
+    recordedRay += costs.recordedRay / double(rows.size());
   }
   fmt::print(
       "\nMeans of the last three columns: {:.2f}, --set built-cell-cost={:.0f}, --set "
@@ -76,12 +100,24 @@ void printCosts(const std::vector<eval::OperationCosts>& scenes) {
 
 }  // namespace
 
+static eval::VertexCosts measureVertex(const render::Scene& scene, const eval::BenchmarkSettings& settings,
+                                       render::Progress& progress) {
+  render::RenderOptions options;
+  options.integrator = render::IntegratorKind::odis;
+  options.sampler = settings.sampler;
+  options.spp = settings.spp;
+  options.maxDepth = settings.maxDepth;
+  options.rrDepth = settings.rrDepth;
+  options.threads = settings.threads;
+  return eval::vertexCosts(render::renderPilot(scene, options, progress), settings.rounds);
+}
+
 static int runBench(BenchArguments& a) {
   a.settings.sampler = a.sampler == "sobol" ? render::SamplerKind::sobol : render::SamplerKind::independent;
   const InterruptScope interruptible;
   ConsoleProgress progress(a.quiet);
   nlohmann::ordered_json all = nlohmann::ordered_json::array();
-  std::vector<eval::OperationCosts> costs;
+  std::vector<Row> rows;
   const auto printHead = [&] {
     fmt::print(
         "| scene | load, s | path, M samples/s | M rays/s | guided sample | guiding of a frame | frame | "
@@ -89,7 +125,7 @@ static int runBench(BenchArguments& a) {
         "|---|---|---|---|---|---|---|---|---|---|---|---|\n");
   };
   for (const std::string& path : a.scenes) {
-    Row row{eval::sceneName(path), 0, {}};
+    Row row{eval::sceneName(path), 0, {}, {}};
     progress.setTitle(row.scene);
     render::Warnings warnings;
     const auto start = std::chrono::steady_clock::now();
@@ -99,18 +135,20 @@ static int runBench(BenchArguments& a) {
     tellWarnings(path, warnings, {.quiet = a.quiet});
     row.secondsLoad = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     row.result = eval::benchmark(*scene, a.settings, progress);
+    if (a.vertex && !InterruptScope::interrupted()) row.vertex = measureVertex(*scene, a.settings, progress);
     if (InterruptScope::interrupted()) return InterruptScope::exitCode();
-    if (!a.json && costs.empty()) printHead();
-    costs.push_back(row.result.costs);
+    if (!a.json && rows.empty()) printHead();
+    rows.push_back(row);
     if (a.json)
-      all.push_back(toJson(row));
+      all.push_back(toJson(row, a.vertex));
     else
       printRow(row);
   }
   if (a.json)
     fmt::print("{}\n", all.dump(2));
-  else if (costs.size() > 1)
-    printCosts(costs);
+  else if (rows.size() > 1)
+    printCosts(rows);
+  if (a.vertex && !a.json) printVertexCosts(rows);
   return kOk;
 }
 
@@ -122,7 +160,10 @@ Command addBenchCommand(CLI::App& parent) {
       "\"frame\" are times in those of `path`, \"guiding of a frame\" is the share of recording the pilot "
       "and of\n"
       "building cells, maps and selection probabilities. The last three columns are times in that of a ray\n"
-      "of `path`: `--set built-cell-cost` and `recorded-ray-cost` take them.");
+      "of `path`: `--set built-cell-cost` and `recorded-ray-cost` take them.\n"
+      "--vertex says, in nanoseconds of a core, what a host pays that traces one path at a time: for finding "
+      "the\n"
+      "cell of a vertex, for preparing its map, for the density of a direction and for drawing one.");
   const auto a = std::make_shared<BenchArguments>();
   app->add_option("SCENE", a->scenes, "Mitsuba scene files")->required();
   app->add_option("--spp", a->settings.spp, "Samples per pixel, of which one is the pilot")
@@ -146,6 +187,7 @@ Command addBenchCommand(CLI::App& parent) {
   app->add_option("--threads", a->settings.threads, "0: one a core")
       ->check(within(kThreadCount))
       ->capture_default_str();
+  app->add_flag("--vertex", a->vertex, "Measure look-ups at single vertices, too");
   app->add_flag("--json", a->json, "Print JSON");
   app->add_flag("-q,--quiet", a->quiet, "No progress, of warnings only those of a picture that changes");
   return {app, [a] { return runBench(*a); }};

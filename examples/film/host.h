@@ -172,7 +172,7 @@ inline Traced trace(const Scene& scene, const Settings& settings, const odis::Fr
     const float v2 = random.next();
     const bool fromMap = vertex.drawsFromMap(v1);
     const float r = std::sqrt(v1), phi = 2 * kPi * v2;
-    const Vec3 wi = fromMap ? Vec3(vertex.sampleMap(v1, v2))
+    const Vec3 wi = fromMap ? Vec3(vertex.sampleMap(v1, v2).wi)
                             : Frame(hit.n).toWorld({r * std::cos(phi), r * std::sin(phi), std::sqrt(1 - v1)});
     const float bsdfPdf = std::max(dot(wi, hit.n), 0.0f) / kPi;
     rayPdf = vertex.pdf(wi, bsdfPdf, bsdfPdf);

@@ -150,7 +150,7 @@ Traced trace(const Scene& scene, const Settings& settings, const Sample& of) {
 
     // The path goes on in a direction of the BSDF, or of the map.
     float v1 = random.next(), v2 = random.next();
-    const Vec3 wi = vertex.drawsFromMap(v1) ? Vec3(vertex.sampleMap(v1, v2)) : bsdf.sample(v1, v2);
+    const Vec3 wi = vertex.drawsFromMap(v1) ? Vec3(vertex.sampleMap(v1, v2).wi) : bsdf.sample(v1, v2);
     Bsdf::Value next = bsdf.evaluate(wi);
     next.pdf = vertex.pdf(wi, next.pdf, next.pdf);
     const Vec3 weight = next.pdf > 0 ? next.value / next.pdf : Vec3();

@@ -47,8 +47,8 @@ ODIS_HOST_DEVICE inline uint32_t findAround(const GuideView& view, uint64_t key,
   return cell;
 }
 
-// The finest cell that there is for a vertex; kNoCell at discrete ones and where the guide has seen nothing at
-// all.
+// The finest cell that there is for a vertex; kNoCell at discrete ones and where the guide has seen nothing
+// at all.
 ODIS_HOST_DEVICE inline uint32_t findCell(const GuideView& view, const Place& place) {
   if (place.discrete) return kNoCell;
   const uint32_t cell = pixelCell(view, place);

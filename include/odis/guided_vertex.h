@@ -1,6 +1,6 @@
-// All that a guide says at one vertex of a path: one object in the place of the functions of odis/guide_view.h
-// and odis/mixture.h, for renderers that trace one path at a time, on the CPU or in CUDA. docs/vertex.md has a
-// path tracer that uses it.
+// All that a guide says at one vertex of a path: one object in the place of the functions of
+// odis/guide_view.h and odis/mixture.h, for renderers that trace one path at a time, on the CPU or in CUDA.
+// docs/vertex.md has a path tracer that uses it.
 //
 //   odis::GuidedVertex vertex(*pass, place);
 //   const float survival = vertex.survivalProbability(luminance(throughput), ofTheHost);
@@ -9,7 +9,7 @@
 //   ... next-event estimation: vertex.drawLightGroup(u), vertex.lightProbability(...), and for the MIS weight
 //   const float other = vertex.pdf(wi, bsdfPdf, bsdfPdf);
 //   ... the next direction
-//   wi = vertex.drawsFromMap(u) ? vertex.sampleMap(u, v) : bsdf.sample(u, v);
+//   wi = vertex.drawsFromMap(u) ? vertex.sampleMap(u, v).wi : bsdf.sample(u, v);
 //   pdf = vertex.pdf(wi, bsdfPdf, bsdfPdf);
 //
 // Where nothing is known each function answers as if there were no guide. Directions are unit vectors and
@@ -22,6 +22,8 @@
 
 namespace odis {
 
+// A direction drawn from a map, and the map's density of it.
+using MapSample = VertexMap<float>::Sample;
 
 class GuidedVertex {
  public:
@@ -61,8 +63,8 @@ class GuidedVertex {
   // Whether the path may end here, and with what radiance (setting `cached`; it biases the image). To be
   // asked before roulette; `footprint` as for odis::cachedRadiance.
   ODIS_HOST_DEVICE bool cachedRadiance(float throughput, float footprint, Float3& radiance) const {
-    return isKnown() && odis::cachedRadiance(*m_view, m_place, m_cell, throughput / m_pixelValue, footprint,
-                                             radiance);
+    return isKnown() &&
+           odis::cachedRadiance(*m_view, m_place, m_cell, throughput / m_pixelValue, footprint, radiance);
   }
 
   // ---- lights ----
@@ -99,12 +101,13 @@ class GuidedVertex {
   // ---- directions ----
 
   // Says what the BSDF is like; until then, and where nothing is to be gained, directions are left to it.
-  // `roughness` is alpha of a microfacet distribution, 1 for diffuse; `guidableProbability` how often the BSDF
-  // draws from lobes that may be guided (odis/mixture.h), in [0, 1]; `bothSides` whether it scatters to both
-  // sides.
+  // `roughness` is alpha of a microfacet distribution, 1 for diffuse; `guidableProbability` how often the
+  // BSDF draws from lobes that may be guided (odis/mixture.h), in [0, 1]; `bothSides` whether it scatters
+  // to both sides.
   ODIS_HOST_DEVICE void prepare(float roughness, float guidableProbability = 1, bool bothSides = false) {
     m_mixture = {};
     if (!isKnown() || !(guidableProbability > 0)) return;
+    if (roughness < m_view->rules.leastGuidedRoughness) return;
     const float fraction = odis::bsdfFraction(*m_view, int32_t(m_cell), roughness);
     if (!(fraction < 1)) return;
     m_map.prepare(m_view->maps, int32_t(m_cell), m_place.normal, bothSides ? -1.0f : 0.0f);
@@ -123,13 +126,17 @@ class GuidedVertex {
     return choice.fromMap;
   }
   // Draws a direction from the map. Only where guides().
-  ODIS_HOST_DEVICE Float3 sampleMap(float u, float v) const { return m_map.sample(u, v).wi; }
+  ODIS_HOST_DEVICE MapSample sampleMap(float u, float v) const { return m_map.sample(u, v); }
   // The map's density of a direction; 0 unless guides().
   ODIS_HOST_DEVICE float mapPdf(const Float3& wi) const { return guides() ? m_map.pdf(wi) : 0; }
   // The density with which directions are drawn, which their weight is divided by and which stands in MIS
   // weights. `bsdfPdf` is the BSDF's own, `guidablePdf` the part of it from lobes that may be guided.
   ODIS_HOST_DEVICE float pdf(const Float3& wi, float bsdfPdf, float guidablePdf) const {
     return guides() ? m_mixture.pdf(bsdfPdf, guidablePdf, m_map.pdf(wi)) : bsdfPdf;
+  }
+  // The same for a direction that was drawn from the map, which is faster.
+  ODIS_HOST_DEVICE float pdfOf(const MapSample& drawn, float bsdfPdf, float guidablePdf) const {
+    return m_mixture.pdf(bsdfPdf, guidablePdf, drawn.pdf);
   }
   // Draws a direction of a BSDF with lobes of which some may be guided; `host` as for Mixture::sample.
   template <class Host>

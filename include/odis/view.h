@@ -93,6 +93,8 @@ typedef struct OdisGuideRules {
   // A path may end with cached radiance if the standard error of what it adds is below cachedError times the
   // pixel's value (0: never), and if its footprint is at least leastCachedFootprint times the cell's edge.
   float cachedError ODIS_DEFAULT(0), leastCachedFootprint ODIS_DEFAULT(5);
+  // Lobes of less roughness are too sharp to be guided: their densities are high where maps are flat.
+  float leastGuidedRoughness ODIS_DEFAULT(0.05f);
 } OdisGuideRules;
 
 // Maps at pixels, by the paper's method (docs/paper.md): the cell that holds a pixel's own map, or

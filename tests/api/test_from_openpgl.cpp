@@ -50,7 +50,7 @@ TEST(FromOpenPgl, PathsTeachAGuideAndVerticesDrawFromIt) {
     const bool isFromMap = vertex.drawsFromMap(u);
     const float phi = 2 * std::numbers::pi_v<float> * v;
     const Float3 ofBsdf{std::sqrt(u) * std::cos(phi), std::sqrt(u) * std::sin(phi), std::sqrt(1 - u)};
-    const Float3 wi = isFromMap ? vertex.sampleMap(u, v) : ofBsdf;
+    const Float3 wi = isFromMap ? vertex.sampleMap(u, v).wi : ofBsdf;
     const float bsdfPdf = std::max(wi.z, 0.0f) * kInversePi, pdf = vertex.pdf(wi, bsdfPdf, bsdfPdf);
     ASSERT_GT(pdf, 0);
     fromMap += isFromMap;

@@ -39,7 +39,10 @@ class GuidedVertexTest : public ::testing::Test {
   // A floor brings nothing back, so what is learned about that is made up.
   GuidedVertexTest() : m_guide(guideOfFloor()), m_view(m_guide.view()) {
     m_decisions.assign(m_view.decisions, m_view.decisions + m_view.cellCount);
-    for (CellDecisions& cell : m_decisions) cell.survivalFactor = 2, cell.outgoingRadiance = {0.3f, 0.2f, 0.1f};
+    for (CellDecisions& cell : m_decisions) {
+      cell.survivalFactor = 2;
+      cell.outgoingRadiance = {0.3f, 0.2f, 0.1f};
+    }
     m_view.decisions = m_decisions.data();
     m_cached.assign(2 * size_t(m_view.cellCount), {{1, 2, 3}, 0.1f});
     m_view.cached = m_cached.data();
@@ -65,11 +68,12 @@ Double3 unit(const Double3& v) {
   return {v.x / length, v.y / length, v.z / length};
 }
 
-// A host in double precision with a diffuse BSDF above +z: directions are converted where they cross the border.
+// A host in double precision with a diffuse BSDF above +z: directions are converted where they cross the
+// border.
 Double3 drawDirection(const GuidedVertex& vertex, double u, double v) {
   float draw = std::min(float(u), test::kOneMinusEpsilon);
   if (vertex.drawsFromMap(draw)) {
-    const Float3 wi = vertex.sampleMap(draw, std::min(float(v), test::kOneMinusEpsilon));
+    const Float3 wi = vertex.sampleMap(draw, std::min(float(v), test::kOneMinusEpsilon)).wi;
     return unit({wi.x, wi.y, wi.z});
   }
   const double radius = std::sqrt(double(draw)), phi = 2 * std::numbers::pi * v;
@@ -89,7 +93,10 @@ TEST_F(GuidedVertexTest, DirectionsOfAHostInDoublesHaveTheirDensity) {
   options.quadrature = 48;
   EXPECT_TRUE(test::chi2Test(
       [&](float, float u, float v) -> std::optional<Double3> { return drawDirection(vertex, u, v); },
-      [&](const auto& w) { return densityOf(vertex, {w.x, w.y, w.z}); }, options));
+      [&](const auto& w) {
+        return densityOf(vertex, {w.x, w.y, w.z});
+      },
+      options));
 }
 
 // The weights of a host's estimate of the BSDF's albedo average to it.
@@ -104,6 +111,23 @@ TEST_F(GuidedVertexTest, WeightsAverageToTheAlbedo) {
     weight.add(std::max(wi.z, 0.0) / std::numbers::pi / densityOf(vertex, wi));
   }
   EXPECT_NEAR(weight.mean(), 1, 3 * weight.standardError());
+}
+
+// A drawn direction's density is that which is asked for afterwards, but on the very border of a texel.
+TEST_F(GuidedVertexTest, DrawnDirectionsComeWithTheirDensity) {
+  GuidedVertex vertex = this->vertex();
+  vertex.prepare(1);
+  std::mt19937 engine(3);
+  std::uniform_real_distribution<float> uniform(0, 1);
+  constexpr int kSamples = 200000;
+  int different = 0;
+  for (int i = 0; i < kSamples; ++i) {
+    const MapSample drawn = vertex.sampleMap(std::min(uniform(engine), test::kOneMinusEpsilon),
+                                             std::min(uniform(engine), test::kOneMinusEpsilon));
+    const float expected = vertex.pdf(drawn.wi, 0.1f, 0.1f);
+    different += std::abs(vertex.pdfOf(drawn, 0.1f, 0.1f) - expected) > 1e-4f * expected;
+  }
+  EXPECT_LE(different, kSamples / 1000);
 }
 
 // How often each light is drawn, by both ways, is what is told of it.
@@ -186,6 +210,8 @@ TEST_F(GuidedVertexTest, DirectionsAreTheBsdfsUntilItIsPrepared) {
   };
   expectUnguided();
   vertex.prepare(1, 0);  // none of its lobes may be guided
+  expectUnguided();
+  vertex.prepare(0.04f);  // too sharp
   expectUnguided();
   vertex.prepare(1);
   EXPECT_TRUE(vertex.guides());

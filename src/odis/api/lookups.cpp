@@ -82,7 +82,7 @@ bool odisDrawsFromMap(const OdisGuidedVertex* vertex, float* u) {
 
 bool odisSampleMap(const OdisGuidedVertex* vertex, const float uv[2], OdisFloat3* wi) {
   if (!uv || !wi || !vertexIn(vertex).guides()) return false;
-  *wi = vertexIn(vertex).sampleMap(uv[0], uv[1]);
+  *wi = vertexIn(vertex).sampleMap(uv[0], uv[1]).wi;
   return true;
 }
 

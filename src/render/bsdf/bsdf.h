@@ -9,6 +9,8 @@
 
 #include <memory>
 
+#include <odis/view.h>
+
 #include "render/math/surface_point.h"
 
 namespace odis::render {
@@ -23,7 +25,7 @@ enum class Lobe : uint8_t {
 };
 
 // Perceptual roughness below which a lobe counts as `nearDelta` (alpha of the microfacet distribution).
-inline constexpr float kMinGuidedRoughness = 0.05f;
+inline constexpr float kMinGuidedRoughness = OdisGuideRules().leastGuidedRoughness;
 
 inline bool isDiscrete(Lobe lobe) {
   return lobe == Lobe::delta || lobe == Lobe::null;

@@ -1,5 +1,8 @@
-// A kernel that does at a vertex all that a guide decides, from the same headers as the CPU, and comes to the
-// same. Where there is no GPU it is compiled, not run: the program says so and ends with 77.
+// A guide on a GPU: a kernel that asks at many vertices for all that the guide decides, by the same headers as
+// on the CPU, and comes to the same. docs/gpu.md tells of the arrays. Where there is no GPU the program says so
+// and ends with 77.
+//
+//   nvcc -std=c++17 lookups.cu -lodis -o lookups
 #include <odis/odis.hpp>
 
 #include <algorithm>
@@ -39,16 +42,12 @@ struct DiffuseHost {
 
 // What a path would be told at a place, and what it would draw; 0 where nothing is known.
 ODIS_HOST_DEVICE float scatterAt(const odis::GuideView& view, const odis::Place& place, float u, float v) {
-  const uint32_t cell = odis::findCell(view, place);
-  if (cell == odis::kNoCell) return 0;
-  const odis::CellDecisions& decisions = view.decisions[cell];
-  float result = odis::survivalProbability(view.rules, decisions.survivalFactor, 1.0f) +
-                 odis::shadowRayProbability(view.rules, 0.01f) + odis::learnedLights(view, cell).fraction;
-  odis::VertexMap<float> map;
-  map.prepare(view.maps, int32_t(cell), place.normal, 0.0f);
-  const odis::Mixture<float> mixture(odis::bsdfFraction(view, int32_t(cell), 1.0f), 1.0f);
-  result += mixture.sample(map, u, v, DiffuseHost{place.normal}).weight;
-  return result;
+  odis::GuidedVertex vertex(view, place, 1);
+  if (!vertex.isKnown()) return 0;
+  float result = vertex.survivalProbability(1, 1) + vertex.shadowRayProbability(0.01f) +
+                 vertex.lightProbability(0, 0.5f);
+  vertex.prepare(1);
+  return result + vertex.sample(u, v, DiffuseHost{place.normal}).weight;
 }
 
 __global__ void scatter(odis::GuideView view, const odis::Place* places, const float2* numbers,
@@ -116,7 +115,7 @@ int main() {
   std::vector<float2> numbers;
   std::vector<float> expected;
   for (size_t i = 0; i < vertices.size(); ++i) {
-    places.push_back({vertices[i].position, vertices[i].normal, uint32_t(i), 0});
+    places.push_back({vertices[i].position, vertices[i].normal, uint32_t(i), 0, false, 2});
     numbers.push_back({float(i * 7919 % 1000) / 1000, float(i * 104729 % 997) / 997});
     expected.push_back(scatterAt(view, places[i], numbers[i].x, numbers[i].y));
   }
