@@ -6,7 +6,7 @@
 #include "odis/structs.h"
 
 // Counts up when a field changes its meaning; what is added comes at the end.
-#define ODIS_GUIDE_VIEW_VERSION 2
+#define ODIS_GUIDE_VIEW_VERSION 3
 
 // Where a look-up is made, and for which sample of which pixel, counted as in the frame.
 typedef struct OdisPlace {
