@@ -1,6 +1,7 @@
 """The integrator `odis` against Mitsuba's `path`: each BSDF, lights, cameras, and guides that are as bad as can be."""
 
 import unittest
+import warnings
 from unittest import mock
 
 import numpy as np
@@ -8,7 +9,7 @@ import test_mitsuba as base
 
 try:
     import mitsuba as mi
-    from odis.mitsuba import guide_tables, integrator
+    from odis.mitsuba import guide_tables, integrator, version
 except ImportError as missing:
     raise unittest.SkipTest(f"Mitsuba does not run here: {missing}")
 
@@ -234,6 +235,18 @@ def with_nan(change):
         result[np.random.default_rng(8).random(array.shape) < 0.05] = np.nan
         return result
     return changed
+
+
+class Versions(unittest.TestCase):
+    def test_one_that_is_too_old_is_an_error_and_one_that_is_new_a_warning(self):
+        with self.assertRaisesRegex(ImportError, "needs Mitsuba 3.9 or later, found 3.8.0: `pip install"):
+            version.check("3.8.0")
+        with warnings.catch_warnings():
+            warnings.simplefilter("error")
+            version.check(mi.__version__)
+            version.check("3.9.7")
+        with self.assertWarnsRegex(UserWarning, "tried with Mitsuba 3.9, not yet with 3.10.0"):
+            version.check("3.10.0")
 
 
 class BadGuides(unittest.TestCase):

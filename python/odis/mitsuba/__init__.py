@@ -18,7 +18,11 @@ except ModuleNotFoundError as missing:
     raise ModuleNotFoundError('Mitsuba is missing, which odis.mitsuba needs: `pip install "mitsuba>=3.9"` installs it',
                               name="mitsuba") from None
 
-from .from_scene import guide
+from . import version
+
+version.check(mi.__version__)
+
+from .from_scene import guide  # noqa: E402
 from .progress import ProgressLine
 
 __all__ = ["ProgressLine", "guide"]
