@@ -58,6 +58,10 @@ const std::pair<const char*, AddGround> kGrounds[] = {
      [](Scene& scene, float size, const Matrix4& turn) {
        scene.addShape(meshOf(withCube(squareMesh(size)), {turn}));
      }},
+    {"grid with the cube",
+     [](Scene& scene, float size, const Matrix4& turn) {
+       scene.addShape(meshOf(withCube(gridMesh(size)), {turn}));
+     }},
     {"cube",
      [](Scene& scene, float size, const Matrix4& turn) {
        scene.addShape(meshOf(cubeMesh(), {scaling(Vec3(size)) * translation({0, -size, 0}) * turn}));

@@ -3,6 +3,7 @@
 #include <odis/instruction_sets.h>
 
 #include "render/math/warp.h"
+#include "render/shape/surface_math.h"
 
 namespace odis::render {
 
@@ -23,7 +24,7 @@ ODIS_WIDE void samplePoints(size_t count, const Triangles& of, const Column& u, 
   const auto& [c0, c1, c2] = of.corners;
   for (size_t i = 0, end = endOfLanes(count); i < end; ++i) {
     const Vec2 b = squareToTriangle({u[i], v[i]});
-    const Vec3 d = c0[i] * (1 - b.x - b.y) + c1[i] * b.x + c2[i] * b.y - ref[i];
+    const Vec3 d = pointOnTriangle(c0[i], c1[i], c2[i], b) - ref[i];
     const float squared = lengthSquared(d), distance = std::sqrt(squared);
     const Vec3 wi = d * (1 / distance);
     const float cosine = -dot(of.normal[i], wi), pdf = squared / (cosine * of.area[i]);

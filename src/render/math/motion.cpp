@@ -136,10 +136,7 @@ Motion::Motion(const Animation& animation, const Shutter& shutter) {
     Pose pose = keyAt(animation, lerp(double(step) / steps, shutter.open, shutter.close)).pose();
     if (step > 0 && (m_poses.back().rotation ^ pose.rotation) < 0) pose.rotation = -pose.rotation;
     m_poses.push_back(pose);
-    for (int axis = 0; axis < 3; ++axis)
-      m_positionError = std::max(m_positionError, std::abs(pose.translation[axis]));
   }
-  m_positionError *= 8 * 0x1p-24f;
 }
 
 Matrix4 Motion::matrixAt(float time) const {

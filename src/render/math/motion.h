@@ -60,8 +60,6 @@ class Motion {
   Placement placementAt(float time) const;
   // Whether nothing moves after all.
   bool isStill() const;
-  // How far rounding may put matrices of a moment off each other.
-  float positionError() const { return m_positionError; }
 
   // Evenly spread over the time, two or more, and close enough together to be interpolated linearly,
   // quaternions over the length of the result: which is what Embree does with them as well. Key frames are
@@ -71,7 +69,6 @@ class Motion {
 
  private:
   std::vector<Pose> m_poses;
-  float m_positionError = 0;
 };
 
 // Embree's limit.

@@ -11,7 +11,7 @@ namespace odis::render {
 inline Ray spawnRay(const Vec3& p, const Vec3& ng, float pError, const Vec3& direction, float distance,
                     float time) {
   // Leave the surface by more than the position may be wrong, to the side that the direction points to.
-  const float error = std::max(pError, positionError(maxAbs(p)));
+  const float error = pError + roundingAlong(ng, p);
   const Vec3 origin = p + ng * std::copysign(error, dot(ng, direction));
   // Aim at the same target from the new origin, and stop before it by what its own position may be wrong and
   // by what is lost of a long distance.

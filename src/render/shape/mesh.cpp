@@ -20,6 +20,30 @@ Vec3d areaVector(const Vec3& a, const Vec3& b, const Vec3& c) {
   return (Vec3d(b) - base).cross(Vec3d(c) - base);
 }
 
+// How far Embree may be wrong about where a ray crosses the plane of a triangle near to it: the differences
+// of the corners and of the ray's origin are rounded, and so is the cross product of two edges, which turns a
+// thin triangle more. Rays that start so far off the triangle don't meet it; less would do, as rays that start
+// at twice 2^-24 of the longest edge do not meet triangles that are not thin.
+float testError(const Vec3& a, const Vec3& b, const Vec3& c) {
+  const Vec3d e1 = Vec3d(b) - Vec3d(a), e2 = Vec3d(c) - Vec3d(a), e3 = e2 - e1;
+  const double longest = std::sqrt(std::max({e1.dot(e1), e2.dot(e2), e3.dot(e3)}));
+  const double height = std::sqrt(e1.cross(e2).dot(e1.cross(e2))) / longest;
+  return float(longest * (4 + std::min(500.0, 0.5 * longest / height)) * 0x1p-24);
+}
+// What is left of it where the triangle is met in double precision, with room to spare.
+constexpr float kPreciseTest = 0x1p-25f;
+
+// Triangles by the power of two that their size is.
+constexpr int kLeastPower = -149, kGreatestPower = 150;
+using SizeCounts = std::array<size_t, kGreatestPower - kLeastPower + 1>;
+
+// What so many triangles cover, if all are as large as half of the smallest.
+double extentOfSmallest(const SizeCounts& counts, size_t count) {
+  size_t below = 0, power = 0;
+  for (; 2 * (below + counts[power]) < count; ++power) below += counts[power];
+  return std::ldexp(2.0, int(power) + kLeastPower) * std::sqrt(double(count));
+}
+
 // The unit normal of a triangle: in single precision unless it is a sliver, whose cross product would be
 // lost.
 Vec3 faceNormal(const Vec3& a, const Vec3& b, const Vec3& c) {
@@ -139,8 +163,7 @@ Mesh::Mesh(MeshData data, const MeshOptions& options) {
                &c = data.positions[corners[2]];
     const Vec3d normal = areaVector(a, b, c);
     const double area = 0.5 * std::sqrt(normal.dot(normal));
-    const float magnitude = std::max({maxAbs(a), maxAbs(b), maxAbs(c)});
-    m_faces.push_back({corners, faceNormal(a, b, c) * side, float(area), magnitude});
+    m_faces.push_back({corners, faceNormal(a, b, c) * side, float(area), testError(a, b, c)});
     sums.push_back(sum += area);
   }
   m_area = float(sum);
@@ -158,15 +181,23 @@ float Mesh::sideOf(const Face& face) const {
 float Mesh::detail() const {
   PrimitiveExtent whole{Vec3(kInfinity), Vec3(-kInfinity)};
   for (const Vertex& vertex : m_vertices) whole.extendBy({vertex.position, vertex.position});
-  // Triangles by the power of two that their size is.
-  constexpr int kLeast = -149, kGreatest = 150;
-  std::array<size_t, kGreatest - kLeast + 1> counts{};
+  SizeCounts counts{};
   for (const Face& face : m_faces)
-    ++counts[size_t(std::clamp(std::ilogb(sideOf(face)), kLeast, kGreatest) - kLeast)];
-  size_t below = 0, power = 0;
-  for (; 2 * (below + counts[power]) < m_faces.size(); ++power) below += counts[power];
-  const double median = std::ldexp(2.0, int(power) + kLeast);
-  return float(std::min(double(whole.longestSide()), median * std::sqrt(double(m_faces.size()))));
+    if (const float side = sideOf(face); side > 0)
+      ++counts[size_t(std::clamp(std::ilogb(side), kLeastPower, kGreatestPower) - kLeastPower)];
+  // Triangles that are so many powers of two smaller than all others are a thing that may stand on those; fewer
+  // than a tetrahedron has are flaws of the mesh.
+  constexpr size_t kGap = 8, kLeastOfThing = 4;
+  double least = whole.longestSide();
+  size_t count = 0;
+  for (size_t power = 0, before = 0; power < counts.size(); ++power) {
+    if (counts[power] == 0) continue;
+    if (count >= kLeastOfThing && power - before >= kGap)
+      least = std::min(least, extentOfSmallest(counts, count));
+    count += counts[power];
+    before = power;
+  }
+  return float(std::min(least, extentOfSmallest(counts, count)));
 }
 
 RTCGeometryTy* Mesh::makeLargeGeometry(RTCDeviceTy* device, float extent, bool whole) {
@@ -225,9 +256,7 @@ SurfacePoint Mesh::placeOn(uint32_t triangle, const Vec2& barycentric) const {
   at.shape = this;
   at.primitive = triangle;
   at.barycentric = barycentric;
-  at.p = isLarge(triangle) ? Vec3(Vec3d(v0.position) * double(b0) + Vec3d(v1.position) * double(b1) +
-                                  Vec3d(v2.position) * double(b2))
-                           : v0.position * b0 + v1.position * b1 + v2.position * b2;
+  at.p = pointOnTriangle(v0.position, v1.position, v2.position, barycentric);
   at.ng = face.normal;
   at.uv = m_hasUvs ? v0.uv * b0 + v1.uv * b1 + v2.uv * b2 : barycentric;
   at.shading.n = at.ng;
@@ -241,7 +270,7 @@ SurfacePoint Mesh::placeOn(uint32_t triangle, const Vec2& barycentric) const {
 SurfacePoint Mesh::pointOn(uint32_t triangle, const Vec2& barycentric) const {
   SurfacePoint at = placeOn(triangle, barycentric);
   const Face& face = faceOf(triangle);
-  at.pError = isLarge(triangle) ? preciseError(face.magnitude) : positionError(face.magnitude);
+  at.pError = isLarge(triangle) ? face.testError * kPreciseTest : face.testError;
   at.shading = CoordinateFrame(at.shading.n);
   if (tangents()) findTangents(at, face.corners);
   return at;

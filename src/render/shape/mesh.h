@@ -94,7 +94,7 @@ class Mesh final : public Shape {
     Triangle corners;
     Vec3 normal;  // unit
     float area;
-    float magnitude;  // the largest absolute coordinate of its corners
+    float testError;  // how far off itself Embree may find it
   };
   // A point drawn by area.
   struct Draw {

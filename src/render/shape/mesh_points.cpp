@@ -49,7 +49,7 @@ void MeshPoints::gather() {
   Column ignored[3];
   for (size_t first = 0; first < m_count; first += 4) {
     toColumns(first, rowsOf(m_faces, 0), ignored[0].of, ignored[1].of, ignored[2].of, c.faceNormal.x.of);
-    toColumns(first, rowsOf(m_faces, 4), c.faceNormal.y.of, c.faceNormal.z.of, ignored[0].of, c.magnitude.of);
+    toColumns(first, rowsOf(m_faces, 4), c.faceNormal.y.of, c.faceNormal.z.of, ignored[0].of, c.pError.of);
     for (size_t k = 0; k < 3; ++k) {
       Columns3 &position = c.position[k], &normal = c.normal[k];
       toColumns(first, rowsOf(m_corners[k], 0), position.x.of, position.y.of, position.z.of, normal.x.of);
@@ -63,11 +63,10 @@ ODIS_WIDE void MeshPoints::compute(size_t count, Columns& c) {
   for (size_t i = 0, end = endOfLanes(count); i < end; ++i) {
     const float b1 = c.b1[i], b2 = c.b2[i], b0 = 1 - b1 - b2;
     const auto mix = [&](const Columns3(&of)[3]) { return of[0][i] * b0 + of[1][i] * b1 + of[2][i] * b2; };
-    c.p.set(i, mix(c.position));
+    c.p.set(i, pointOnTriangle(c.position[0][i], c.position[1][i], c.position[2][i], {b1, b2}));
     const bool hasUvs = c.hasUvs[i];
     c.uvX[i] = hasUvs ? c.u[0][i] * b0 + c.u[1][i] * b1 + c.u[2][i] * b2 : b1;
     c.uvY[i] = hasUvs ? c.v[0][i] * b0 + c.v[1][i] * b1 + c.v[2][i] * b2 : b2;
-    c.pError[i] = positionError(c.magnitude[i]);
 
     const Vec3 ng = c.faceNormal[i], sum = mix(c.normal);
     const float squared = lengthSquared(sum);

@@ -23,7 +23,6 @@ class MeshPoints {
     Columns3 position[3], normal[3];  // of the corners
     Column u[3], v[3];
     Columns3 faceNormal;
-    Column magnitude;
     IntColumn hasUvs;
     Columns3 direction;      // of the ray
     IntColumn isDegenerate;  // whether interpolated normals need more precision

@@ -7,9 +7,7 @@ SurfacePoint movingPoint(const Ray& ray, const Hit& hit) {
   const Placement placement = hit.motion->placementAt(ray.time);
   RawHit raw = hit.raw;
   raw.instance = &placement;
-  SurfacePoint at = hit.shape->surfacePoint(ray, raw);
-  at.pError += hit.motion->positionError();
-  return at;
+  return hit.shape->surfacePoint(ray, raw);
 }
 
 }  // namespace odis::render

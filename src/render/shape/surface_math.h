@@ -17,6 +17,20 @@ inline float preciseError(double magnitude) {
   return float(magnitude * (64 * 0x1p-53));
 }
 
+// How far rounding its coordinates to single precision, once as a point and once as the origin of a ray, may
+// move a point along a unit normal: each time by 2^-24 of each; with room to spare.
+inline float roundingAlong(const Vec3& normal, const Vec3& p) {
+  return (std::abs(normal.x * p.x) + std::abs(normal.y * p.y) + std::abs(normal.z * p.z)) * (8 * 0x1p-24f);
+}
+
+// The point of a triangle with barycentric coordinates (b1, b2): in double precision, so that it is off the
+// triangle by no more than its own coordinates are rounded, however far away the corners are.
+inline Vec3 pointOnTriangle(const Vec3& c0, const Vec3& c1, const Vec3& c2, const Vec2& b) {
+  const double b1 = b.x, b2 = b.y, b0 = 1 - b1 - b2;
+  return {float(c0.x * b0 + c1.x * b1 + c2.x * b2), float(c0.y * b0 + c1.y * b1 + c2.y * b2),
+          float(c0.z * b0 + c1.z * b1 + c2.z * b2)};
+}
+
 template <class T>
 T maxAbs(const Imath::Vec3<T>& v) {
   return std::max(std::max(std::abs(v.x), std::abs(v.y)), std::abs(v.z));
@@ -66,19 +80,23 @@ inline Ray toObject(const Ray& ray, const RawHit& hit) {
           transformVector(hit.instance->toInstance, ray.direction), ray.tMax, ray.time};
 }
 
-// Takes a point from the space of the instance that was hit to world space. Each term of the sum that a
-// coordinate is has its rounding, on this way and on that of the ray into the instance.
+// Takes a point from the space of the instance that was hit to world space. Each term of the sums that its
+// coordinates are has its rounding, on this way and on that of a ray from there into the instance, whose error
+// then comes back as the point does.
 inline void toWorld(SurfacePoint& at, const RawHit& hit) {
   if (!hit.instance) return;
   const auto& [m, inverse] = *hit.instance;
+  const Vec3 inObject = at.p;
+  at.p = transformPoint(m, inObject);
   float scale = 0;
   Vec3 terms(std::abs(m[3][0]), std::abs(m[3][1]), std::abs(m[3][2]));
   for (int row = 0; row < 3; ++row) {
+    float inRow = std::abs(inObject[row]) + std::abs(inverse[3][row]);
+    for (int axis = 0; axis < 3; ++axis) inRow += std::abs(at.p[axis] * inverse[axis][row]);
+    for (int axis = 0; axis < 3; ++axis) terms[axis] += std::abs(m[row][axis]) * inRow;
     scale += sqr(m[row][0]) + sqr(m[row][1]) + sqr(m[row][2]);
-    for (int axis = 0; axis < 3; ++axis) terms[axis] += std::abs(at.p[row] * m[row][axis]);
   }
-  at.p = transformPoint(m, at.p);
-  at.pError = at.pError * std::sqrt(scale) + positionError(maxAbs(terms));
+  at.pError = at.pError * std::sqrt(scale) + maxAbs(terms) * (16 * 0x1p-24f);
   at.dpdu = transformVector(m, at.dpdu);
   at.dpdv = transformVector(m, at.dpdv);
   at.ng = normalize(transformNormal(inverse, at.ng));
