@@ -85,8 +85,8 @@ void tryLight(const LitCubes& cubes, const NumbersOf& numbersOf) {
     Columns3 ref{};
     ref.set(0, from.p);
     triangles.find(1, ref, samples);
-    expectRight(cubes, from,
-                {.wi = samples.wi[0], .distance = samples.distance[0], .radiance = {}, .pdf = samples.pdf[0]});
+    const EmitterSample sample{.wi = samples.wi[0], .distance = samples.distance[0], .pdf = samples.pdf[0]};
+    expectRight(cubes, from, sample);
   }
 }
 

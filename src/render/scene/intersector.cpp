@@ -136,8 +136,9 @@ RTCGeometry movingInstance(RTCDevice device, RTCScene group, const Motion& motio
 }
 
 // A triangle is large if it is so many times as large as the smallest thing in the scene. Rays leave others
-// by at most 64 * 2^-24 of their size, 1/50 of that thing's. Double precision has its price: 6 % of the time
-// of path tracing where the ground is met in it (docs/experiments/0056-large-grounds.md).
+// by some 5 * 2^-24 of their longest edge, 1/500 of that thing's size, as Embree errs so much. Double
+// precision has its price: 6 % of the time of path tracing where the ground is met in it
+// (docs/experiments/0056-large-grounds.md).
 constexpr float kLarge = 5000;
 
 // The least and the greatest factor by which an instance changes lengths along its axes.

@@ -20,18 +20,17 @@ Vec3d areaVector(const Vec3& a, const Vec3& b, const Vec3& c) {
   return (Vec3d(b) - base).cross(Vec3d(c) - base);
 }
 
-// How far Embree may be wrong about where a ray crosses the plane of a triangle near to it: the differences
-// of the corners and of the ray's origin are rounded, and so is the cross product of two edges, which turns a
-// thin triangle more. Rays that start so far off the triangle don't meet it; less would do, as rays that start
-// at twice 2^-24 of the longest edge do not meet triangles that are not thin.
-float testError(const Vec3& a, const Vec3& b, const Vec3& c) {
+// How far off its plane Embree may find a triangle that a ray starts near to: it rounds the differences of
+// the corners and the ray's origin, and the cross product of two edges, which turns thin triangles more. Some
+// times what was measured (docs/experiments/0056-large-grounds.md).
+float intersectionError(const Vec3& a, const Vec3& b, const Vec3& c, double area) {
   const Vec3d e1 = Vec3d(b) - Vec3d(a), e2 = Vec3d(c) - Vec3d(a), e3 = e2 - e1;
-  const double longest = std::sqrt(std::max({e1.dot(e1), e2.dot(e2), e3.dot(e3)}));
-  const double height = std::sqrt(e1.cross(e2).dot(e1.cross(e2))) / longest;
-  return float(longest * (4 + std::min(500.0, 0.5 * longest / height)) * 0x1p-24);
+  const double squared = std::max({e1.dot(e1), e2.dot(e2), e3.dot(e3)});
+  const double edgeOverHeight = squared / (2 * area);
+  return float(std::sqrt(squared) * (4 + std::min(500.0, 0.5 * edgeOverHeight)) * 0x1p-24);
 }
-// What is left of it where the triangle is met in double precision, with room to spare.
-constexpr float kPreciseTest = 0x1p-25f;
+// The share of it that is left where the triangle is met in double precision, with room to spare.
+constexpr float kPreciseShare = 0x1p-25f;
 
 // Triangles by the power of two that their size is.
 constexpr int kLeastPower = -149, kGreatestPower = 150;
@@ -163,7 +162,7 @@ Mesh::Mesh(MeshData data, const MeshOptions& options) {
                &c = data.positions[corners[2]];
     const Vec3d normal = areaVector(a, b, c);
     const double area = 0.5 * std::sqrt(normal.dot(normal));
-    m_faces.push_back({corners, faceNormal(a, b, c) * side, float(area), testError(a, b, c)});
+    m_faces.push_back({corners, faceNormal(a, b, c) * side, float(area), intersectionError(a, b, c, area)});
     sums.push_back(sum += area);
   }
   m_area = float(sum);
@@ -185,15 +184,15 @@ float Mesh::detail() const {
   for (const Face& face : m_faces)
     if (const float side = sideOf(face); side > 0)
       ++counts[size_t(std::clamp(std::ilogb(side), kLeastPower, kGreatestPower) - kLeastPower)];
-  // Triangles that are so many powers of two smaller than all others are a thing that may stand on those; fewer
-  // than a tetrahedron has are flaws of the mesh.
-  constexpr size_t kGap = 8, kLeastOfThing = 4;
+  // Triangles that are so many powers of two smaller than all others are a thing that may stand on those: the
+  // cube whose sides they cover. Fewer than a tetrahedron has are flaws of the mesh.
+  constexpr size_t kGap = 8, kLeastOfThing = 4, kOfCube = 12;
   double least = whole.longestSide();
   size_t count = 0;
   for (size_t power = 0, before = 0; power < counts.size(); ++power) {
     if (counts[power] == 0) continue;
     if (count >= kLeastOfThing && power - before >= kGap)
-      least = std::min(least, extentOfSmallest(counts, count));
+      least = std::min(least, extentOfSmallest(counts, count) / std::sqrt(double(kOfCube)));
     count += counts[power];
     before = power;
   }
@@ -270,7 +269,7 @@ SurfacePoint Mesh::placeOn(uint32_t triangle, const Vec2& barycentric) const {
 SurfacePoint Mesh::pointOn(uint32_t triangle, const Vec2& barycentric) const {
   SurfacePoint at = placeOn(triangle, barycentric);
   const Face& face = faceOf(triangle);
-  at.pError = isLarge(triangle) ? face.testError * kPreciseTest : face.testError;
+  at.pError = isLarge(triangle) ? face.error * kPreciseShare : face.error;
   at.shading = CoordinateFrame(at.shading.n);
   if (tangents()) findTangents(at, face.corners);
   return at;

@@ -50,7 +50,8 @@ class Mesh final : public Shape {
   static std::shared_ptr<Mesh> make(MeshData data, const MeshOptions& options, const SourceLocation& at,
                                     Warnings& warnings);
 
-  // Of the mesh as a whole or, for those of many parts, what triangles as large as half of it are cover.
+  // Of the mesh as a whole or, for those of many parts, what triangles as large as half of it are cover; or
+  // the same of its smallest triangles, if all others are far larger: of a thing on a ground in one mesh.
   float detail() const override;
   RTCGeometryTy* makeLargeGeometry(RTCDeviceTy* device, float extent, bool whole) override;
   RTCGeometryTy* makeGeometry(RTCDeviceTy* device) const override;
@@ -94,7 +95,7 @@ class Mesh final : public Shape {
     Triangle corners;
     Vec3 normal;  // unit
     float area;
-    float testError;  // how far off itself Embree may find it
+    float error;  // how far off itself Embree may find it
   };
   // A point drawn by area.
   struct Draw {

@@ -81,8 +81,8 @@ inline Ray toObject(const Ray& ray, const RawHit& hit) {
 }
 
 // Takes a point from the space of the instance that was hit to world space. Each term of the sums that its
-// coordinates are has its rounding, on this way and on that of a ray from there into the instance, whose error
-// then comes back as the point does.
+// coordinates are has its rounding, on this way and on that of a ray from there into the instance, whose
+// error then comes back as the point does.
 inline void toWorld(SurfacePoint& at, const RawHit& hit) {
   if (!hit.instance) return;
   const auto& [m, inverse] = *hit.instance;
