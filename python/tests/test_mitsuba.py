@@ -16,7 +16,7 @@ try:
     import odis.mitsuba
     from odis.mitsuba import guide_tables, materials, recording
     from odis.mitsuba.arrays import array_of
-    from odis.mitsuba.random_numbers import generator_of, hash_seed
+    from odis.mitsuba.random_numbers import hash_seed, numbers_of
 except (ImportError, AttributeError, RuntimeError) as missing:
     raise unittest.SkipTest(f"Mitsuba does not run here: {missing}")
 
@@ -175,8 +175,8 @@ class Images(unittest.TestCase):
         self.assertGreater(np.abs(noise[0]).mean(), 0.001)
 
     def test_seeds_share_no_random_numbers(self):
-        number = dr.arange(mi.UInt32, 4096)
-        first = [np.array(generator_of(mi.UInt64(hash_seed(seed)), mi.UInt32(0), number).s0) for seed in range(4)]
+        pixel = dr.arange(mi.UInt32, 4096)
+        first = [np.array(numbers_of(mi.UInt64(hash_seed(seed)), pixel, mi.UInt32(0)).key) for seed in range(4)]
         self.assertGreater(np.unique(np.concatenate(first)).size, 4 * 4096 - 4)
 
     def test_alpha_and_filter(self):

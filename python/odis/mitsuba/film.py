@@ -7,7 +7,7 @@ import numpy as np
 from .arrays import array_of
 from .film_filter import make_film_filter
 from .path import VALID
-from .random_numbers import generator_of
+from .random_numbers import numbers_of
 
 FILMS = ("splat", "pixels")
 
@@ -35,17 +35,17 @@ class PixelFilm:
         self.filter = make_film_filter(film)
         self.valid = np.zeros(self.size[0] * self.size[1]) if has_alpha(film) else None  # samples of each pixel
 
-    def place(self, pixel, rng):
+    def place(self, pixel, draws):
         """Where a sample of a pixel lies, in pixels from the corner of what the film shows, and its weight."""
         at = mi.Point2u(pixel % self.size[0], pixel // self.size[0])
-        offset, weight = self.filter.sample(at, rng)
+        offset, weight = self.filter.sample(at, draws)
         return mi.Point2f(at) + 0.5 + offset, weight
 
     def begin_pass(self, frame, frame_pass, first, count):
         """first, count: frame.samples()."""
 
     def add(self, seed, samples):
-        """Adds samples of the pass (path.Samples), which are traced. seed: that of their generators."""
+        """Adds samples of the pass (path.Samples), which are traced. seed: that of their random numbers."""
         if self.valid is not None:
             tags = np.asarray(samples.result).reshape(-1, 4)[:, 3].view(np.uint32)
             self.valid += np.bincount(np.asarray(samples.pixel), weights=tags >= VALID, minlength=self.valid.size)
@@ -82,9 +82,9 @@ class SplatFilm:
         self.first, self.counts, self.weights = None, None, None
         self.waiting = []  # samples whose weights are known only when the pass has ended
 
-    def place(self, pixel, rng):
+    def place(self, pixel, draws):
         at = mi.Point2i(mi.Point2u(pixel % self.size[0], pixel // self.size[0])) - self.border
-        return mi.Point2f(at) + rng.next_2d(), mi.Float(1)
+        return mi.Point2f(at) + draws.next_2d(), mi.Float(1)
 
     def begin_pass(self, frame, frame_pass, first, count):
         self.first, self.counts = first.ravel(), count.ravel()
@@ -115,8 +115,8 @@ class SplatFilm:
     def _splat_waiting(self):
         while self.waiting:
             seed, pixel, number, result = self.waiting.pop(0)
-            # The generator of a sample draws its place first, so that places need not be kept.
-            place, _ = self.place(pixel, generator_of(seed, pixel, number))
+            # Places are what a sample's numbers begin with, so that they need not be kept.
+            place, _ = self.place(pixel, numbers_of(seed, pixel, number).of_camera())
             traced = dr.gather(mi.Vector4f, result, dr.arange(mi.UInt32, dr.width(pixel)))
             weight = dr.gather(mi.Float, self.weights, pixel)
             color = mi.Color3f(traced.x, traced.y, traced.z)

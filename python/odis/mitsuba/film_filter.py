@@ -25,13 +25,13 @@ class FilmFilter:
     # that stays on the film, and the part of the integral there. None where the filter ends before the border.
     sides: object
 
-    def sample(self, pixel, rng):
+    def sample(self, pixel, draws):
         """An offset from a pixel's centre, and its weight: the filter over the density of the offset."""
         if self.quantiles is None:
-            return rng.next_2d() - 0.5, mi.Float(1)
-        offset, weight = mi.Vector2f(0), mi.Float(1)
+            return draws.next_2d() - 0.5, mi.Float(1)
+        offset, weight, numbers = mi.Vector2f(0), mi.Float(1), draws.next_2d()
         for axis in range(2):
-            u = rng.next()
+            u = numbers[axis]
             if self.sides is not None:
                 drawn, share = self._side(pixel[axis])
                 drawn_after, share_after = self._side(self.size[axis] - 1 - pixel[axis])

@@ -22,7 +22,7 @@ from .lights import make_light_table
 from .materials import make_material_table
 from .parameters import read_parameters
 from .progress import default_progress
-from .random_numbers import generator_of, hash_seed
+from .random_numbers import hash_seed, numbers_of
 
 # Vertices are recorded by so many paths at once at most, into so many rows; paths that need more come in smaller parts.
 RECORDED_PATHS = 1 << 17
@@ -43,28 +43,29 @@ METER = "IrradianceMeter"
 
 
 class Camera:
-    """Rays of the samples of a sensor's film. seed: that of their generators; film: PixelFilm or SplatFilm."""
+    """Rays of the samples of a sensor's film. seed: that of their random numbers; film: PixelFilm or SplatFilm."""
 
     def __init__(self, sensor, seed, film):
         self.sensor, self.seed, self.film = sensor, seed, film
 
     def __call__(self, pixel, number):
         sensor = self.sensor
-        rng = generator_of(self.seed, pixel, number)
-        position, filter_weight = self.film.place(pixel, rng)
+        numbers = numbers_of(self.seed, pixel, number)
+        draws = numbers.of_camera()
+        position, filter_weight = self.film.place(pixel, draws)
         aperture = mi.Point2f(0.5)
         if sensor.needs_aperture_sample():
-            aperture = rng.next_2d()
+            aperture = draws.next_2d()
         moment = mi.Float(sensor.shutter_open())
         if sensor.shutter_open_time() > 0:
-            moment += rng.next() * sensor.shutter_open_time()
-        wavelength = rng.next() if mi.is_spectral else mi.Float(0.5)
+            moment += draws.next() * sensor.shutter_open_time()
+        wavelength = draws.next() if mi.is_spectral else mi.Float(0.5)
         # The irradiance meter has rays with differentials alone.
         sample_ray = sensor.sample_ray_differential if sensor.class_name() == METER else sensor.sample_ray
         ray, weight = sample_ray(moment, wavelength, position / mi.ScalarVector2f(sensor.film().crop_size()),
                                  aperture)
         ray = mi.Ray3f(ray)
-        return rng, ray, weight * filter_weight
+        return numbers, ray, weight * filter_weight
 
 
 def trace_samples(scene, camera, settings, known, tables, samples):

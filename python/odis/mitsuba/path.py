@@ -126,7 +126,7 @@ def trace(scene, camera, settings, known, tables, recorder, samples):
     """Traces the paths of samples. A lane whose path has ended goes on with the next sample, so that SIMD packets are
     full nearly all the time: without this they would be as slow as their longest path.
 
-    camera(pixel, number): a generator of random numbers, a ray, and what its radiance is multiplied by, for a sample.
+    camera(pixel, number): random numbers, a ray, and what its radiance is multiplied by, for a sample.
     known: SceneTables. tables: GuideTables or None. recorder: Recorder or None. samples: Samples.
     """
     lights = known.lights
@@ -137,7 +137,7 @@ def trace(scene, camera, settings, known, tables, recorder, samples):
     under_way = mi.Bool(False)  # a path is
     more = index < samples.count
     sample, pixel, number, pixel_value = mi.UInt32(0), mi.UInt32(0), mi.UInt32(0), mi.Float(1)
-    rng, ray = RandomNumbers(mi.UInt32(0), mi.UInt32(0)), dr.zeros(mi.Ray3f)
+    numbers, ray = RandomNumbers(mi.UInt32(0), mi.UInt32(0)), dr.zeros(mi.Ray3f)
     radiance, throughput, eta = mi.Spectrum(0), mi.Spectrum(0), mi.Float(1)
     depth, rays, valid = mi.UInt32(0), mi.UInt32(0), mi.Bool(False)
     # Of the vertex before.
@@ -156,8 +156,8 @@ def trace(scene, camera, settings, known, tables, recorder, samples):
         sample = dr.select(begins, chosen & (RECORDED - 1), sample)
         pixel = dr.select(begins, dr.gather(mi.UInt32, samples.pixel, sample, begins), pixel)
         number = dr.select(begins, dr.gather(mi.UInt32, samples.number, sample, begins), number)
-        new_rng, new_ray, ray_weight = camera(pixel, number)
-        rng, ray = dr.select(begins, new_rng, rng), dr.select(begins, new_ray, ray)
+        new_numbers, new_ray, ray_weight = camera(pixel, number)
+        numbers, ray = dr.select(begins, new_numbers, numbers), dr.select(begins, new_ray, ray)
         throughput, radiance = dr.select(begins, ray_weight, throughput), dr.select(begins, 0, radiance)
         eta, depth, rays = dr.select(begins, 1, eta), dr.select(begins, 0, depth), dr.select(begins, 0, rays)
         valid = dr.select(begins, mi.Bool(sees_environment), valid)
@@ -169,6 +169,7 @@ def trace(scene, camera, settings, known, tables, recorder, samples):
             pixel_value = dr.select(begins, dr.gather(mi.Float, samples.pixel_values, pixel, begins), pixel_value)
             guidable_before, footprint = dr.select(begins, 0, guidable_before), dr.select(begins, 0, footprint)
 
+        draws = numbers.of_vertex(depth)
         active = mi.Bool(more)
         si = scene.ray_intersect(ray, mi.RayFlags.All, coherent=False, active=active)
         rays += 1
@@ -243,7 +244,7 @@ def trace(scene, camera, settings, known, tables, recorder, samples):
                 survival_on_arrival = dr.select(active & (depth > 0) & valid & (cell != odis.NO_CELL), survival, 1)
                 stand_in = throughput * (decisions.outgoing_radiance if not mi.is_spectral
                                          else mi.Spectrum(mi.luminance(decisions.outgoing_radiance)))
-                goes_on = rng.next() < survival_on_arrival
+                goes_on = draws.next() < survival_on_arrival
                 played = active & (survival_on_arrival < 1)
                 radiance += dr.select(played, stand_in * dr.select(goes_on, 1 - 1 / survival_on_arrival, 1), 0)
                 active = active & goes_on
@@ -254,10 +255,11 @@ def trace(scene, camera, settings, known, tables, recorder, samples):
         # Next-event estimation: what a light would add if nothing hid it.
         scattering = active & ((flags & SMOOTH) != 0)
         place, choice, toward, light = lights.sample(
-            tables, cell, learned_lights, si, rng.next(), rng.next_2d(), scattering)
+            tables, cell, learned_lights, si, draws.next(), draws.next_2d(), scattering)
         lightable = scattering & (toward.pdf > 0) & (choice > 0)
         toward_pdf = mi.Float(toward.pdf)
-        u_lobe, u, v = rng.next(), rng.next(), rng.next()
+        u_lobe = draws.next()
+        u, v = draws.next_2d()
         toward_wo = si.to_local(toward.d)
 
         # A direction of the guide's map, where one is drawn; the map is asked twice: first for this direction or, where
@@ -306,7 +308,7 @@ def trace(scene, camera, settings, known, tables, recorder, samples):
         if dr.hint(tables is not None and settings.shadow_roulette, mode="scalar"):
             adds = mi.luminance(to_rgb(throughput * direct, ray.wavelengths)) / pixel_value
             shadow = dr.select(cell != odis.NO_CELL, guide_tables.shadow_ray_probability(tables, adds), 1)
-            lightable &= rng.next() < shadow
+            lightable &= draws.next() < shadow
             direct /= shadow
             unweighted /= shadow
         rays += dr.select(lightable, mi.UInt32(1), mi.UInt32(0))
@@ -323,7 +325,7 @@ def trace(scene, camera, settings, known, tables, recorder, samples):
             plays &= cell == odis.NO_CELL
             survival = dr.maximum(survival, tables.least_survival)  # as on arrival
         survival = dr.select(plays, survival, 1)
-        goes_on = active & (most > 0) & (rng.next() < survival)
+        goes_on = active & (most > 0) & (draws.next() < survival)
         weight = dr.select(goes_on, weight / survival, 0)
 
         if dr.hint(recorder is not None, mode="scalar"):
