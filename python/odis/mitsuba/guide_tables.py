@@ -333,26 +333,17 @@ class VertexMap:
         self.first_block = (cell * tables.slot_count + slot + dr.select(both_sides, tables.both_sides_slot, 0)) * ENTRIES
         self.first_texel = (cell + dr.select(both_sides, tables.both_sides_cell, 0)) * ENTRIES ** 2
 
-    def _density(self, block, texel, active):
+    def sample(self, u, v, active):
+        """A direction, by u and v in [0, 1)."""
+        block, u = draw(self.tables.blocks, self.first_block, u, active)
+        texel, v = draw(self.tables.texels, self.first_texel + block * ENTRIES, v, active)
+        x = (mi.Float((block & 3) * 4 + (texel & 3)) + u) * (1 / 16)
+        y = (mi.Float((block & ~mi.UInt32(3)) + (texel >> 2)) + v) * (1 / 16)
+        return square_to_direction(x, y)
+
+    def pdf(self, direction, active):
+        """The density of a direction, with respect to solid angle; 0 where not active."""
+        block, texel = texel_of(direction)
         of_block = probability(self.tables.blocks, self.first_block + block, active)
         of_texel = probability(self.tables.texels, self.first_texel + block * ENTRIES + texel, active)
         return dr.select(active, of_block * of_texel * TO_DENSITY, 0)
-
-    def sample_or_evaluate(self, sampling, u, v, direction, active):
-        """Where `sampling`, draws a direction from u, v; elsewhere keeps `direction`. Returns it and its density.
-
-        Both at once, because the lanes of a SIMD packet would otherwise do one after the other.
-        """
-        sampling = sampling & active
-        block, texel = texel_of(direction)
-        drawn_block, u = draw(self.tables.blocks, self.first_block, u, sampling)
-        block = dr.select(sampling, drawn_block, block)
-        drawn_texel, v = draw(self.tables.texels, self.first_texel + block * ENTRIES, v, sampling)
-        texel = dr.select(sampling, drawn_texel, texel)
-        x = (mi.Float((block & 3) * 4 + (texel & 3)) + u) * (1 / 16)
-        y = (mi.Float((block & ~mi.UInt32(3)) + (texel >> 2)) + v) * (1 / 16)
-        return (dr.select(sampling, square_to_direction(x, y), direction), self._density(block, texel, active))
-
-    def pdf(self, direction, active):
-        """The density of a direction, with respect to solid angle."""
-        return self._density(*texel_of(direction), active)

@@ -101,14 +101,14 @@ class Scattering:
     share_of_smooth: object  # how often it draws from lobes that are no delta lobes
 
 
-def scatter(bsdf, si, toward_light, toward_map, u_lobe, u, any_delta, active):
+def scatter(bsdf, si, toward_light, toward_map, from_map, u_lobe, u, any_delta, active):
     """Asks BSDFs for all that a vertex needs. (dr.dispatch would ask once for everything, but is traced in Python for
-    each BSDF of the scene, in every pass.)"""
+    each BSDF of the scene, in every pass.) toward_map counts where `from_map`."""
     context = mi.BSDFContext()
     light_value, light_pdf, sample, weight = bsdf.eval_pdf_sample(context, si, toward_light, u_lobe, u, active)
     map_value, map_pdf = mi.Spectrum(0), mi.Float(0)
     if toward_map is not None:
-        map_value, map_pdf = bsdf.eval_pdf(context, si, toward_map, active)
+        map_value, map_pdf = bsdf.eval_pdf(context, si, toward_map, from_map)
     share = mi.Float(1)
     if any_delta:
         # The density over that of these lobes alone, which is the same for all directions that have one.
@@ -262,57 +262,59 @@ def trace(scene, camera, settings, known, tables, recorder, samples):
         u, v = draws.next_2d()
         toward_wo = si.to_local(toward.d)
 
-        # A direction of the guide's map, where one is drawn; the map is asked twice: first for this direction or, where
-        # none is drawn, about the light's, then about the light's or the BSDF's.
-        guided, from_map, toward_map, map_pdf, u_within = active & (fraction < 1), mi.Bool(False), None, mi.Float(0), u
+        # A direction of the guide's map, where one is drawn. The map is asked about the direction that the path takes, and
+        # about that of a light where it is seen.
+        guided, from_map, toward_map, u_within = active & (fraction < 1), mi.Bool(False), None, u
         if dr.hint(tables is not None, mode="scalar"):
             vertex_map = guide_tables.VertexMap(tables, cell, normal, both_sides, guided)
             from_map = guided & (u >= fraction)
             u_within = dr.select(guided, dr.select(from_map, (u - fraction) / (1 - fraction), u / fraction), u)
             u_within = dr.minimum(u_within, guide_tables.ONE_MINUS_EPSILON)
-            map_direction, map_pdf = vertex_map.sample_or_evaluate(from_map, u_within, v, toward.d, guided)
+            map_direction = vertex_map.sample(u_within, v, from_map)
             toward_map = si.to_local(map_direction)
 
         # Paths that end here are asked, too, whether they pass straight through: `valid` says so.
         asked = active | (arrived & ~valid & ((flags & SEES_THROUGH) != 0))
-        scattered = scatter(dr.select(asked, bsdf, dr.zeros(mi.BSDFPtr)), si, toward_wo, toward_map, u_lobe,
-                            mi.Point2f(u_within, v), known.materials.any_delta, asked)
+        scattered = scatter(dr.select(asked, bsdf, dr.zeros(mi.BSDFPtr)), si, toward_wo, toward_map, from_map,
+                            u_lobe, mi.Point2f(u_within, v), known.materials.any_delta, asked)
         sampled, weight, bsdf_pdf = scattered.sample, scattered.weight, scattered.light_pdf
         discrete = mi.has_flag(sampled.sampled_type, mi.BSDFFlags.Delta)
         mixes = ((flags & HAS_DELTA) != 0) & ((flags & GUIDABLE) != 0)
         share_of_smooth = dr.select(mixes, scattered.share_of_smooth, 1)
         wi, pdf = si.to_world(sampled.wo), mi.Float(sampled.pdf)
-        light_mix_pdf = mi.Float(bsdf_pdf)
         guidable_pdf = pdf
         if dr.hint(tables is not None, mode="scalar"):
-            other_pdf = vertex_map.pdf(dr.select(from_map, toward.d, wi), guided)
-            light_map_pdf, map_pdf = dr.select(from_map, other_pdf, map_pdf), dr.select(from_map, map_pdf, other_pdf)
             from_map &= ~discrete
             wi, pdf = dr.select(from_map, map_direction, wi), dr.select(from_map, scattered.map_pdf, pdf)
             guidable_pdf = pdf
+            map_pdf = vertex_map.pdf(wi, guided & ~discrete)
             mixed = dr.fma(1 - fraction, map_pdf * share_of_smooth - pdf, pdf)
             reweighed = guided & ~discrete & (mixed > 0)
             weight = dr.select(from_map, scattered.map_value / mixed,
                                dr.select(reweighed, weight * (pdf / mixed), weight))
             pdf = dr.select(reweighed, mixed, pdf)
-            light_mix_pdf = dr.fma(1 - fraction, light_map_pdf * share_of_smooth - bsdf_pdf, bsdf_pdf)
-            light_mix_pdf = dr.select(guided, light_mix_pdf, bsdf_pdf)
 
-        mis = dr.select(toward.delta, 1, power_heuristic(toward_pdf, light_mix_pdf))
-        if dr.hint(lights.uneven is not None, mode="scalar"):
-            mis = weight_toward(lights, mis, place, choice, toward_pdf, bsdf_pdf, lightable)
         unweighted = scattered.light_value * light
-        direct = unweighted * mis
-        lightable &= dr.max(dr.abs(direct)) > 0
+        lightable &= dr.max(dr.abs(unweighted)) > 0
         shadow = mi.Float(1)
         if dr.hint(tables is not None and settings.shadow_roulette, mode="scalar"):
-            adds = mi.luminance(to_rgb(throughput * direct, ray.wavelengths)) / pixel_value
+            # As if the BSDF alone drew directions: most lights are played for before the map is asked about them.
+            alone = dr.select(toward.delta, 1, power_heuristic(toward_pdf, bsdf_pdf))
+            adds = mi.luminance(to_rgb(throughput * unweighted * alone, ray.wavelengths)) / pixel_value
             shadow = dr.select(cell != odis.NO_CELL, guide_tables.shadow_ray_probability(tables, adds), 1)
             lightable &= draws.next() < shadow
-            direct /= shadow
             unweighted /= shadow
         rays += dr.select(lightable, mi.UInt32(1), mi.UInt32(0))
         seen = lightable & ~scene.ray_test(si.spawn_ray_to(toward.p), coherent=False, active=lightable)
+        light_mix_pdf = mi.Float(bsdf_pdf)
+        if dr.hint(tables is not None, mode="scalar"):
+            light_map_pdf = vertex_map.pdf(toward.d, guided & seen & ~toward.delta)
+            light_mix_pdf = dr.fma(1 - fraction, light_map_pdf * share_of_smooth - bsdf_pdf, bsdf_pdf)
+            light_mix_pdf = dr.select(guided, light_mix_pdf, bsdf_pdf)
+        mis = dr.select(toward.delta, 1, power_heuristic(toward_pdf, light_mix_pdf))
+        if dr.hint(lights.uneven is not None, mode="scalar"):
+            mis = weight_toward(lights, mis, place, choice, toward_pdf, bsdf_pdf, lightable)
+        direct = unweighted * mis
         radiance += dr.select(seen, throughput * direct, 0)
 
         # Roulette on departure, where nothing was learned.
