@@ -1,6 +1,7 @@
 """The integrator `odis` against Mitsuba's `path`, on scenes made here. Skipped where Mitsuba does not run."""
 
 import unittest
+from types import SimpleNamespace
 
 import made_up
 import numpy as np
@@ -383,6 +384,26 @@ class Maps(unittest.TestCase):
         used = expected > 5
         chi2 = ((observed - expected)[used] ** 2 / expected[used]).sum()
         self.assertLess(chi2, 64 + 5 * np.sqrt(2 * 64))
+
+    def test_groups_follow_their_probabilities(self):
+        """Groups of lights, where some have next to nothing, and where u lies within their parts."""
+        u = (np.arange(1 << 18) + 0.5) / (1 << 18)
+        for groups in (1, 2, 3, 6, 17, 32):
+            probabilities = np.random.default_rng(groups).random((5, groups)) ** 20
+            probabilities /= probabilities.sum(axis=1, keepdims=True)
+            cumulative = np.pad(np.cumsum(probabilities, axis=1), ((0, 0), (1, 0))).astype(np.float32)
+            sums, rounded = guide_tables.group_tables(cumulative)
+            self.assertGreater(rounded.min(), 0)
+            np.testing.assert_allclose(rounded, probabilities, atol=1e-3)
+            np.testing.assert_allclose(rounded.sum(axis=1), 1)
+            tables = SimpleNamespace(group_sums=array_of(mi.UInt32, sums))
+            for cell in range(5):
+                drawn, within = guide_tables.choose_group(tables, mi.UInt32(cell) + dr.zeros(mi.UInt32, u.size), groups,
+                                                          mi.Float(u.astype(np.float32)), mi.Bool(True))
+                drawn = np.broadcast_to(np.array(drawn), u.size)
+                np.testing.assert_allclose(np.bincount(drawn, minlength=groups) / u.size, rounded[cell], atol=2e-5)
+                before = np.cumsum(rounded[cell], dtype=np.float64) - rounded[cell]
+                np.testing.assert_allclose(np.array(within), (u - before[drawn]) / rounded[cell][drawn], atol=0.02)
 
 
 if __name__ == "__main__":

@@ -24,6 +24,8 @@ ONE_MINUS_EPSILON = float(np.nextafter(np.float32(1), np.float32(0)))
 # most vertices lie in; places outside are not guided. 4 bytes an entry.
 MOST_ENTRIES = 1 << 21
 MARGIN = 16
+# Learned probabilities of groups of lights are multiples of 1 / WHOLE, so that their sums fit in 16 bits.
+WHOLE = 1 << 16
 DEEP_PATH, MOST_DEEP_SURVIVAL = 32, 0.95  # as in odis/guide_view.h
 # The normals of the six orientations of cells, in the order of the grid: +x, -x, +y, -y, +z, -z.
 ORIENTATIONS = np.array([[1, 0, 0], [-1, 0, 0], [0, 1, 0], [0, -1, 0], [0, 0, 1], [0, 0, -1]], np.float32)
@@ -34,7 +36,7 @@ class GuideTables:
     """What kernels read of a guide.
 
     4 bytes an entry of the grid; a cell has 1 KB for its texels, 64 bytes a slot (some 2 KB, all of that twice
-    with both sides), 16 bytes of decisions, 4 bytes a group of lights, and 36 bytes of cached radiance.
+    with both sides), 16 bytes of decisions, up to 8 bytes a group of lights, and 36 bytes of cached radiance.
     """
 
     origin: object  # Point3f: corner of the grid
@@ -50,7 +52,8 @@ class GuideTables:
     decisions: object  # Float16 [cell][8]: BSDF fractions of the roughness classes, survival factor, outgoing radiance
     # over radiance_scale, fraction of the choices of a light that are learned
     radiance_scale: object  # Float
-    light_tables: object  # Float [cell][groups + 1]: cumulative probabilities of the groups of lights
+    group_sums: object  # UInt32 [cell][...]: sums of the learned probabilities of groups of lights (group_tables)
+    group_probabilities: object  # Float [cell][group]
     roughness_bounds: object  # [2] least roughness of the classes diffuse and rough
     least_survival: object
     full_shadow_ray_contribution: object
@@ -133,6 +136,22 @@ def make_map_tables(guide, both_sides):
             "both_sides_cell": mi.UInt32(len(guide) if both_sides else 0)}
 
 
+def words_of(groups):
+    """Words that hold the sums before groups, two a word: a power of two of them, which Dr.Jit reads at once."""
+    return 1 << max(groups // 2 - 1, 0).bit_length()
+
+
+def group_tables(cumulative):
+    """GuideTables.group_sums and group_probabilities of cells' cumulative probabilities of groups [cell][groups + 1]: the
+    sums that all groups but the first begin at, two a word; all probabilities are positive."""
+    groups = cumulative.shape[1] - 1
+    sums = np.rint(cumulative[:, 1:-1] * (WHOLE - groups)).astype(np.uint32) + np.arange(1, groups, dtype=np.uint32)
+    whole = np.pad(sums, ((0, 0), (1, 1)))
+    whole[:, -1] = WHOLE
+    padded = np.pad(sums, ((0, 0), (0, 2 * words_of(groups) - groups + 1))).astype(np.uint16)
+    return padded.view(np.uint32), (np.diff(whole, axis=1) / WHOLE).astype(np.float32)
+
+
 def make_guide_tables(guide, both_sides):
     """The tables of a guide that has cells. both_sides: whether surfaces are guided that scatter to both sides."""
     corner, size, cells = tabulate_cells(guide)
@@ -141,12 +160,13 @@ def make_guide_tables(guide, both_sides):
     decisions = np.concatenate([guide.bsdf_fractions, guide.survival_factors[:, None],
                                 guide.outgoing_radiance / np.float32(radiance_scale),
                                 guide.learned_light_fractions[:, None]], axis=1)
+    sums, probabilities = group_tables(guide.light_tables if guide.light_groups else np.array([[0, 1]], np.float32))
     tables = GuideTables(
         origin=mi.Point3f(*map(float, corner)), inverse_edge=mi.Float(1 / guide.finest_edge),
         size=mi.Vector3i(*map(int, size)), entries=array_of(mi.UInt32, cells),
         **make_map_tables(guide, both_sides),
         decisions=array_of(mi.Float16, half_floats(decisions)), radiance_scale=mi.Float(radiance_scale),
-        light_tables=array_of(mi.Float, guide.light_tables if guide.light_groups else np.zeros(2, np.float32)),
+        group_sums=array_of(mi.UInt32, sums), group_probabilities=array_of(mi.Float, probabilities),
         roughness_bounds=[mi.Float(x) for x in rules.roughness_bounds[:2]],
         least_survival=mi.Float(rules.least_survival),
         full_shadow_ray_contribution=mi.Float(rules.full_shadow_ray_contribution),
@@ -208,6 +228,22 @@ def decisions_of(tables, cell, roughness, active):
     return Decisions(bsdf_fraction=dr.select(known, fraction, 1), survival_factor=dr.select(known, row[3], dr.inf),
                      outgoing_radiance=dr.select(known, mi.Color3f(row[4], row[5], row[6]) * tables.radiance_scale, 0),
                      learned_light_fraction=dr.select(known, row[7], 0))
+
+
+def choose_group(tables, cell, groups, u, active):
+    """A group of lights by a cell's learned probabilities and u in [0, 1); and where in the group's part u lies.
+
+    All sums are read at once and compared with; a search would wait for one read after the other.
+    """
+    words = dr.gather(mi.ArrayXu, tables.group_sums, cell, active, shape=(words_of(groups), -1))
+    u = u * WHOLE
+    group, begin, end = mi.UInt32(0), mi.Float(0), mi.Float(WHOLE)
+    for i in range(groups - 1):
+        sum_before = mi.Float((words[i // 2] >> (16 * (i % 2))) & 0xffff)
+        passed = sum_before <= u
+        group += dr.select(passed, mi.UInt32(1), 0)
+        begin, end = dr.select(passed, sum_before, begin), dr.select(passed, end, dr.minimum(end, sum_before))
+    return group, dr.minimum((u - begin) / (end - begin), 1)
 
 
 def survival_probability(tables, survival_factor, throughput, depth):

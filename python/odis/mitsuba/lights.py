@@ -10,6 +10,7 @@ import odis
 
 from .arrays import array_of
 from .environment import REGIONS, make_environment
+from .guide_tables import choose_group
 from .uneven_lights import is_uneven
 
 MOST_GROUPS = 32
@@ -17,16 +18,17 @@ MOST_GROUPS = 32
 
 @dataclass
 class LightTable:
-    """Emitters in the order of their groups, 20 bytes each. Each region of the environment has a place of its own; they
+    """Emitters in the order of their groups, 32 bytes each. Each region of the environment has a place of its own; they
     come first."""
 
     environment: object  # Environment or None
     emitters: object  # EmitterPtr, by place
-    group: object  # UInt32, by place: of the emitter
     probabilities: object  # Float, by place: with which Mitsuba chooses it
     cdf: object  # Float, [places + 1]: sums of that
     group_begin: object  # UInt32, [groups + 1]: first place of a group
     place: object  # UInt32, by number in Dr.Jit's registry
+    # UInt32 [place][4]: the group, and as bits of floats Mitsuba's probability and its share of that of the group.
+    of_place: object
     uneven: object  # Bool, by place: weighed as `path` does; None where no emitter is (uneven_lights.py)
     count: int  # of emitters
     groups: int  # that are learned about; 0 where there is nothing to choose
@@ -38,13 +40,7 @@ class LightTable:
         if tables is not None and self.groups:
             learned = active & (u < fraction)
             u = dr.select(learned, u / fraction, (u - fraction) / (1 - fraction))
-            first = cell * (self.groups + 1)
-            group = dr.binary_search(0, self.groups - 1, lambda i: dr.gather(
-                mi.Float, tables.light_tables, first + i + 1, learned) <= u)
-            group = mi.UInt32(group)
-            begin = dr.gather(mi.Float, tables.light_tables, first + group, learned)
-            end = dr.gather(mi.Float, tables.light_tables, first + group + 1, learned)
-            within = dr.clip((u - begin) / (end - begin), 0, 1)
+            group, within = choose_group(tables, cell, self.groups, u, learned)
             low, high = self._cdf_of_group(group, learned)
             u = dr.select(learned, dr.fma(within, high - low, low), u)
         place = mi.UInt32(dr.binary_search(
@@ -55,16 +51,16 @@ class LightTable:
         """The probability with which `choose` gives a place."""
         if self.count == 1:
             return mi.Float(1)
-        plain = dr.gather(mi.Float, self.probabilities, place, active)
         if tables is None or not self.groups:
-            return plain
+            return dr.gather(mi.Float, self.probabilities, place, active)
+        group, plain, share = self._of_place(place, active)
         learned = active & (fraction > 0)
-        group = dr.gather(mi.UInt32, self.group, place, learned)
-        first = cell * (self.groups + 1) + group
-        of_group = dr.gather(mi.Float, tables.light_tables, first + 1, learned) \
-            - dr.gather(mi.Float, tables.light_tables, first, learned)
-        share = of_group * self._share_of_group(group, plain, learned)
+        share *= dr.gather(mi.Float, tables.group_probabilities, cell * self.groups + group, learned)
         return dr.select(learned, dr.fma(fraction, share - plain, plain), plain)
+
+    def _of_place(self, place, active):
+        group, plain, share, _ = dr.gather(mi.ArrayXu, self.of_place, place, active, shape=(4, -1))
+        return group, dr.reinterpret_array(mi.Float, plain), dr.reinterpret_array(mi.Float, share)
 
     @property
     def regions(self):
@@ -130,19 +126,13 @@ class LightTable:
         """The group of a place that was chosen with this probability, and the probability of the group."""
         if not self.groups:
             return mi.UInt32(odis.NO_LIGHT_GROUP), mi.Float(0)
-        group = dr.gather(mi.UInt32, self.group, place, active)
-        share = self._share_of_group(group, dr.gather(mi.Float, self.probabilities, place, active), active)
+        group, _, share = self._of_place(place, active)
         return dr.select(active, group, odis.NO_LIGHT_GROUP), dr.select(share > 0, probability / share, 0)
 
     def _cdf_of_group(self, group, active):
         """Where a group begins and ends in the sums of Mitsuba's probabilities."""
         return (dr.gather(mi.Float, self.cdf, dr.gather(mi.UInt32, self.group_begin, group + i, active), active)
                 for i in range(2))
-
-    def _share_of_group(self, group, probability, active):
-        """What share of Mitsuba's choices of a group an emitter has that is chosen with this probability."""
-        low, high = self._cdf_of_group(group, active)
-        return dr.select(active & (high > low), probability / (high - low), 0)
 
 
 def split_groups(centers, most):
@@ -197,11 +187,16 @@ def make_light_table(scene):
     uneven = np.array([is_uneven(emitter) for emitter in emitters] or [False])[order]
     whole = lambda values: array_of(mi.UInt32, np.asarray(values, np.uint32))
     real = lambda values: array_of(mi.Float, np.asarray(values, np.float32))
+    group = np.append(np.repeat(np.arange(len(groups)), np.diff(begin)), [0] * (len(order) - begin[-1])).astype(int)
+    of_group = np.bincount(group, probabilities, len(groups))[group]
+    share = np.divide(probabilities, of_group, out=np.zeros(len(order)), where=of_group > 0)
+    bits = lambda values: np.asarray(values, np.float32).view(np.uint32)
+    of_place = np.stack([group, bits(probabilities), bits(share), 0 * group], axis=1)
     table = LightTable(
         environment=environment, emitters=dr.reinterpret_array(mi.EmitterPtr, mi.UInt32(numbers)),
-        group=whole(np.repeat(np.arange(len(groups)), np.diff(begin)).tolist() + [0] * (len(order) - begin[-1])),
         probabilities=real(probabilities), cdf=real(np.concatenate([[0], np.cumsum(probabilities)])),
-        group_begin=whole(begin), place=whole(place), uneven=array_of(mi.Bool, uneven) if uneven.any() else None,
+        group_begin=whole(begin), place=whole(place), of_place=whole(of_place),
+        uneven=array_of(mi.Bool, uneven) if uneven.any() else None,
         count=len(order), groups=len(groups) if len(groups) > 1 else 0)
     dr.make_opaque(table)
     return table
