@@ -18,6 +18,7 @@ try:
     from odis.mitsuba import guide_tables, materials, recording
     from odis.mitsuba.arrays import array_of
     from odis.mitsuba.random_numbers import hash_seed, numbers_of
+    from odis.mitsuba.settings import GivenSettings
 except (ImportError, AttributeError, RuntimeError) as missing:
     raise unittest.SkipTest(f"Mitsuba does not run here: {missing}")
 
@@ -161,6 +162,21 @@ class Cached(unittest.TestCase):
                                  mi.Float([0, 0, 0, 4, 8, 16]), mi.UInt32([2, 4]))
         radiance = np.array(recorder.completions).reshape(-1, recording.PACKET)[np.array(row), :3]
         np.testing.assert_allclose(radiance, [[0, 0, 0], [1 + 4 / 2, 8 / 2, 16 / 2], [4, 8, 16]])
+
+
+class Settings(unittest.TestCase):
+    def cells(self, spp, text="", preset="default", cached=False):
+        lights = SimpleNamespace(groups=0, parts=[])
+        options = GivenSettings.read(preset, text).frame_options((8, 8), spp, 0, lights, cached, -1)
+        return int(odis.read_setting(options.settings, "cells"))
+
+    def test_few_samples_have_fewer_cells(self):
+        self.assertEqual([self.cells(spp) for spp in (1, 4, 7, 8, 64)], [24, 24, 24, 32, 32])
+        self.assertEqual(self.cells(4, cached=True), 32)
+
+    def test_what_is_given_wins(self):
+        self.assertEqual(self.cells(4, "cells=64"), 64)
+        self.assertEqual(self.cells(4, preset="paper"), 0)
 
 
 class Images(unittest.TestCase):
