@@ -6,9 +6,9 @@
     bench/in_mitsuba.py SCENE.xml... --rfilter file --methods "splat=,pixels=--film pixels"
 
 Needs `pip install ".[mitsuba]"`. All methods run in one process and take turns, with max_depth 13, rr_depth 5,
-independent samples and the filter that the scene's file names, or another (--rfilter). Times are wall clock and
-processor time without Dr.Jit's code generation and compilation: each kind renders once to warm up, and an image for
-which kernels were compiled is rendered again. Errors are 0.1 %-trimmed relMSE as src/eval/metrics.h has it, to
+independent samples and the filter that the scene's file names, or another (--rfilter). Times are wall clock, without
+Dr.Jit's code generation and compilation, and processor time: each kind renders once to warm up, and an image for which
+kernels were compiled is rendered again. Errors are 0.1 %-trimmed relMSE as src/eval/metrics.h has it, to
 references of `path` with other seeds and the same filter. Times are the least over seeds, as other work on the machine
 only adds to them, errors and rays are medians; ratios are to `path`, and error × time is that of the processor. The mean
 is that of all seeds' images, over the reference's, with its standard error without the reference's own. Scenes that do not load get `-`, and the reason on stderr.
@@ -50,7 +50,7 @@ def render(scene, integrator, spp, seed):
         compiling = compile_seconds()
         if compiling < 0.02 * seconds:
             break
-    return image, seconds - compiling, max(processor - compiling, 0.01 * processor)
+    return image, seconds - compiling, processor
 
 
 def reference_of(scene, path, args):
