@@ -428,7 +428,7 @@ class Notebook(unittest.TestCase):
     def test_runs(self):
         cells = json.loads(EXAMPLE.read_text())["cells"]
         code = "\n".join("".join(cell["source"]) for cell in cells if cell["cell_type"] == "code")
-        small, sizes = "SIZE, REFERENCE_SPP, SEEDS = 32, 256, 1", "SIZE, REFERENCE_SPP, SEEDS = 192, 1024, 4"
+        small, sizes = "SIZE, REFERENCE_SPP, SEEDS = 32, 1024, 8", "SIZE, REFERENCE_SPP, SEEDS = 192, 1024, 4"
         self.assertIn(sizes, code)
         names = {}
         with contextlib.redirect_stdout(io.StringIO()):
