@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <ctime>
 
-
 namespace odis::eval {
 
 using namespace render;
@@ -35,7 +34,11 @@ std::vector<Met> metBy(const PilotPass& pilot) {
     // Any numbers do, as long as they are spread.
     const float u = float(all.size() * 40503 % 65536) / 65536, w = float(all.size() * 30011 % 65536) / 65536;
     all.push_back({{v.position, v.normal, v.pixel, v.sample, false, v.depth},
-                   v.wi, pilot.pixelValues[v.pixel], v.roughness, u, w});
+                   v.wi,
+                   pilot.pixelValues[v.pixel],
+                   v.roughness,
+                   u,
+                   w});
   }
   return all;
 }

@@ -11,7 +11,8 @@ namespace {
 [[noreturn]] void fail(const std::string& why) {
   throw WeightsError(
       "oneDNN is missing, which networks at pixels (`--preset paper`) need: `scripts/setup --paper` installs "
-      "it (libdnnl-dev of Debian and Ubuntu), then build ODIS again (" +
+      "it (libdnnl-dev of Debian and Ubuntu), then build ODIS again, for Python by `pip install . "
+      "-Ccmake.define.ODIS_ONEDNN=ON` (" +
       why + ")");
 }
 
