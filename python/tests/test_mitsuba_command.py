@@ -112,6 +112,15 @@ class Command(InFolder):
             self.assertEqual(result["rays"] is None, integrator == "path")
         self.assertEqual(len(list(self.folder.iterdir())), 5)
 
+    def test_vertices_of_paths_that_fail_are_no_mistake(self):
+        # A rough conductor fails to reflect some directions: roulette has nothing to decide there.
+        rough = '<bsdf type="roughconductor"><float name="alpha" value="0.6"/></bsdf>'
+        ground = f'<shape type="sphere"><point name="center" value="0, -101, 0"/><float name="radius" value="100"/>{rough}</shape>'
+        scene = self.write("rough.xml", scene_text(more=ground).replace('<bsdf type="diffuse"/>', rough))
+        code, said = run("render", scene, "--spp", 16, "--resolution", "48x32", "--rr-depth", 1, "-o", self.folder / "a.exr")
+        self.assertEqual(code, 0, said)
+        self.assertNotIn("nothing is learned from", said)
+
     def test_same_as_in_python(self):
         self.assertEqual(run("render", self.scene, "--seed", 5, "--quiet", "-o", self.folder / "a.exr"), (0, ""))
         scene = mi.load_file(str(self.scene))

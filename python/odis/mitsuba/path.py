@@ -321,7 +321,7 @@ def trace(scene, camera, settings, known, tables, recorder, samples):
         weight = dr.select(active & dr.all(dr.isfinite(weight)), weight, 0)
         eta *= dr.select(from_map | passes, 1, sampled.eta)
         most = dr.max(throughput * weight)
-        plays = active & (depth >= settings.rr_depth)
+        plays = active & (most > 0) & (depth >= settings.rr_depth)
         survival = dr.minimum(most * eta * eta, 0.95)
         if dr.hint(tables is not None and settings.learned_roulette, mode="scalar"):
             plays &= cell == odis.NO_CELL
