@@ -361,9 +361,9 @@ TEST_F(Training, TwoProcessesLearnTheSame) {
     const core::Tensor &two = learned[0][i], one = alone->tensors()[i];
     // What is added to all groups alike changes nothing, and its gradient is but rounding.
     if (two.name == "lights.2.bias") continue;
-    // Adam makes much of little gradients, and their rounding, as lights have them: a step may be as long as
-    // 0.01.
-    const float least = two.name.starts_with("lights.") ? 1e-3f : 2e-4f;
+    // Adam makes much of little gradients, and their rounding, as lights have them: each of the three steps
+    // may be as long as 0.01.
+    const float least = two.name.starts_with("lights.") ? 3e-3f : 2e-4f;
     for (size_t k = 0; k < two.values.size(); ++k)
       EXPECT_NEAR(two.values[k], one.values[k], least + 1e-3f * std::abs(one.values[k])) << two.name;
   }
