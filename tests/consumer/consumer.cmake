@@ -38,7 +38,7 @@ if(openpgl)
   odis_consumer_test(FindsOpenPgl8ByCMake ${CMAKE_CTEST_COMMAND}
     --build-and-test ${CMAKE_CURRENT_LIST_DIR}/openpgl_8 ${folder}/build_openpgl_8
     --build-generator ${CMAKE_GENERATOR} --build-options ${openpgl} -DCMAKE_CXX_COMPILER=${CMAKE_CXX_COMPILER}
-    "-DCMAKE_CXX_FLAGS=${CMAKE_CXX_FLAGS}" -DCMAKE_BUILD_TYPE=${CMAKE_BUILD_TYPE} ${run})
+    "-DCMAKE_CXX_FLAGS=${CMAKE_CXX_FLAGS}" -DCMAKE_BUILD_TYPE=${CMAKE_BUILD_TYPE} ${toolchain} ${run})
 endif()
 
 find_program(ODIS_PKG_CONFIG pkg-config)
