@@ -17,7 +17,7 @@ namespace {
 }
 
 // A function of the component, which stays loaded.
-void* findFunction(const char* name) {
+void* findFunction([[maybe_unused]] const char* name) {
 #ifdef _WIN32
   fail("not available on Windows");
 #else
