@@ -33,7 +33,7 @@ struct Row {
   eval::VertexCosts vertex;
 };
 
-// Nanoseconds of a core.
+// What a ray of `path` takes, in nanoseconds of a core.
 double ofRay(const eval::BenchmarkResult& r) {
   return 1e9 / (r.samplesPerCpuSecond * r.raysPerSecond / r.samplesPerSecond);
 }
@@ -102,13 +102,7 @@ void printCosts(const std::vector<Row>& rows) {
 
 static eval::VertexCosts measureVertex(const render::Scene& scene, const eval::BenchmarkSettings& settings,
                                        render::Progress& progress) {
-  render::RenderOptions options;
-  options.integrator = render::IntegratorKind::odis;
-  options.sampler = settings.sampler;
-  options.spp = settings.spp;
-  options.maxDepth = settings.maxDepth;
-  options.rrDepth = settings.rrDepth;
-  options.threads = settings.threads;
+  const render::RenderOptions options = eval::optionsOf(settings, render::IntegratorKind::odis);
   return eval::vertexCosts(render::renderPilot(scene, options, progress), settings.rounds);
 }
 

@@ -39,16 +39,20 @@ OperationCosts operationCosts(const RenderStats& path, const RenderStats& odis) 
 
 }  // namespace
 
+RenderOptions optionsOf(const BenchmarkSettings& settings, IntegratorKind integrator) {
+  RenderOptions options;
+  options.integrator = integrator;
+  options.sampler = settings.sampler;
+  options.spp = settings.spp;
+  options.maxDepth = settings.maxDepth;
+  options.rrDepth = settings.rrDepth;
+  options.threads = settings.threads;
+  return options;
+}
+
 BenchmarkResult benchmark(const Scene& scene, const BenchmarkSettings& settings, Progress& progress) {
-  RenderOptions path;
-  path.integrator = IntegratorKind::path;
-  path.sampler = settings.sampler;
-  path.spp = settings.spp;
-  path.maxDepth = settings.maxDepth;
-  path.rrDepth = settings.rrDepth;
-  path.threads = settings.threads;
-  RenderOptions guided = path;
-  guided.integrator = IntegratorKind::odis;
+  RenderOptions path = optionsOf(settings, IntegratorKind::path),
+                guided = optionsOf(settings, IntegratorKind::odis);
 
   BenchmarkResult result;
   std::vector<double> samples, cpuSamples, raysTraced, guidedCost, guidingShare, frameCost;

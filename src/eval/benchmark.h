@@ -34,6 +34,9 @@ struct BenchmarkResult {
   OperationCosts costs;  // as measured
 };
 
+// What a method renders with in a benchmark, but for the seed.
+render::RenderOptions optionsOf(const BenchmarkSettings& settings, render::IntegratorKind integrator);
+
 // Throws nothing of its own; ends early, with what there is, if progress is cancelled.
 BenchmarkResult benchmark(const render::Scene& scene, const BenchmarkSettings& settings,
                           render::Progress& progress);

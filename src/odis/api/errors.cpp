@@ -55,10 +55,10 @@ void setErrorFromException(OdisContext context) noexcept {
   }
 }
 
-void refuseSize(const std::string& name, size_t found, size_t expected, const std::string& remedy) {
-  throw std::invalid_argument(name + ": found a size of " + std::to_string(found) + " bytes, expected " +
-                              std::to_string(expected) + ": " + remedy +
-                              ", and use the headers of this library");
+void refuseSize(const char* name, size_t found, size_t expected, const Remedy& remedy) {
+  throw std::invalid_argument(std::string(name) + ": found a size of " + std::to_string(found) +
+                              " bytes, expected " + std::to_string(expected) + ": " + remedy.advice +
+                              remedy.name + remedy.end + ", and use the headers of this library");
 }
 
 }  // namespace odis::core

@@ -48,9 +48,14 @@ inline void requireArgument(const void* pointer, const char* name) {
   if (!pointer) throw std::invalid_argument(std::string(name) + ": found NULL");
 }
 
-// Complains of a struct whose size is none that there ever was, and says what the host should have done.
-[[noreturn]] void refuseSize(const std::string& name, size_t found, size_t expected,
-                             const std::string& remedy);
+// What a host should have done: three parts of a text, put together only where it is told, as events are
+// checked at every vertex.
+struct Remedy {
+  const char *advice, *name, *end;
+};
+
+// Complains of a struct whose size is none that there ever was.
+[[noreturn]] void refuseSize(const char* name, size_t found, size_t expected, const Remedy& remedy);
 
 // The functions that initialize the structs that hosts fill in.
 inline const char* initializerOf(const OdisContextOptions&) {
@@ -80,7 +85,7 @@ inline const char* initializerOf(const OdisBounceEvent&) {
 
 // A struct that may grow has had fewer fields once, but never none, nor a size that compilers don't give it.
 template <class Struct>
-void requireSize(size_t size, const std::string& name, const std::string& remedy) {
+void requireSize(size_t size, const char* name, const Remedy& remedy) {
   if (size <= sizeof(size_t) || size > sizeof(Struct) || size % alignof(Struct) != 0)
     refuseSize(name, size, sizeof(Struct), remedy);
 }
@@ -89,7 +94,7 @@ void requireSize(size_t size, const std::string& name, const std::string& remedy
 template <class Struct>
 Struct adopt(const Struct& given, const char* name) {
   Struct result;
-  requireSize<Struct>(given.size, name, std::string("initialize it by ") + initializerOf(given) + "()");
+  requireSize<Struct>(given.size, name, {"initialize it by ", initializerOf(given), "()"});
   std::memcpy(static_cast<void*>(&result), &given, given.size);
   result.size = sizeof(Struct);
   return result;
@@ -98,7 +103,7 @@ Struct adopt(const Struct& given, const char* name) {
 // Fills in as many fields as the host knows.
 template <class Struct>
 void fillIn(Struct& host, Struct value, const char* name) {
-  requireSize<Struct>(host.size, name, std::string("set its size to sizeof(") + name + ")");
+  requireSize<Struct>(host.size, name, {"set its size to sizeof(", name, ")"});
   value.size = host.size;
   std::memcpy(static_cast<void*>(&host), &value, host.size);
 }
@@ -108,12 +113,13 @@ template <class Struct>
 void initialize(Struct* host, size_t size, const char* name) noexcept {
   guarded(nullptr, false, [&] {
     requireArgument(host, name);
+    const Remedy remedy{"pass sizeof(", name, ")"};
     Struct value;
     if constexpr (requires { value.size; }) {
-      requireSize<Struct>(size, name, std::string("pass sizeof(") + name + ")");
+      requireSize<Struct>(size, name, remedy);
       value.size = size;
     } else if (size != sizeof(Struct)) {
-      refuseSize(name, size, sizeof(Struct), std::string("pass sizeof(") + name + ")");
+      refuseSize(name, size, sizeof(Struct), remedy);
     }
     std::memcpy(static_cast<void*>(host), &value, size);
     return true;
