@@ -1,4 +1,4 @@
-// All that a guide says at one vertex of a path: one object in the place of the functions of
+// One object holds all that a guide says at one vertex of a path, in place of the functions of
 // odis/guide_view.h and odis/mixture.h, for renderers that trace one path at a time, on the CPU or in CUDA.
 // docs/vertex.md has a path tracer that uses it.
 //

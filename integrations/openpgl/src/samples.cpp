@@ -102,7 +102,7 @@ void SampleStorage::add(const PGLSampleData& sample) {
 }
 
 void SampleStorage::add(const PGLZeroValueSampleData& sample) {
-  // Of a host of 0.7 only the first byte counts.
+  // Hosts of 0.7 set the first byte only.
   if (sample.flags & PGLSampleData::EInsideVolume) return;
   odis::PathVertex vertex = vertexOf(sample.position, sample.direction);
   vertex.pdf = 1;

@@ -36,7 +36,7 @@ constexpr float kPreciseShare = 0x1p-25f;
 constexpr int kLeastPower = -149, kGreatestPower = 150;
 using SizeCounts = std::array<size_t, kGreatestPower - kLeastPower + 1>;
 
-// What so many triangles cover, if all are as large as half of the smallest.
+// The extent that so many triangles cover, if all are as large as the median of the smallest ones.
 double extentOfSmallest(const SizeCounts& counts, size_t count) {
   size_t below = 0, power = 0;
   for (; 2 * (below + counts[power]) < count; ++power) below += counts[power];
