@@ -148,6 +148,9 @@ float pglSurfaceSamplingDistributionIncomingRadiancePDF(PGLSurfaceSamplingDistri
                                                         pgl_vec3f direction) {
   return distribution->radiancePdf(direction);
 }
+float pglSurfaceSamplingDistributionVolumeScatterProbability(PGLSurfaceSamplingDistribution, pgl_vec3f) {
+  return -1;  // nothing is learned of where volumes lie
+}
 uint32_t pglSurfaceSamplingDistributionGetId(PGLSurfaceSamplingDistribution distribution) {
   return distribution->cell();
 }

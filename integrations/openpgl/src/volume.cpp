@@ -45,6 +45,9 @@ bool pglVolumeSamplingDistributionSupportsApplySingleLobeHenyeyGreensteinProduct
     PGLVolumeSamplingDistribution) {
   return true;
 }
+float pglVolumeSamplingDistributionVolumeScatterProbability(PGLVolumeSamplingDistribution, pgl_vec3f) {
+  return -1;
+}
 uint32_t pglVolumeSamplingDistributionGetId(PGLVolumeSamplingDistribution) {
   return ~0u;
 }

@@ -94,11 +94,17 @@ struct PGLImageSpaceSample {
 
 // Estimates of contributions are those of either type: of their mean.
 enum PGLContributionTypes { EContribContribution = 0, EContribVariance };
+enum PGLVSPTypes : uint8_t { EVSPContribution = 0, EVSPVariance };
 struct PGLImageSpaceGuidingBufferConfig {
   pgl_point2i resolution{0, 0};
   bool contributionEstimate{true};
+  // Whether to estimate probabilities to scatter in volumes. These two lie where hosts of an Open PGL that was built
+  // without them have padding, so any value is possible; such hosts never ask for the estimate.
+  uint8_t vspEstimate{0};
+  PGLVSPTypes vspType{EVSPContribution};
   PGLContributionTypes contributionType{EContribContribution};
 };
+static_assert(sizeof(PGLImageSpaceGuidingBufferConfig) == 16, "as without estimates for volumes");
 #endif
 
 struct PGLString {

@@ -184,6 +184,12 @@ bool pglVolumeSamplingDistributionValidate(PGLVolumeSamplingDistribution distrib
 void pglVolumeSamplingDistributionClear(PGLVolumeSamplingDistribution distribution);
 PGLRegion pglVolumeSamplingGetRegion(PGLVolumeSamplingDistribution distribution);
 
+// -1, which tells hosts that nothing is known.
+float pglSurfaceSamplingDistributionVolumeScatterProbability(PGLSurfaceSamplingDistribution distribution,
+                                                             pgl_vec3f direction);
+float pglVolumeSamplingDistributionVolumeScatterProbability(PGLVolumeSamplingDistribution distribution,
+                                                            pgl_vec3f direction);
+
 #ifdef ODIS_OPENPGL_8
 // ---- estimates of pixels: any thread may add samples, of different pixels at once ----
 
@@ -197,6 +203,10 @@ void pglImageSpaceGuidingBufferStore(PGLImageSpaceGuidingBuffer buffer, const ch
 // The estimate of the last update, grey: the mean luminance of a block of 8 x 8 pixels and a tenth of the image's.
 pgl_vec3f pglImageSpaceGuidingBufferGetContributionEstimate(PGLImageSpaceGuidingBuffer buffer,
                                                             pgl_point2i pixel);
+// How likely a camera's ray should meet the volume in front of a surface, by what either brought to the pixels around:
+// 0.5 before the first update or where it was not asked for, -1 where nothing was brought.
+float pglImageSpaceGuidingBufferGetVolumeScatterProbabilityEstimate(PGLImageSpaceGuidingBuffer buffer,
+                                                                    pgl_point2i pixel);
 bool pglImageSpaceGuidingBufferIsReady(PGLImageSpaceGuidingBuffer buffer);
 void pglImageSpaceGuidingBufferReset(PGLImageSpaceGuidingBuffer buffer);
 #endif

@@ -113,6 +113,7 @@ struct FieldConfig {
   void SetSpatialStructureArgMaxDepth(size_t depth) { tree()->maxDepth = depth; }
   void SetUseKnnLookup(bool use) { tree()->knnLookup = use; }
   void SetUseKnnIsLookup(bool use) { tree()->isKnnLookup = use; }
+  void SetVarianceBasedVSP(bool) {}
   void SetDebugArgFitRegions(bool fit) { arguments.debugArguments.fitRegions = fit; }
   PGLFieldArguments arguments;
 
@@ -267,6 +268,9 @@ struct SurfaceSamplingDistribution {
   void ApplyCosineProduct(const pgl_vec3f& normal) {
     pglSurfaceSamplingDistributionApplyCosineProduct(handle, normal);
   }
+  float VolumeScatterProbability(const pgl_vec3f& direction) const {
+    return pglSurfaceSamplingDistributionVolumeScatterProbability(handle, direction);
+  }
   uint32_t GetId() const { return pglSurfaceSamplingDistributionGetId(handle); }
   bool Validate() const { return pglSurfaceSamplingDistributionValidate(handle); }
   Region GetRegion() const { return Region(pglSurfaceSamplingGetRegion(handle)); }
@@ -299,6 +303,9 @@ struct VolumeSamplingDistribution {
   void ApplySingleLobeHenyeyGreensteinProduct(const pgl_vec3f& direction, float meanCosine) {
     pglVolumeSamplingDistributionApplySingleLobeHenyeyGreensteinProduct(handle, direction, meanCosine);
   }
+  float VolumeScatterProbability(const pgl_vec3f& direction) const {
+    return pglVolumeSamplingDistributionVolumeScatterProbability(handle, direction);
+  }
   uint32_t GetId() const { return pglVolumeSamplingDistributionGetId(handle); }
   bool Validate() const { return pglVolumeSamplingDistributionValidate(handle); }
   Region GetRegion() const { return Region(pglVolumeSamplingGetRegion(handle)); }
@@ -316,6 +323,10 @@ struct ImageSpaceGuidingBuffer {
     bool ContributionEstimate() const { return arguments.contributionEstimate; }
     void SetContributionType(PGLContributionTypes type) { arguments.contributionType = type; }
     PGLContributionTypes GetContributionType() const { return arguments.contributionType; }
+    void EnableVolumeScatterProbabilityEstimate(bool enabled) { arguments.vspEstimate = enabled; }
+    bool VolumeScatterProbabilityEstimate() const { return arguments.vspEstimate; }
+    void SetVolumeScatterProbabilityType(PGLVSPTypes type) { arguments.vspType = type; }
+    PGLVSPTypes GetVolumeScatterProbabilityType() const { return arguments.vspType; }
     PGLImageSpaceGuidingBufferConfig arguments;
   };
   using Sample = PGLImageSpaceSample;
@@ -336,6 +347,9 @@ struct ImageSpaceGuidingBuffer {
   void Store(const std::string& file) const { pglImageSpaceGuidingBufferStore(handle, file.c_str()); }
   pgl_vec3f GetContributionEstimate(pgl_point2i pixel) const {
     return pglImageSpaceGuidingBufferGetContributionEstimate(handle, pixel);
+  }
+  float GetVolumeScatterProbabilityEstimate(pgl_point2i pixel) const {
+    return pglImageSpaceGuidingBufferGetVolumeScatterProbabilityEstimate(handle, pixel);
   }
   bool IsReady() const { return pglImageSpaceGuidingBufferIsReady(handle); }
   void Reset() { pglImageSpaceGuidingBufferReset(handle); }
