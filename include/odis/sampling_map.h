@@ -14,6 +14,8 @@ inline constexpr int kMapTexels = kMapSize * kMapSize;
 inline constexpr int kBlockSize = 4;
 inline constexpr int kBlockTexels = kBlockSize * kBlockSize;
 inline constexpr int kMapBlocks = kMapTexels / kBlockTexels;
+// A guide has at most so many maps: the numbers of their texels must fit in 32 bits, in lanes as well.
+inline constexpr uint32_t kMostMaps = INT32_MAX / kMapTexels;
 
 // The index of the texel in column x and row y.
 template <class Int>
@@ -66,7 +68,7 @@ class VertexMap {
   // maps must outlive the use of this object.
   ODIS_HOST_DEVICE void prepare(const MapArrays& maps, Int cell, const Vector3<Real>& normal,
                                 Real belowSign) {
-    assert(isIndex(cell, INT32_MAX / kMapTexels));
+    assert(isIndex(cell, kMostMaps));
     m_maps = maps;
     m_cell = cell;
     m_normal = normal;

@@ -23,6 +23,9 @@ IncidentRadiance radianceOf(const GuideOptions& options) {
   return options.pixelDirectLight ? IncidentRadiance::full : IncidentRadiance::withoutDirect;
 }
 
+// What cells leave of a guide's maps.
+constexpr size_t kMostPixelMaps = kMostMaps - kMostCells;
+
 // A map as shares of its sum.
 Histogram sharesOf(const uint16_t* texels) {
   float sum = 0;
@@ -59,6 +62,11 @@ PaperMethod::PaperMethod(const FrameOptions& options, std::shared_ptr<const Guid
       m_builder(std::move(builder)),
       m_tasks(std::move(tasks)) {
   const auto width = int(options.width), height = int(options.height);
+  const int tile = m_guide.pixelMaps == PixelMapKind::oracle ? 1 : int(m_guide.pixelTile);
+  const auto tiles = [&](int pixels) { return size_t((pixels + tile - 1) / tile); };
+  if (m_guide.pixelMaps != PixelMapKind::none && tiles(width) * tiles(height) > kMostPixelMaps)
+    throw std::invalid_argument("OdisFrameOptions.width, height: expected at most " +
+                                std::to_string(kMostPixelMaps) + " maps at pixels (see pixel-tile)");
   switch (m_guide.pixelMaps) {
     case PixelMapKind::histogram:
       m_model = pixelHistogram(radianceOf(m_guide));

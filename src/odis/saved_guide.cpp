@@ -63,6 +63,12 @@ bool isSound(std::span<const float> table, bool known) {
   return table.back() <= 1;
 }
 
+std::vector<uint64_t> loadKeys(const Archive& file) {
+  std::vector<uint64_t> keys = file.get<uint64_t>("guide.keys");
+  file.require(keys.size() <= kMostMaps, "guide.keys: are too many");
+  return keys;
+}
+
 }  // namespace
 
 void Guide::save(ArchiveWriter& file) const {
@@ -89,7 +95,7 @@ void Guide::save(ArchiveWriter& file) const {
 Guide Guide::load(const Archive& file) {
   Guide guide;
   if (!file.value<uint8_t>("guide.built")) return guide;
-  const std::vector<uint64_t> keys = file.get<uint64_t>("guide.keys");
+  const std::vector<uint64_t> keys = loadKeys(file);
   const std::vector<uint16_t> texels = file.get<uint16_t>("guide.texels", keys.size() * kMapTexels);
   file.require(std::find(texels.begin(), texels.end(), uint16_t(0)) == texels.end(),
                "guide.texels: a direction is impossible");

@@ -32,8 +32,10 @@ void MemoryWarnings::report(OdisContextImpl& context, int coarsening, uint64_t s
     context.log(ODIS_LOG_WARNING,
                 "the memory's limit makes the cells' edges " + std::to_string(coarsening) + " times as long");
   if (samplesLeftOut > 0 && !m_leftOut)
-    context.log(ODIS_LOG_WARNING,
-                "the memory's limit leaves no room for new cells: the guide learns nothing there");
+    context.log(
+        ODIS_LOG_WARNING,
+        "the limit of the memory or that of the number of cells leaves no room for new ones: the guide "
+        "learns nothing there");
   m_coarsening = coarsening;
   m_leftOut = samplesLeftOut > 0;
 }

@@ -67,6 +67,7 @@ void CellStore::load(const Archive& file, const std::string& name) {
   m_vertexCounts = loadFieldsOfOne<VertexCounts>(file, name + ".counts");
   m_depthShares.set(file.get<float>(name + ".depthShares"));
   const std::vector<uint64_t> keys = file.get<uint64_t>(name + ".keys");
+  file.require(keys.size() <= kMostCells, name + ".keys: are too many");
   for (const uint64_t key : keys) {
     const uint32_t next = m_index.size();
     file.require(CellGrid::levelOf(key) < kCellLevels && m_index.insert(key) == next,

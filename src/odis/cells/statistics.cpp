@@ -181,7 +181,7 @@ void CellStore::addNewCells() {
 
 void CellStore::add(std::span<BatchSamples* const> batches, int cellsPerDiagonal) {
   if (!m_placed) place(batches, cellsPerDiagonal);
-  const bool isCoarser = m_cells.empty() && m_mostCells < SIZE_MAX && coarsen(batches);
+  const bool isCoarser = m_cells.empty() && m_mostCells < kMostCells && coarsen(batches);
   // Cells that are known are found by many threads; new ones get their numbers in the order of the vertices.
   std::vector<BatchCells> cells(batches.size());
   m_tasks->forEach(batches.size(), [&](size_t b) {

@@ -22,6 +22,9 @@ namespace odis::core {
 // its parent, and over those around its parent's parent; zeros beyond the coarsest level.
 using Surroundings = std::array<Histogram, 2>;
 
+// A store has at most so many cells, some 16 GB without a guide; as many maps are left to pixels.
+inline constexpr size_t kMostCells = kMostMaps / 2;
+
 class Archive;
 class ArchiveWriter;
 class LightPoints;
@@ -102,7 +105,7 @@ class CellStore {
 
   // Keeps the number of cells below a limit: the first call of `add` makes them as much larger as it takes,
   // later ones leave out the samples of cells that there is no more room for.
-  void limitCells(size_t most) { m_mostCells = most; }
+  void limitCells(size_t most) { m_mostCells = std::min(most, kMostCells); }
   // Lets the store gather what a radiance cache needs, of paths of this max_depth (0: none).
   void cache(uint32_t maxDepth);
   // How many times larger the cells' edges are for that, and how many samples were left out.
@@ -180,7 +183,7 @@ class CellStore {
   DepthShares m_depthShares;
   std::shared_ptr<const Tasks> m_tasks;
   bool m_placed = false;
-  size_t m_mostCells = SIZE_MAX;
+  size_t m_mostCells = kMostCells;
   int m_coarsening = 1;
   uint64_t m_samplesLeftOut = 0;
   CellGrid m_grid;
