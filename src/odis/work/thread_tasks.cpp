@@ -13,7 +13,7 @@ namespace odis::core {
 namespace {
 
 // Threads that wait for work. One piece of work is done at a time: while it is, others do their work by
-// themselves.
+// themselves, what is asked for from within it included.
 class ThreadTasks : public Tasks {
  public:
   explicit ThreadTasks(uint32_t threads) {
@@ -35,9 +35,9 @@ class ThreadTasks : public Tasks {
 
  protected:
   void run(size_t count, Task task, void* data) const override {
-    const std::unique_lock one(m_one, std::try_to_lock);
     Work work{count, task, data};
-    if (!one || count < 2 || m_threads.empty()) return work.share();
+    if (count < 2 || m_threads.empty() || m_taken.test_and_set(std::memory_order_acquire))
+      return work.share();
     {
       const std::lock_guard lock(m_mutex);
       m_work = &work;
@@ -47,6 +47,7 @@ class ThreadTasks : public Tasks {
     std::unique_lock lock(m_mutex);
     m_work = nullptr;
     m_changed.wait(lock, [&] { return m_busy == 0; });
+    m_taken.clear(std::memory_order_release);
   }
 
  private:
@@ -76,7 +77,8 @@ class ThreadTasks : public Tasks {
   }
 
   std::vector<std::thread> m_threads;
-  mutable std::mutex m_one, m_mutex;
+  mutable std::atomic_flag m_taken;  // no mutex: a thread must not try one that it holds
+  mutable std::mutex m_mutex;
   mutable std::condition_variable m_changed;
   mutable Work* m_work = nullptr;
   mutable uint32_t m_busy = 0;  // threads at work
