@@ -202,11 +202,13 @@ ODIS_HOST_DEVICE inline bool cachedRadiance(const GuideView& view, const Place& 
   if (!view.cached) return false;
   assert(cell < view.cellCount);
   const CachedRadiance& cached = view.cached[2 * size_t(cell) + pathHalf(place.pixel, place.sample)];
-  const float edge = CellGrid(view.grid).edge(view.keys[cell]);
+  // Most often not: the rest is read only where it may.
+  if (!(throughput * cached.error < view.rules.cachedError)) return false;
+  if (!(footprint >= view.rules.leastCachedFootprint * CellGrid(view.grid).edge(view.keys[cell])))
+    return false;
   const float share = cachedShare(view, place.depth);
   radiance = cached.radiance * share;
-  return throughput * cached.error < view.rules.cachedError &&
-         footprint >= view.rules.leastCachedFootprint * edge && share > 0;
+  return share > 0;
 }
 
 }  // namespace odis
