@@ -312,6 +312,14 @@ class Maps(unittest.TestCase):
         position[:, 2] = 0
         return position, np.tile(np.array([0, 0, 1], np.float32), (count, 1))
 
+    def test_tables_that_32_bits_cannot_count_are_refused(self):
+        class Guide:
+            def __len__(self):
+                return 1 << 23
+
+        with self.assertRaisesRegex(ValueError, "set fewer cells"):
+            guide_tables.make_map_tables(Guide(), both_sides=True)
+
     def test_cells(self):
         position, normal = self.places(2000)
         found = guide_tables.find_cell(self.tables, mi.Point3f(position.T), mi.Vector3f(normal.T), True)

@@ -129,6 +129,9 @@ def make_map_tables(guide, both_sides):
     for orientation, numbers in enumerate(needed):
         slots[orientation, numbers] = np.arange(len(numbers))
         normal_of_slot[orientation] = np.resize(numbers, slot_count)
+    words = len(guide) * (2 if both_sides else 1) * ENTRIES * max(slot_count, ENTRIES)
+    if words >= 1 << 32:
+        raise ValueError(f"{len(guide)} cells have tables of {words} words, more than Dr.Jit can count: set fewer cells")
     blocks, texels = guide.alias_tables(normals[normal_of_slot].reshape(-1, 3), both_sides)
     whole = lambda values: array_of(mi.UInt32, values)
     return {"blocks": whole(blocks), "texels": whole(texels), "slots": whole(slots),
