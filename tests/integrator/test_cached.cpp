@@ -2,6 +2,8 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <string>
+#include <tuple>
 
 #include "integrator/test_scenes.h"
 #include "support/average.h"
@@ -104,20 +106,27 @@ TEST(Cached, LeavesShallowPathsAsTheyAre) {
   EXPECT_TRUE(test::sameBits(cached.image.color, test::renderScene(*scene, options).image.color));
 }
 
-// What a glossy metal scatters depends on the direction, so that the mean of a cell is not what a path finds.
+std::string withRoughness(const std::string& type, const std::string& alpha) {
+  const std::string metal =
+      "<string name=\"material\" value=\"none\"/>"
+      "<rgb name=\"specular_reflectance\" value=\"0.5\"/>";
+  return "<bsdf type=\"" + type + "\">" + (type == "roughconductor" ? metal : "") +
+         "<float name=\"alpha\" value=\"" + alpha + "\"/></bsdf>";
+}
+
+// What a glossy metal or frosted glass scatters depends on the direction, so that the mean of a cell is not
+// what a path finds.
 TEST(Cached, OnlyRoughMetalEndsPaths) {
-  for (const auto& [alpha, ends] : {std::pair("0.25", false), std::pair("0.4", true)}) {
-    const auto scene = test::loadScene(
-        test::furnace("<bsdf type=\"roughconductor\"><string name=\"material\" value=\"none\"/>"
-                      "<rgb name=\"specular_reflectance\" value=\"0.5\"/><float name=\"alpha\" value=\"" +
-                          std::string(alpha) + "\"/></bsdf>",
-                      32));
+  for (const auto& [type, alpha, ends] :
+       {std::tuple("roughconductor", "0.25", false), std::tuple("roughconductor", "0.4", true),
+        std::tuple("roughdielectric", "0.4", false)}) {
+    const auto scene = test::loadScene(test::furnace(withRoughness(type, alpha), 32));
     RenderOptions options = cachedOptions(16);
     options.set("guided-cost=0");  // guiding does not pay in a furnace
     const RenderResult cached = test::renderScene(*scene, options);
     options.set("cached=off");
     EXPECT_EQ(test::sameBits(cached.image.color, test::renderScene(*scene, options).image.color), !ends)
-        << alpha;
+        << type << " " << alpha;
   }
 }
 

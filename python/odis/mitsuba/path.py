@@ -15,7 +15,8 @@ VALID = 1 << 31  # marks samples in Samples.result, beside their number of rays
 RECORDED = 1 << 31  # marks samples in Samples.chosen whose vertices are recorded
 # Smoother surfaces end no paths: what they scatter depends too much on the direction. Nor do coats that are met at an
 # angle of a smaller cosine: half of the draws at a cosine of 0.2 are mirrored, for an index of refraction of 1.5 over a
-# diffuse reflectance of 0.5.
+# diffuse reflectance of 0.5. Where light passes only diffuse surfaces do: what is refracted spreads over a quarter of
+# the angle of a reflection of the same roughness, or less.
 LEAST_CACHED_ROUGHNESS, LEAST_CACHED_COSINE = 0.3, 0.2
 
 
@@ -228,7 +229,7 @@ def trace(scene, camera, settings, known, tables, recorder, samples):
                                        guide_tables.segment_footprint(si.t, previous_pdf, facing), 0)
                 scatters_evenly = ((flags & (GUIDABLE | SEES_THROUGH)) == GUIDABLE) \
                     & (((flags & HAS_DELTA) == 0) | (dr.abs(si.wi.z) >= LEAST_CACHED_COSINE)) \
-                    & (roughness >= LEAST_CACHED_ROUGHNESS)
+                    & (roughness >= dr.select(both_sides, 1, LEAST_CACHED_ROUGHNESS))
                 may_end = active & (depth > 0) & scatters_evenly
                 # With an endless max_depth there are no shares, and the number of bounces left is not looked at.
                 share = guide_tables.cached_share(tables, mi.UInt32(max(settings.max_depth, 1)) - 1 - depth, may_end)

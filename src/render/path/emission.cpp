@@ -93,8 +93,10 @@ constexpr float kLeastCachedRoughness = 0.3f, kLeastCachedGuidable = 0.5f;
 bool scattersEvenly(const Arrival& arrival) {
   const auto& [at, wo] = *arrival.vertex;
   const Bsdf& bsdf = at.shape->bsdf();
-  return bsdf.guidableProbability(at, wo) >= kLeastCachedGuidable &&
-         bsdf.roughness(at, wo) >= kLeastCachedRoughness;
+  // What is refracted spreads over a quarter of the angle of a reflection of the same roughness, or less: of
+  // surfaces that let light pass only diffuse ones scatter evenly.
+  const float leastRoughness = bsdf.traits().transmissive ? 1 : kLeastCachedRoughness;
+  return bsdf.guidableProbability(at, wo) >= kLeastCachedGuidable && bsdf.roughness(at, wo) >= leastRoughness;
 }
 
 }  // namespace
