@@ -1,6 +1,7 @@
 // Directions at vertices on surfaces.
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 
 #include "field.h"
 #include "vectors.h"
@@ -47,18 +48,24 @@ struct alignas(64) SurfaceSamplingDistribution {
   float sample(const pgl_point2f& u, pgl_vec3f& direction);
   float pdf(const pgl_vec3f& direction);
   // The density of the cell's map alone, without the cosine at the vertex.
-  float radiancePdf(const pgl_vec3f& direction) const;
+  float radiancePdf(const pgl_vec3f& direction);
   uint32_t cell() const { return m_cell; }
 
  private:
   float cosinePdf(const odis::Float3& wi) const { return std::max(dot(wi, m_normal), 0.0f) / kPi; }
   // Whether directions come from the map, which is prepared when it is first needed.
   bool guides();
+  // The texel of a direction. Hosts ask for both densities of a direction, one after the other.
+  int texelOf(const pgl_vec3f& direction);
+  float sumOfTexels() const;
 
   const odis::GuideView* m_view = nullptr;
   odis::Float3 m_position, m_normal;
   uint32_t m_cell = odis::kNoCell;
   odis::VertexMap<float> m_map;
+  float m_toRadiancePdf = 0;  // turns a texel into a density; 0: not known yet
+  pgl_vec3f m_direction{0, 0, 0};
+  int m_texel = odis::texelOf(odis::Float3{0, 0, 0});
   bool m_hasNormal = false, m_isPrepared = false;
 };
 
@@ -77,6 +84,7 @@ ODIS_FLATTENED void SurfaceSamplingDistribution::applyCosine(const pgl_vec3f& no
   m_normal = toOdis(normal);
   m_hasNormal = true;
   m_isPrepared = false;
+  m_toRadiancePdf = 0;
   m_cell = odis::findCell(*m_view, {m_position, m_normal});
   if (m_cell != odis::kNoCell) odis::prefetchCell(*m_view, m_cell);
 }
@@ -99,18 +107,32 @@ ODIS_FLATTENED float SurfaceSamplingDistribution::sample(const pgl_point2f& u, p
   return pdf(direction);
 }
 
-ODIS_FLATTENED float SurfaceSamplingDistribution::pdf(const pgl_vec3f& direction) {
-  const odis::Float3 wi = toOdis(direction);
-  return guides() ? m_map.pdf(wi) : m_hasNormal ? cosinePdf(wi) : kUniform;
+inline int SurfaceSamplingDistribution::texelOf(const pgl_vec3f& direction) {
+  if (std::memcmp(&direction, &m_direction, sizeof direction) != 0) {
+    m_direction = direction;
+    m_texel = odis::texelOf(toOdis(direction));
+  }
+  return m_texel;
 }
 
-float SurfaceSamplingDistribution::radiancePdf(const pgl_vec3f& direction) const {
-  if (!m_view || m_cell == odis::kNoCell) return kUniform;
+inline float SurfaceSamplingDistribution::sumOfTexels() const {
   const float* sums = m_view->maps.sums + size_t(m_cell) * odis::kSumsPerMap + 3 * odis::kMapBlocks;
-  float total = 0;
-  for (int block = 0; block < odis::kMapBlocks; ++block) total += sums[block];
-  const uint16_t* texels = m_view->maps.texels + size_t(m_cell) * odis::kMapTexels;
-  return texels[odis::texelOf(toOdis(direction))] / total * kTexelsPerSteradian;
+  // Four sums side by side, which don't wait for each other.
+  float total[4] = {};
+  for (int block = 0; block < odis::kMapBlocks; ++block) total[block % 4] += sums[block];
+  return (total[0] + total[1]) + (total[2] + total[3]);
+}
+
+ODIS_FLATTENED float SurfaceSamplingDistribution::pdf(const pgl_vec3f& direction) {
+  if (guides()) return m_map.texelPdf(texelOf(direction));
+  return m_hasNormal ? cosinePdf(toOdis(direction)) : kUniform;
+}
+
+ODIS_FLATTENED float SurfaceSamplingDistribution::radiancePdf(const pgl_vec3f& direction) {
+  if (!m_view || m_cell == odis::kNoCell) return kUniform;
+  if (m_toRadiancePdf == 0) m_toRadiancePdf = kTexelsPerSteradian / sumOfTexels();
+  return m_view->maps.texels[size_t(m_cell) * odis::kMapTexels + size_t(texelOf(direction))] *
+         m_toRadiancePdf;
 }
 
 extern "C" {

@@ -1,5 +1,6 @@
 #include "unguided.h"
 
+#include <bit>
 #include <unordered_map>
 
 #include "vectors.h"
@@ -12,7 +13,7 @@ namespace {
 constexpr double kFewestVertices = 16;
 // A place is left to the BSDF if the standard deviation of what a direction brings is below this times what surfaces
 // scatter back there. Where glossy lobes scatter, a map times the cosine says less about where to look.
-constexpr double kLeastDeviation = 0.7, kLeastGlossyDeviation = 1.7;
+constexpr double kLeastDeviation = 1, kLeastGlossyDeviation = 1.7;
 // The mean roughness (alpha of a microfacet lobe, 1 for diffuse ones) from which on a place counts as diffuse.
 constexpr double kDiffuseRoughness = 0.7;
 
@@ -43,8 +44,12 @@ UnguidedPlaces::UnguidedPlaces(const CellGrid& grid, ArrayView<const PathVertex>
   std::unordered_map<uint64_t, Moments> places;
   for (const PathVertex& vertex : vertices)
     if (isUsable(vertex)) places[keyOf(vertex.position)].add(vertex);
+  m_slots.assign(std::bit_ceil(2 * places.size() + 1), kEmpty);
   for (const auto& [key, moments] : places)
-    if (moments.variesLittle()) m_places.insert(key);
+    if (moments.variesLittle()) {
+      m_slots[slotOf(key)] = key;
+      ++m_count;
+    }
 }
 
 }  // namespace odis::openpgl_interface

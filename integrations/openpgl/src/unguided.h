@@ -3,7 +3,7 @@
 
 #include <odis/odis.hpp>
 
-#include <unordered_set>
+#include <vector>
 
 namespace odis::openpgl_interface {
 
@@ -15,16 +15,28 @@ class UnguidedPlaces {
   // Judges by vertices whose directions were sampled from the BSDF alone.
   UnguidedPlaces(const CellGrid& grid, ArrayView<const PathVertex> vertices);
 
-  bool contains(const Float3& position) const { return m_places.count(keyOf(position)) > 0; }
-  size_t size() const { return m_places.size(); }
+  bool contains(const Float3& position) const {
+    const uint64_t key = keyOf(position);
+    return m_slots[slotOf(key)] == key;
+  }
+  size_t size() const { return m_count; }
 
  private:
   // A place is a cube twice as long as the finest cells. Its key holds no normal (the one here stands for all of them),
   // because hosts ask before they tell it.
   uint64_t keyOf(const Float3& position) const { return m_grid.key(position, {1, 0, 0}, 1); }
 
+  // Where a key is, or else an empty slot.
+  size_t slotOf(uint64_t key) const {
+    size_t slot = cellHash(key) & (m_slots.size() - 1);
+    while (m_slots[slot] != key && m_slots[slot] != kEmpty) slot = (slot + 1) & (m_slots.size() - 1);
+    return slot;
+  }
+
+  static constexpr uint64_t kEmpty = ~uint64_t(0);  // no key
   CellGrid m_grid;
-  std::unordered_set<uint64_t> m_places;
+  std::vector<uint64_t> m_slots{kEmpty};  // a power of two, at most half of them full: every vertex asks
+  size_t m_count = 0;
 };
 
 }  // namespace odis::openpgl_interface
