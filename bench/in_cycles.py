@@ -2,7 +2,7 @@
 """What a libopenpgl gains and costs in Cycles' own program: error and processor time beside unguided paths.
 
     bench/in_cycles.py CYCLES SCENE... --guide NAME=FOLDER... [--stub] [--denoise ODIS] [--mixture] [--spp 4,16]
-                       [--seeds 4] [--reference-spp 4096] [--cache DIR]
+                       [--seeds 4] [--reference-spp 4096 | --pairs] [--cache DIR]
 
 CYCLES is a program that links libopenpgl as a shared library, SCENE a folder that
 integrations/openpgl/convert_scene.py wrote, FOLDER one that holds a libopenpgl.so.0. `--stub` adds a library that knows
@@ -11,10 +11,12 @@ program `odis`, and images are compared after Open Image Denoise as well, by the
 Cycles 4 and later mix guide and BSDF as 3.4 does, in place of resampled importance sampling (RIS), their default.
 
 Errors are 0.1 %-trimmed relMSE as src/eval/metrics.h has it, to an unguided image of another seed; times are of all
-threads, without what an image of 8 x 8 pixels takes (loading). Medians over seeds; ratios are to unguided paths. Needs
+threads, without what an image of 8 x 8 pixels takes (loading). Medians over seeds; ratios are to unguided paths. With
+`--pairs` no reference is rendered: errors are half of the squared differences of two seeds, means over pairs. Needs
 `pip install mitsuba` to read OpenEXR.
 """
 import argparse
+import itertools
 import os
 import pathlib
 import re
@@ -94,6 +96,32 @@ def denoised(image, odis):
     return read(target)
 
 
+def error_of_pairs(images, around):
+    """The error that differences of images tell, where `around` stands in for what they are relative to."""
+    pairs = itertools.combinations(images, 2)
+    return np.mean([trimmed_relative_error(around + (a - b) / np.sqrt(2), around) for a, b in pairs])
+
+
+def median_of_neighbours(image):
+    """Of 3 x 3 pixels: single bright samples leave no trace."""
+    padded = np.pad(image, ((1, 1), (1, 1), (0, 0)), "edge")
+    return np.median(np.lib.stride_tricks.sliding_window_view(padded, (3, 3), axis=(0, 1)), axis=(-2, -1))
+
+
+def measure_pairs(program, scene, guides, spp, args):
+    """For each guide, unguided first: error and seconds."""
+    loading = np.median([program.render(scene, 1, 0, size=(8, 8)) for _ in range(3)])
+    images, seconds = {name: [] for name in guides}, {name: [] for name in guides}
+    with tempfile.TemporaryDirectory() as folder:
+        image = pathlib.Path(folder) / "image.exr"
+        for seed in range(args.seeds):
+            for name, library in guides.items():
+                seconds[name].append(max(program.render(scene, spp, seed, library, image) - loading, 1e-3))
+                images[name].append(read(image))
+    around = median_of_neighbours(np.mean([np.mean(of_guide, axis=0) for of_guide in images.values()], axis=0))
+    return {name: np.array([error_of_pairs(images[name], around), np.median(seconds[name])]) for name in guides}
+
+
 def measure(program, scene, guides, spp, args):
     """For each guide, unguided first, a list over seeds: error, seconds, and the error after denoising, if any."""
     reference = reference_of(program, scene, args)
@@ -122,7 +150,7 @@ def compare(program, guides, args):
     print_row(["---", "--:", "---", *["--:"] * (2 * len(columns) + 1)])
     for scene in args.scenes:
         for spp in map(int, args.spp.split(",")):
-            found = measure(program, scene, guides, spp, args)
+            found = (measure_pairs if args.pairs else measure)(program, scene, guides, spp, args)
             for name, values in found.items():
                 ratio = values / found["off"]
                 ratios.setdefault((spp, name), []).append(ratio)
@@ -146,9 +174,12 @@ def main():
     parser.add_argument("--seeds", type=int, default=4)
     parser.add_argument("--threads", type=int, default=os.cpu_count())
     parser.add_argument("--reference-spp", type=int, default=4096)
+    parser.add_argument("--pairs", action="store_true", help="errors by two seeds or more, without a reference")
     parser.add_argument("--cache", type=pathlib.Path, default=pathlib.Path("cycles-references"),
                         help="keeps references there")
     args = parser.parse_args()
+    if args.pairs and (args.seeds < 2 or args.denoise):
+        parser.error("--pairs is for two seeds or more, without --denoise")
     guides = dict(guide.split("=", 1) for guide in args.guide)
     program = Program(args.cycles, args.threads, next(iter(guides.values())), args.mixture)
     with tempfile.TemporaryDirectory() as folder:
