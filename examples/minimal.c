@@ -91,7 +91,7 @@ static void guidePath(const OdisGuideView* view) {
 
   // The surface is diffuse, which the roughness 1 stands for; all of it may be guided, and it scatters to one
   // side. A renderer draws a number u and samples the map if odisDrawsFromMap says so, else its BSDF.
-  if (!odisPrepareVertex(&vertex, 1, 1, false) || !odisSampleMap(&vertex, uv, &wi)) {
+  if (!odisPrepareVertex(&vertex, 1, 1) || !odisSampleMap(&vertex, uv, &wi)) {
     printf("directions are not guided here: the path goes on as the BSDF says\n");
     return;
   }

@@ -32,7 +32,7 @@ vertices = odis.PathVertices(position=position, normal=normal, wi=wi, pdf=pdf, r
 builder = odis.GuideBuilder()
 builder.add(vertices)
 
-# 4. The guide holds a map of incident radiance over directions for each cell.
+# 4. The guide holds a map for each cell: a density over directions, of what arrives times the cosine.
 guide = builder.build()
 print(f"{len(guide)} cells from {builder.vertex_counts.accepted} vertices, {guide.bytes} bytes")
 
@@ -43,12 +43,12 @@ cells = guide.find_cells(points, normals)
 
 # 6. Samples a direction at each point from two uniform numbers. The densities are with respect to solid angle; where
 #    there is no map they are 0.
-directions, densities = guide.sample(cells, normals, random.random((4, 2), np.float32))
+directions, densities = guide.sample(cells, random.random((4, 2), np.float32))
 for direction, density in zip(directions, densities):
     print(f"direction {direction}, density {density:.3f}, angle to the patch {np.degrees(np.arccos(direction @ bright)):.0f}°")
 
 # 7. A renderer mixes that with its BSDF: with this probability a sample comes from the BSDF, else from the map. The
 #    density of the mixture is what the sample's contribution is divided by, which leaves the image unbiased.
 fraction = guide.bsdf_fraction(cells, roughness=np.ones(4, np.float32))
-mixture = fraction * (directions[:, 2].clip(0) / np.pi) + (1 - fraction) * guide.pdf(cells, normals, directions)
+mixture = fraction * (directions[:, 2].clip(0) / np.pi) + (1 - fraction) * guide.pdf(cells, directions)
 print("densities of the mixture", mixture)

@@ -75,9 +75,7 @@ odis::GuideView onDevice(odis::GuideView view) {
   const size_t cells = view.cellCount;
   view.slots = onDevice(view.slots, view.slotMask + 1);
   view.keys = onDevice(view.keys, cells);
-  view.maps.texels = onDevice(view.maps.texels, cells * odis::kMapTexels);
-  view.maps.sums = onDevice(view.maps.sums, cells * odis::kSumsPerMap);
-  view.maps.directions = onDevice(view.maps.directions, 3 * size_t(odis::kMapTexels));
+  view.maps = onDevice(view.maps, cells * odis::kMapShares);
   view.decisions = onDevice(view.decisions, cells);
   view.lightTables = onDevice(view.lightTables, cells * (view.lightGroups + 1));
   return view;

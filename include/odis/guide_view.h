@@ -6,8 +6,8 @@
 //   if (cell != odis::kNoCell) {
 //     ... roulette on arrival:
 //         odis::survivalProbability(view.rules, decisions.survivalFactor, throughput / pixelValue, depth)
-//     ... direction: odis::VertexMap<float> with odis::bsdfFraction(view, cell, roughness),
-//         mixed as odis/mixture.h shows
+//     ... direction: odis::SamplingMap<float>(view.maps, cell) with
+//         odis::bsdfFraction(view, cell, roughness), mixed as odis/mixture.h shows
 //     ... light: odis::learnedLights(view, cell)
 //     ... an end, if the image may be biased:
 //         odis::cachedRadiance(view, place, cell, throughput, footprint, radiance)
@@ -91,15 +91,15 @@ inline void findCells(const GuideView& view, const Place* places, size_t count, 
   }
 }
 
-// Fetches what every vertex reads of a cell: to be called a few vertices ahead. Of the texels of its map only
-// those of a block or two are read, which VertexMap::prefetch() fetches.
+// Fetches what every vertex reads of a cell: to be called a few vertices ahead. Of its map this is the table
+// of the blocks; SamplingMap::prefetch() fetches one of texels.
 inline void prefetchCell(const GuideView& view, uint32_t cell) {
   constexpr size_t kLine = 64;
   const auto fetch = [](const void* data, size_t bytes) {
     for (size_t byte = 0; byte < bytes; byte += kLine) fetchAhead(static_cast<const char*>(data) + byte);
   };
   fetch(view.decisions + cell, sizeof(CellDecisions));
-  fetch(view.maps.sums + size_t(cell) * kSumsPerMap, kSumsPerMap * sizeof(float));
+  fetchAhead(view.maps + size_t(cell) * kMapShares);
   if (view.lightGroups == 0) return;
   const size_t groupBounds = view.lightGroups + 1;
   fetch(view.lightTables + cell * groupBounds, groupBounds * sizeof(float));

@@ -23,7 +23,7 @@
 namespace odis {
 
 // A direction drawn from a map, and the map's density of it.
-using MapSample = VertexMap<float>::Sample;
+using MapSample = SamplingMap<float>::Sample;
 
 class GuidedVertex {
  public:
@@ -102,16 +102,15 @@ class GuidedVertex {
 
   // Says what the BSDF is like; until then, and where nothing is to be gained, directions are left to it.
   // `roughness` is alpha of a microfacet distribution, 1 for diffuse; `guidableProbability` how often the
-  // BSDF draws from lobes that may be guided (odis/mixture.h), in [0, 1]; `bothSides` whether it scatters
-  // to both sides.
-  ODIS_HOST_DEVICE void prepare(float roughness, float guidableProbability = 1, bool bothSides = false) {
+  // BSDF draws from lobes that may be guided (odis/mixture.h), in [0, 1].
+  ODIS_HOST_DEVICE void prepare(float roughness, float guidableProbability = 1) {
     m_mixture = {};
     if (!isKnown() || !(guidableProbability > 0)) return;
     if (roughness < m_view->rules.leastGuidedRoughness) return;
     const float fraction = odis::bsdfFraction(*m_view, int32_t(m_cell), roughness);
     if (!(fraction < 1)) return;
-    m_map.prepare(m_view->maps, int32_t(m_cell), m_place.normal, bothSides ? -1.0f : 0.0f);
-    if (m_map.sampleable()) m_mixture = Mixture<float>(fraction, guidableProbability);
+    m_map = SamplingMap<float>(m_view->maps, int32_t(m_cell));
+    m_mixture = Mixture<float>(fraction, guidableProbability);
   }
   // Whether any direction is drawn from the map, and the probability that a draw stays with the BSDF.
   ODIS_HOST_DEVICE bool guides() const { return m_mixture.guides(); }
@@ -156,7 +155,7 @@ class GuidedVertex {
   float m_pixelValue = 1;
   uint32_t m_cell = kNoCell;
   Mixture<float> m_mixture;
-  VertexMap<float> m_map;
+  SamplingMap<float> m_map;
 };
 
 }  // namespace odis

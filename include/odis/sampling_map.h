@@ -1,6 +1,5 @@
-// Sampling maps: 16 x 16 equal-area octahedral maps of the radiance that comes from each direction, in
-// world space, and the density that they give together with the cosine at a vertex. Nothing here allocates
-// or calls a virtual function.
+// Sampling maps: densities over 16 x 16 texels of the equal-area octahedral map of directions in world space,
+// which two look-ups in tables sample. Nothing here allocates or calls a virtual function.
 #pragma once
 
 #include "odis/octahedral.h"
@@ -14,8 +13,6 @@ inline constexpr int kMapTexels = kMapSize * kMapSize;
 inline constexpr int kBlockSize = 4;
 inline constexpr int kBlockTexels = kBlockSize * kBlockSize;
 inline constexpr int kMapBlocks = kMapTexels / kBlockTexels;
-// A guide has at most so many maps: the numbers of their texels must fit in 32 bits, in lanes as well.
-inline constexpr uint32_t kMostMaps = INT32_MAX / kMapTexels;
 
 // The index of the texel in column x and row y.
 template <class Int>
@@ -49,126 +46,94 @@ inline Float3 texelDirection(int texel) {
   return squareToDirection(pointOfTexel<float>(texel, {0.5f, 0.5f}));
 }
 
-using MapArrays = OdisMapArrays;
-inline constexpr int kSumsPerMap = 4 * kMapBlocks;
+// A map is kept as 17 tables of 16 shares: the first says how likely each block is, the others how likely
+// each texel of a block, in parts of 2^-15. No share is 0, and those of a table add up to the whole, so that
+// what is drawn has the density that is computed. 544 bytes a map.
+inline constexpr int kMapTables = 1 + kMapBlocks;
+inline constexpr int kMapShares = kMapTables * kBlockTexels;
+inline constexpr int kWhole = 1 << 15;
+// A guide has at most so many maps: the numbers of their shares must fit in 32 bits, in lanes as well.
+inline constexpr uint32_t kMostMaps = INT32_MAX / kMapShares;
 
-// A map times the cosine at one vertex: a density over directions, constant within each texel, with respect
-// to solid angle, and positive everywhere. Only what a vertex asks for is computed: a block is chosen by
-// its sums, a texel within it by its own value. Where a block lies on one side of the horizon this is
-// exactly the product of the texels with max(cos, 0) + rim at their centres, or with |cos| + rim where the
-// surface scatters to both sides. Blocks that the horizon crosses get a little less: what lies below counts
-// negative in their sums.
+// The sampling map of a cell: a density over directions, constant within each texel, with respect to solid
+// angle, and positive everywhere. It is the radiance that arrives times the mean cosine to the normals of the
+// cell's vertices.
 template <class Real>
-class VertexMap {
+class SamplingMap {
  public:
   using Int = Integer<Real>;
 
-  // Prepares the density at a vertex. `normal` is the unit shading normal on the side of the outgoing
-  // direction; `belowSign` is 0 where the surface reflects only, -1 where it scatters to both sides. The
-  // maps must outlive the use of this object.
-  ODIS_HOST_DEVICE void prepare(const MapArrays& maps, Int cell, const Vector3<Real>& normal,
-                                Real belowSign) {
+  SamplingMap() = default;
+  // `maps` are those of a guide (OdisGuideView::maps), which must outlive the use of this object.
+  ODIS_HOST_DEVICE SamplingMap(const uint16_t* maps, Int cell)
+      : m_maps(maps), m_first(cell * Int(kMapShares)) {
     assert(isIndex(cell, kMostMaps));
-    m_maps = maps;
-    m_cell = cell;
-    m_normal = normal;
-    m_belowSign = belowSign;
-    const Real rim(maps.rim);
-    const Int sums = cell * Int(kSumsPerMap);
-    const Run<Real, float> x(maps.sums, sums), y(maps.sums + kMapBlocks, sums),
-        z(maps.sums + 2 * kMapBlocks, sums), sum(maps.sums + 3 * kMapBlocks, sums);
-    for (int b = 0; b < kMapBlocks; ++b)
-      m_blocks[b] = aboveHorizon(x[b] * normal.x + y[b] * normal.y + z[b] * normal.z) + rim * sum[b];
-    const Real total = sumRows(m_blocks, m_rows);
-    const Real kTexelsPerSteradian(kMapTexels / (4 * 3.14159265358979f));
-    const auto usable = (total > Real(0)) & (total < Real(INFINITY));
-    m_toPdf = select(usable, kTexelsPerSteradian / select(usable, total, Real(1)), Real(0));
   }
-
-  // Whether there is anything to sample (a normal that is not a number, say, leaves nothing): a mask.
-  ODIS_HOST_DEVICE auto sampleable() const { return m_toPdf > Real(0); }
 
   struct Sample {
     Vector3<Real> wi;
     Real pdf{};  // with respect to solid angle
   };
-  // Samples a direction from u, v uniform in [0, 1). Only where sampleable().
+  // Samples a direction from u, v uniform in [0, 1).
   ODIS_HOST_DEVICE Sample sample(Real u, Real v) const {
     const Int block = chooseBlock(u, v);
     return sampleWithin(block, u, v);
   }
 
   // The same in two steps, for hosts that sample many vertices: u and v choose a block of texels, and are
-  // stretched again to sample within it. Only the second step reads texels: if all vertices take the first
-  // step, and prefetch() their blocks, before any takes the second, none waits for memory.
-  ODIS_HOST_DEVICE Int chooseBlock(Real& u, Real& v) const {
-    const Int y = pick(m_rows, v);
-    return y * Int(kBlockSize) + pick(row(m_blocks, y), u);
-  }
+  // stretched again to sample within it. If all vertices take the first step, and prefetch() their blocks,
+  // before any takes the second, none waits for memory.
+  ODIS_HOST_DEVICE Int chooseBlock(Real& u, Real& v) const { return choose(Int(0), u, v).entry; }
   ODIS_HOST_DEVICE Sample sampleWithin(Int block, Real u, Real v) const {
-    Block weights;
-    weigh(block, weights);
-    const Int y = pick(weights.rows, v);
-    const auto texels = row(weights.texels, y);
-    const Int x = pick(texels, u);
-    const Int texel = block * Int(kBlockTexels) + y * Int(kBlockSize) + x;
-    return {squareToDirection(pointOfTexel<Real>(texel, {u, v})), element(texels, x) * weights.toPdf};
+    Real pdf;
+    const Int texel = chooseTexel(block, u, v, pdf);
+    return {squareToDirection(pointOfTexel<Real>(texel, {u, v})), pdf};
+  }
+  // The second step without its direction, squareToDirection(pointOfTexel(texel, {u, v})): chooses a texel of
+  // the block, stretches u and v again, and finds the density within the texel.
+  ODIS_HOST_DEVICE Int chooseTexel(Int block, Real& u, Real& v, Real& pdf) const {
+    const Choice texel = choose(tableOf(block), u, v);
+    pdf = share(block) * texel.share * Real(kToPdf);
+    return block * Int(kBlockTexels) + texel.entry;
   }
 
-  // For hosts that take the second step for many vertices side by side: the weights of a block's texels, row
-  // by row, and the sums of these rows. A texel's weight times toPdf is the density within it.
-  struct Block {
-    Real texels[kBlockTexels];
-    Real rows[kBlockSize];
-    Real toPdf;
-  };
-  ODIS_HOST_DEVICE void weigh(Int block, Block& weights) const {
-    assert(isIndex(block, kMapBlocks));
-    const Real rim(m_maps.rim);
-    const Int first = block * Int(kBlockTexels);
-    const Run<Real, uint16_t> texels(m_maps.texels, m_cell * Int(kMapTexels) + first);
-    const Run<Real, float> x(m_maps.directions, first), y(m_maps.directions + kMapTexels, first),
-        z(m_maps.directions + 2 * kMapTexels, first);
-    for (int t = 0; t < kBlockTexels; ++t)
-      weights.texels[t] =
-          texels[t] * (aboveHorizon(x[t] * m_normal.x + y[t] * m_normal.y + z[t] * m_normal.z) + rim);
-    const Real ofBlock = element(row(m_blocks, block >> 2), block & Int(3));
-    weights.toPdf = m_toPdf * ofBlock / sumRows(weights.texels, weights.rows);
-  }
-  // For hosts that take the first step so: chooseBlock() chooses by the weights of the blocks, which lie row
-  // by row, and by the sums of these rows.
-  ODIS_HOST_DEVICE const Real (&blocks() const)[kMapBlocks] { return m_blocks; }
-  ODIS_HOST_DEVICE const Real (&rows() const)[kBlockSize] { return m_rows; }
-
-  // Fetches the texels of a block, which sampleWithin() and the density of a direction in it read. On the
-  // CPU, for one vertex at a time.
-  void prefetch(Int block) const {
-    fetchAhead(m_maps.texels + (m_cell * Int(kMapTexels) + block * Int(kBlockTexels)));
-  }
-
-  // The density of `wi`; 0 where there is nothing to sample.
+  // The density of `wi`.
   ODIS_HOST_DEVICE Real pdf(const Vector3<Real>& wi) const { return texelPdf(texelOf(wi)); }
   // The density within a texel.
   ODIS_HOST_DEVICE Real texelPdf(Int texel) const {
     assert(isIndex(texel, kMapTexels));
-    Block weights;
-    weigh(texel >> 4, weights);
-    const auto texels = row(weights.texels, (texel >> 2) & Int(3));
-    return select(sampleable(), element(texels, texel & Int(3)) * weights.toPdf, Real(0));
+    return share(texel >> 4) * share(texel + Int(kBlockTexels)) * Real(kToPdf);
   }
+
+  // Fetches what sampleWithin() and the density of a direction in a block read of it. On the CPU, for one
+  // vertex at a time.
+  void prefetch(Int block) const { fetchAhead(m_maps + (m_first + tableOf(block))); }
 
  private:
-  // What counts of a cosine, or of a sum of cosines.
-  ODIS_HOST_DEVICE Real aboveHorizon(Real cosine) const {
-    const Real below = m_belowSign * cosine;
-    return select(cosine > below, cosine, below);
-  }
+  // What the product of the shares of block and texel is multiplied by for a density: both are parts of the
+  // whole, and a texel takes up this part of the sphere.
+  static constexpr float kToPdf = kMapTexels / (4 * 3.14159265358979f) / (float(kWhole) * float(kWhole));
 
-  // Sums each row of a table of 4 x 4; returns the sum of all.
-  ODIS_HOST_DEVICE static Real sumRows(const Real (&table)[kBlockTexels], Real (&rows)[kBlockSize]) {
+  // Where the table of a block's texels begins in the map.
+  ODIS_HOST_DEVICE static Int tableOf(Int block) { return (block + Int(1)) * Int(kBlockTexels); }
+  ODIS_HOST_DEVICE Real share(Int i) const { return gather(m_maps, m_first + i); }
+
+  struct Choice {
+    Int entry;
+    Real share;
+  };
+  // Chooses an entry of a table, four rows of four: v chooses the row, u the entry in it, so that points that
+  // are stratified in both stay so. Both are stretched again.
+  ODIS_HOST_DEVICE Choice choose(Int table, Real& u, Real& v) const {
+    const Run<Real, uint16_t> run(m_maps, m_first + table);
+    Real shares[kBlockTexels], rows[kBlockSize];
+    for (int i = 0; i < kBlockTexels; ++i) shares[i] = run[i];
     for (int y = 0; y < kBlockSize; ++y)
-      rows[y] = (table[4 * y] + table[4 * y + 1]) + (table[4 * y + 2] + table[4 * y + 3]);
-    return (rows[0] + rows[1]) + (rows[2] + rows[3]);
+      rows[y] = (shares[4 * y] + shares[4 * y + 1]) + (shares[4 * y + 2] + shares[4 * y + 3]);
+    const Int y = pick(rows, v);
+    const auto columns = row(shares, y);
+    const Int x = pick(columns, u);
+    return {y * Int(kBlockSize) + x, element(columns, x)};
   }
 
   // Says which of four weights a number u, uniform in [0, 1), falls into; u becomes its place within that
@@ -184,14 +149,8 @@ class VertexMap {
     return i;
   }
 
-  MapArrays m_maps;
-  Int m_cell{};
-  Vector3<Real> m_normal;
-  Real m_belowSign{};
-  Real m_blocks[kMapBlocks];
-  Real m_rows[kBlockSize];  // sums of the rows of m_blocks
-  // Turns the weight of a texel, as a share of its block times the weight of the block, into a density.
-  Real m_toPdf{};
+  const uint16_t* m_maps = nullptr;
+  Int m_first{};  // share of the map
 };
 
 }  // namespace odis

@@ -6,7 +6,7 @@
 #include "odis/structs.h"
 
 // Counts up when a field changes its meaning; what is added comes at the end.
-#define ODIS_GUIDE_VIEW_VERSION 3
+#define ODIS_GUIDE_VIEW_VERSION 4
 
 // Where a look-up is made, and for which sample of which pixel, counted as in the frame.
 typedef struct OdisPlace {
@@ -39,20 +39,6 @@ typedef struct OdisCellSlot {
   uint64_t key ODIS_DEFAULT(0);
   uint32_t cell ODIS_DEFAULT(ODIS_NO_CELL);
 } OdisCellSlot;
-
-// The sampling maps of all cells (odis/sampling_map.h).
-typedef struct OdisMapArrays {
-  // [cell][texel]: relative incident radiance, at least 1, so that no direction is impossible.
-  const uint16_t* texels ODIS_DEFAULT(NULL);
-  // [cell][quantity][block]: the sums over the block's texels of texel times direction (x, y, z), and of the
-  // texels.
-  const float* sums ODIS_DEFAULT(NULL);
-  // [axis][texel]: the directions of the texels' centres, x then y then z.
-  const float* directions ODIS_DEFAULT(NULL);
-  // What is added to every cosine: something, so that blocks wholly below the horizon have a density too, but
-  // so little that even the one bright texel of a dark map attracts next to nothing from below.
-  float rim ODIS_DEFAULT(1e-4f);
-} OdisMapArrays;
 
 // What a cell decides beside directions. 32 bytes.
 typedef struct OdisCellDecisions {
@@ -114,7 +100,7 @@ typedef struct OdisGuideView {
   const OdisCellSlot* slots ODIS_DEFAULT(NULL);  // from keys of all levels to cells, slotMask + 1 entries
   uint64_t slotMask ODIS_DEFAULT(0);
   const uint64_t* keys ODIS_DEFAULT(NULL);  // [cell]
-  OdisMapArrays maps;
+  const uint16_t* maps ODIS_DEFAULT(NULL);  // [cell][17][16]: sampling maps (odis/sampling_map.h)
   const OdisCellDecisions* decisions ODIS_DEFAULT(NULL);  // [cell]
   const float* lightTables
       ODIS_DEFAULT(NULL);  // [cell][lightGroups + 1]: cumulative probabilities from 0 to 1

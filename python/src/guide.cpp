@@ -38,11 +38,6 @@ Result shownDecision(const Self& self, size_t offset, size_t columns) {
   return shown<Result>(self, data, {view.cellCount, columns}, {kDecisionFloats, 1});
 }
 
-struct Rules {
-  GuideRules decisions;
-  float rim;
-};
-
 using Floats = NumpyArray<const float, -1>;
 using FloatRows = NumpyArray<const float, -1, 3>;
 
@@ -58,29 +53,16 @@ void bindMaps(nb::class_<Guide>& guide) {
           "axis of its normals from bit 57 on, its level from bit 60 on. Far out, in rings of larger cells,\n"
           "2048 >> level times the ring's number is added to the first coordinate (odis/cell_grid.h).")
       .def_prop_ro(
-          "texels",
+          "maps",
           [](Self self) {
             const GuideView view = self.p->view();
-            return shown<NumpyArray<const uint16_t, -1, kMapTexels>>(self, view.maps.texels,
-                                                                     {view.cellCount, size_t(kMapTexels)});
+            return shown<NumpyArray<const uint16_t, -1, kMapTables, kBlockTexels>>(
+                self, view.maps, {view.cellCount, size_t(kMapTables), size_t(kBlockTexels)});
           },
-          "(cells, 256), uint16: relative incident radiance over directions, at least 1.")
-      .def_prop_ro(
-          "block_sums",
-          [](Self self) {
-            const GuideView view = self.p->view();
-            return shown<NumpyArray<const float, -1, 4, kMapBlocks>>(self, view.maps.sums,
-                                                                     {view.cellCount, 4, size_t(kMapBlocks)});
-          },
-          "(cells, 4, 16), float32: for each 16 texels one after another the sums of texel times direction\n"
-          "(x, y, z) and of the texels.")
-      .def_prop_ro(
-          "texel_directions",
-          [](Self self) {
-            const size_t texels = self.p->view().maps.directions ? kMapTexels : 0;
-            return shown<NumpyArray<const float, 3, -1>>(self, self.p->view().maps.directions, {3, texels});
-          },
-          "(3, 256), float32: unit directions of the texels' centres; (3, 0) without cells.")
+          "(cells, 17, 16), uint16: for each cell a table of how likely each block of texels is, and one "
+          "for\n"
+          "each block of how likely its texels are, in parts of 2^-15: at least 1, 2^15 in sum. The density\n"
+          "over solid angle is 256 / (4 pi) times both probabilities (odis/sampling_map.h).")
       .def_prop_ro(
           "pixel_cells",
           [](Self self) {
@@ -148,34 +130,32 @@ void bindDecisions(nb::class_<Guide>& guide) {
 }
 
 void bindRules(nb::module_& module) {
-  nb::class_<Rules> rules(module, "GuideRules",
-                          "The constants of a host's own look-ups (odis/guide_view.h).");
+  nb::class_<GuideRules> rules(module, "GuideRules",
+                               "The constants of a host's own look-ups (odis/guide_view.h).");
   rules
       .def_prop_ro(
-          "roughness_bounds", [](const Rules& self) { return std::to_array(self.decisions.roughnessBounds); },
+          "roughness_bounds", [](const GuideRules& self) { return std::to_array(self.roughnessBounds); },
           "Lower bounds of the roughness of the classes: diffuse, rough, glossy.")
       .def_prop_ro(
-          "least_survival", [](const Rules& self) { return self.decisions.leastSurvival; },
+          "least_survival", [](const GuideRules& self) { return self.leastSurvival; },
           "The least probability of survival.")
       .def_prop_ro(
           "full_shadow_ray_contribution",
-          [](const Rules& self) { return self.decisions.fullShadowRayContribution; },
+          [](const GuideRules& self) { return self.fullShadowRayContribution; },
           "Light that adds less than this fraction of the pixel's value gets a shadow ray only sometimes.")
       .def_prop_ro(
           "least_shadow_ray_probability",
-          [](const Rules& self) { return self.decisions.leastShadowRayProbability; },
+          [](const GuideRules& self) { return self.leastShadowRayProbability; },
           "And at least with this probability.")
       .def_prop_ro(
-          "cached_error", [](const Rules& self) { return self.decisions.cachedError; },
+          "cached_error", [](const GuideRules& self) { return self.cachedError; },
           "A path may end with cached radiance whose standard error, times its throughput over the pixel's\n"
           "value, is below this; 0: never.")
       .def_prop_ro(
-          "least_cached_footprint", [](const Rules& self) { return self.decisions.leastCachedFootprint; },
-          "And whose footprint is at least this many times the cell's edge.")
-      .def_prop_ro(
-          "rim", [](const Rules& self) { return self.rim; }, "What maps add to every cosine.");
+          "least_cached_footprint", [](const GuideRules& self) { return self.leastCachedFootprint; },
+          "And whose footprint is at least this many times the cell's edge.");
   printAttributes(rules, {"roughness_bounds", "least_survival", "full_shadow_ray_contribution",
-                          "least_shadow_ray_probability", "cached_error", "least_cached_footprint", "rim"});
+                          "least_shadow_ray_probability", "cached_error", "least_cached_footprint"});
 }
 
 // A guide's file as bytes, for pickle.
@@ -240,15 +220,11 @@ and keep it alive. About 830 bytes a cell.)");
           },
           "Corner of the cells whose coordinates are 0, in world space.")
       .def_prop_ro(
-          "rules",
-          [](const Guide& self) {
-            return Rules{self.view().rules, self.view().maps.rim};
-          },
+          "rules", [](const Guide& self) { return self.view().rules; },
           "The constants of the rules that a host's own look-ups follow.");
   bindMaps(guide);
   bindDecisions(guide);
   bindLookups(guide);
-  bindAliasTables(guide);
 }
 
 }  // namespace odis::python

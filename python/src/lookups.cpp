@@ -32,17 +32,13 @@ class Lookup {
  public:
   explicit Lookup(const Guide& guide) : m_view(guide.view()) {}
 
-  // The map of a cell; false where there is none that can be sampled.
-  bool prepareMap(uint32_t cell, const Float3& normal, bool bothSides, VertexMap<float>& map) const {
-    if (cell >= m_view.cellCount) return false;
-    map.prepare(m_view.maps, int32_t(cell), normal, bothSides ? -1.0f : 0.0f);
-    return map.sampleable();
-  }
+  bool isCell(uint32_t cell) const { return cell < m_view.cellCount; }
+  SamplingMap<float> map(uint32_t cell) const { return {m_view.maps, int32_t(cell)}; }
   float bsdfFraction(uint32_t cell, float roughness) const {
-    return cell < m_view.cellCount ? odis::bsdfFraction(m_view, int32_t(cell), roughness) : 1;
+    return isCell(cell) ? odis::bsdfFraction(m_view, int32_t(cell), roughness) : 1;
   }
   float survivalProbability(uint32_t cell, float throughput, uint32_t depth) const {
-    const float factor = cell < m_view.cellCount ? m_view.decisions[cell].survivalFactor : INFINITY;
+    const float factor = isCell(cell) ? m_view.decisions[cell].survivalFactor : INFINITY;
     return odis::survivalProbability(m_view.rules, factor, throughput, depth);
   }
   float shadowRayProbability(float contribution) const {
@@ -69,21 +65,17 @@ Cells findCells(const Guide& guide, const Array& positions, const Array& normals
   return result;
 }
 
-std::pair<Vectors, Numbers> sample(const Guide& guide, const Array& cells, const Array& normals,
-                                   const Array& uv, const Given<bool>& bothSides) {
+std::pair<Vectors, Numbers> sample(const Guide& guide, const Array& cells, const Array& uv) {
   const Rows<uint32_t> cell(cells, "cells");
   const size_t count = cell.size();
-  const Rows<float> normal(normals, "normals", 3, count), random = randomNumbers(uv, count);
-  const Each<bool> both(bothSides, "both_sides", count);
+  const Rows<float> random = randomNumbers(uv, count);
   const Vectors directions = newArray<Vectors>({count, 3});
   const Numbers pdfs = newArray<Numbers>({count});
   withoutLock([&] {
     const Lookup lookup(guide);
     for (size_t i = 0; i < count; ++i) {
-      VertexMap<float> map;
-      VertexMap<float>::Sample drawn;
-      if (lookup.prepareMap(cell(i), vectorAt(normal, i), both(i), map))
-        drawn = map.sample(random(i, 0), random(i, 1));
+      SamplingMap<float>::Sample drawn;
+      if (lookup.isCell(cell(i))) drawn = lookup.map(cell(i)).sample(random(i, 0), random(i, 1));
       std::memcpy(directions.data() + 3 * i, &drawn.wi, sizeof drawn.wi);
       pdfs.data()[i] = drawn.pdf;
     }
@@ -91,21 +83,17 @@ std::pair<Vectors, Numbers> sample(const Guide& guide, const Array& cells, const
   return {directions, pdfs};
 }
 
-Numbers pdf(const Guide& guide, const Array& cells, const Array& normals, const Array& directions,
-            const Given<bool>& bothSides) {
+Numbers pdf(const Guide& guide, const Array& cells, const Array& directions) {
   const Rows<uint32_t> cell(cells, "cells");
   const size_t count = cell.size();
-  const Rows<float> normal(normals, "normals", 3, count), direction(directions, "directions", 3, count);
-  const Each<bool> both(bothSides, "both_sides", count);
+  const Rows<float> direction(directions, "directions", 3, count);
   const Numbers result = newArray<Numbers>({count});
   withoutLock([&] {
     const Lookup lookup(guide);
     for (size_t i = 0; i < count; ++i) {
       const Float3 wi = vectorAt(direction, i);
       const bool finite = std::isfinite(wi.x) && std::isfinite(wi.y) && std::isfinite(wi.z);
-      VertexMap<float> map;
-      const bool known = finite && lookup.prepareMap(cell(i), vectorAt(normal, i), both(i), map);
-      result.data()[i] = known ? map.pdf(wi) : 0;
+      result.data()[i] = finite && lookup.isCell(cell(i)) ? lookup.map(cell(i)).pdf(wi) : 0;
     }
   });
   return result;
@@ -154,15 +142,13 @@ void bindLookups(nb::class_<Guide>& guide) {
            R"(The finest cell that there is for each vertex: (count,), uint32; NO_CELL where there is none.
 
 positions, normals: float32 of shape (count, 3); shading normals, unit, on wo's side.)")
-      .def("sample", sample, "cells"_a, "normals"_a, "uv"_a, "both_sides"_a = false,
-           R"(Samples the cells' maps times the cosine: directions (count, 3), densities (count,), float32.
+      .def("sample", sample, "cells"_a, "uv"_a,
+           R"(Samples the cells' maps: directions (count, 3), densities (count,), float32.
 
-cells: uint32 of shape (count,); numbers that are no cell's are as NO_CELL. normals: float32 of shape
-(count, 3), unit. uv: float32 of shape (count, 2), uniform in [0, 1). both_sides: bool, or bool of shape
-(count,): whether the surface scatters to both sides.
-Densities are with respect to solid angle; 0, with the direction 0, where there is no map to sample.)")
-      .def("pdf", pdf, "cells"_a, "normals"_a, "directions"_a, "both_sides"_a = false,
-           R"(The densities of `sample`, with respect to solid angle: (count,), float32; 0 without a map.
+cells: uint32 of shape (count,); numbers that are no cell's are as NO_CELL. uv: float32 of shape (count, 2),
+uniform in [0, 1). Densities are with respect to solid angle; 0, with the direction 0, without a cell.)")
+      .def("pdf", pdf, "cells"_a, "directions"_a,
+           R"(The densities of `sample`, with respect to solid angle: (count,), float32; 0 without a cell.
 
 directions: float32 of shape (count, 3), unit; 0 also where they are not finite.)")
       .def("bsdf_fraction", bsdfFraction, "cells"_a, "roughness"_a,

@@ -9,6 +9,5 @@ namespace odis::python {
 // What a host asks a guide at its vertices, for many at once.
 void bindLookups(nb::class_<Guide>& guide);
 // Tables for hosts that look up in kernels of their own.
-void bindAliasTables(nb::class_<Guide>& guide);
 
 }  // namespace odis::python

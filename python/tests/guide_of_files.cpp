@@ -79,8 +79,7 @@ void writeGuide(const odis::Guide& guide, const std::filesystem::path& path) {
   const odis::GuideView view = guide.view();
   std::ofstream file(path, std::ios::binary);
   write(file, view.keys, view.cellCount);
-  write(file, view.maps.texels, size_t(view.cellCount) * odis::kMapTexels);
-  write(file, view.maps.sums, size_t(view.cellCount) * odis::kSumsPerMap);
+  write(file, view.maps, size_t(view.cellCount) * odis::kMapShares);
   write(file, view.decisions, view.cellCount);
   if (view.lightGroups > 0) write(file, view.lightTables, size_t(view.cellCount) * (view.lightGroups + 1));
 }

@@ -54,7 +54,7 @@ def guide_bytes(guide):
     """All that a guide holds, as python/tests/guide_of_files.cpp writes it."""
     decisions = [guide.bsdf_fractions, guide.survival_factors[:, None], guide.outgoing_radiance,
                  guide.learned_light_fractions[:, None]]
-    arrays = [guide.cell_keys, guide.texels, guide.block_sums, np.concatenate(decisions, axis=1)]
+    arrays = [guide.cell_keys, guide.maps, np.concatenate(decisions, axis=1)]
     if guide.light_groups > 0:
         arrays.append(guide.light_tables)
     return b"".join(array.tobytes() for array in arrays)

@@ -79,11 +79,11 @@ class Arrays(unittest.TestCase):
             guide.find_cells(position, normal[1:])
         cells = guide.find_cells(position, normal)
         with self.assertRaisesRegex(ValueError, r"^uv: expected .*\(10, 2\)"):
-            guide.sample(cells, normal, normal)
+            guide.sample(cells, normal)
         with self.assertRaisesRegex(ValueError, "^cells: expected uint32"):
-            guide.pdf(cells.astype(np.int64), normal, normal)
-        with self.assertRaisesRegex(ValueError, "^both_sides: expected bool"):
-            guide.pdf(cells, normal, normal, np.zeros(10, np.uint8))
+            guide.pdf(cells.astype(np.int64), normal)
+        with self.assertRaisesRegex(ValueError, r"^directions: expected .*\(10, 3\)"):
+            guide.pdf(cells, normal[1:])
         with self.assertRaisesRegex(ValueError, "^pixel_values: expected float32"):
             builder.build(np.ones(10))
 
@@ -91,19 +91,13 @@ class Arrays(unittest.TestCase):
         builder = odis.GuideBuilder()
         builder.add(self.fields)
         guide = builder.build()
-        normal, uv = self.fields["normal"][:2], np.full((2, 2), 0.5, np.float32)
+        uv = np.full((2, 2), 0.5, np.float32)
         known = np.array([0, odis.NO_CELL], np.uint32)
-        self.assertEqual(guide.sample(known, normal, uv)[1][1], 0)
+        self.assertEqual(guide.sample(known, uv)[1][1], 0)
         for wrong in (1, -0.1, np.nan, np.inf):
             with self.assertRaisesRegex(ValueError, r"^uv: expected numbers in \[0, 1\), found"):
-                guide.sample(known, normal, np.array([[0.5, 0.5], [0.5, wrong]], np.float32))
-            if wrong != -0.1:
-                with self.assertRaisesRegex(ValueError, "^normals: expected unit vectors"):
-                    guide.alias_tables(np.full((6, 3), wrong, np.float32))
-        self.assertEqual(guide.pdf(known, normal, np.full((2, 3), np.nan, np.float32)).tolist(), [0, 0])
-        # Any byte but 0 is a flag that is set.
-        flags = np.array([2, 0], np.uint8).view(bool)
-        np.testing.assert_array_equal(guide.pdf(known, normal, -normal, flags), guide.pdf(known, normal, -normal, flags != 0))
+                guide.sample(known, np.array([[0.5, 0.5], [0.5, wrong]], np.float32))
+        self.assertEqual(guide.pdf(known, np.full((2, 3), np.nan, np.float32)).tolist(), [0, 0])
 
 
 class Library(unittest.TestCase):

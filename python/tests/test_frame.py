@@ -34,12 +34,12 @@ def trace(render_pass, pixel, sample):
     cells = guide.find_cells(position, normal)
     fraction = guide.bsdf_fraction(cells, ones)
     wi = made_up.cosine_directions(random, count)
-    from_map, map_pdf = guide.sample(cells, normal, random.random((count, 2), np.float32))
+    from_map, map_pdf = guide.sample(cells, random.random((count, 2), np.float32))
     chosen = random.random(count) >= np.where(map_pdf > 0, fraction, 1)
     wi[chosen] = from_map[chosen]
     bsdf_pdf = np.maximum(wi[:, 2], 0) / np.float32(np.pi)
     alpha = np.where(map_pdf > 0, fraction, 1)
-    pdf = alpha * bsdf_pdf + (1 - alpha) * guide.pdf(cells, normal, wi)
+    pdf = alpha * bsdf_pdf + (1 - alpha) * guide.pdf(cells, wi)
     radiance = incident(wi)
     weight = ALBEDO * bsdf_pdf / pdf
     gray = lambda x: np.repeat(x.astype(np.float32)[:, None], 3, axis=1)

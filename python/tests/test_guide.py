@@ -138,55 +138,33 @@ class SameBits(unittest.TestCase):
         builder = odis.GuideBuilder(odis.GuideOptions(light_groups=made_up.LIGHT_GROUPS))
         builder.add(self.fields)
         ones = builder.build(np.ones(20000, np.float32))
-        np.testing.assert_array_equal(ones.texels, builder.build().texels)
+        np.testing.assert_array_equal(ones.maps, builder.build().maps)
         tens = builder.build(pixel_values=np.full(20000, 10, np.float32))
-        np.testing.assert_array_equal(tens.texels, ones.texels)
+        np.testing.assert_array_equal(tens.maps, ones.maps)
         self.assertTrue((tens.survival_factors != ones.survival_factors).any())
 
 
-class AliasTables(unittest.TestCase):
-    AXES = np.concatenate([sign * np.eye(3, dtype=np.float32)[axis:axis + 1] for axis in range(3) for sign in (1, -1)])
+class Maps(unittest.TestCase):
+    def test_shares_add_up(self):
+        maps = build(made_up.vertices(20000)).maps
+        self.assertEqual(maps.shape[1:], (17, 16))
+        self.assertGreater(maps.min(), 0)
+        np.testing.assert_array_equal(maps.sum(axis=2, dtype=np.int64), 1 << 15)
 
-    def setUp(self):
-        self.guide = build(made_up.vertices(20000))
-
-    def test_probabilities_are_what_is_drawn(self):
-        for both_sides in (False, True):
-            for table in self.guide.alias_tables(self.AXES, both_sides):
-                table = table.reshape(-1, 16).astype(np.int64)
-                part, alias = table >> 16 & 2047, table >> 27
-                drawn = part.copy()
-                for entry in range(16):
-                    drawn[:, entry] += np.where(alias == entry, 2048 - part, 0).sum(1)
-                np.testing.assert_array_equal(table & 0xffff, drawn)
-                np.testing.assert_array_equal(drawn.sum(1), 1 << 15)
-
-    def test_density_is_near_that_of_the_guide(self):
-        blocks, texels = (table & 0xffff for table in self.guide.alias_tables(self.AXES))
-        cells = np.arange(len(self.guide), dtype=np.uint32)
-        axis = (self.guide.cell_keys >> np.uint64(57) & np.uint64(7)).astype(int)
-        # The texel nearest to a direction between the axis and the horizon.
-        along = self.AXES + 0.5 * np.roll(self.AXES, 1, axis=1)
-        nearest = (along @ self.guide.texel_directions).argmax(1)[axis]
-        block, texel = nearest // 16, nearest % 16
-        wi = np.ascontiguousarray(self.guide.texel_directions[:, nearest].T)
-        ours = blocks[cells, 0, block] * (texels[cells, block, texel] * (256 / (4 * np.pi) / 2 ** 30))
-        theirs = self.guide.pdf(cells, self.AXES[axis], wi)
-        self.assertLess(np.median(np.abs(ours / theirs - 1)), 0.1)
-
-    def test_shapes_and_errors(self):
-        cells = len(self.guide)
-        blocks, texels = self.guide.alias_tables(np.repeat(self.AXES, 3, axis=0), both_sides=True)
-        self.assertEqual((blocks.shape, texels.shape), ((cells, 6, 16), (2 * cells, 16, 16)))
-        for count in (0, 4):
-            with self.assertRaisesRegex(ValueError, "normals: expected as many rows for each of 6 orientations"):
-                self.guide.alias_tables(self.AXES[:count])
+    def test_are_what_the_density_is_made_of(self):
+        guide = build(made_up.vertices(20000))
+        cells = np.repeat(np.arange(20, dtype=np.uint32), 500)
+        wi, pdf = guide.sample(cells, np.random.default_rng(3).random((cells.size, 2), np.float32))
+        shares = guide.maps[cells].astype(np.float64) / 2 ** 15
+        texels = (shares[:, :1].transpose(0, 2, 1) * shares[:, 1:]).reshape(cells.size, 256) * 256 / (4 * np.pi)
+        nearest = np.abs(texels / pdf[:, None] - 1).min(axis=1)
+        self.assertLess(nearest.max(), 1e-6)
 
 
 class Lifetimes(unittest.TestCase):
     def test_arrays_are_the_guides_own(self):
         guide = build(made_up.vertices(5000))
-        names = ["cell_keys", "texels", "block_sums", "texel_directions", "bsdf_fractions", "survival_factors",
+        names = ["cell_keys", "maps", "bsdf_fractions", "survival_factors",
                  "outgoing_radiance", "learned_light_fractions", "light_tables"]
         for name in names:
             array = getattr(guide, name)
@@ -198,13 +176,13 @@ class Lifetimes(unittest.TestCase):
     def test_arrays_outlive_the_guide(self):
         context = odis.Context()
         guide = build(made_up.vertices(5000), context)
-        texels = guide.texels
-        expected, held = texels.copy(), context.memory_use
+        maps = guide.maps
+        expected, held = maps.copy(), context.memory_use
         del guide
         gc.collect()
         self.assertEqual(context.memory_use, held)
-        np.testing.assert_array_equal(texels, expected)
-        del texels
+        np.testing.assert_array_equal(maps, expected)
+        del maps
         gc.collect()
         self.assertEqual(context.memory_use, 0)
 
@@ -223,7 +201,7 @@ class Lifetimes(unittest.TestCase):
     def test_without_cells(self):
         guide = odis.Frame(odis.FrameOptions(4, 4)).guide
         self.assertEqual(len(guide), 0)
-        self.assertEqual(guide.texels.shape, (0, 256))
+        self.assertEqual(guide.maps.shape, (0, 17, 16))
         self.assertEqual(guide.light_tables.shape, (0, 1))
         cells = guide.find_cells(np.zeros((2, 3), np.float32), np.ones((2, 3), np.float32))
         self.assertEqual(list(cells), [odis.NO_CELL] * 2)

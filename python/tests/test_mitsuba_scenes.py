@@ -179,13 +179,11 @@ class Scenes(unittest.TestCase):
 class ChangedGuide:
     """A guide with other contents."""
 
-    def __init__(self, guide, alias_tables=np.copy, **changes):
-        self.guide, self.change_tables = guide, alias_tables
+    def __init__(self, guide, **changes):
+        self.guide = guide
         for name, change in changes.items():
-            setattr(self, name, np.ascontiguousarray(change(np.array(getattr(guide, name))), np.float32))
-
-    def alias_tables(self, normals, both_sides):
-        return tuple(map(self.change_tables, self.guide.alias_tables(normals, both_sides)))
+            array = np.array(getattr(guide, name))
+            setattr(self, name, np.ascontiguousarray(change(array), array.dtype))
 
     def __getattr__(self, name):
         return getattr(self.guide, name)
@@ -200,23 +198,22 @@ def noise(low, high):
     return lambda array: 10 ** random.uniform(low, high, array.shape)
 
 
-def alias_tables_of(part, alias):
-    """Valid alias tables (odis.Guide.alias_tables) of any parts below 2^11 and any aliases, [...][16]."""
-    probability = part.astype(np.int64)
-    for entry in range(16):
-        probability[..., entry] += np.where(alias == entry, 2048 - part, 0).sum(-1)
-    return (probability | part << 16 | alias << 27).astype(np.uint32)
+def maps_of(weights):
+    """Valid maps (odis.Guide.maps) of any weights in [0, 1], [cell][table][16]."""
+    begins = np.cumsum(weights, axis=2) / weights.sum(axis=2, keepdims=True) * ((1 << 15) - 16)
+    begins = np.floor(begins).astype(np.int64) + np.arange(1, 17)
+    begins[..., -1] = 1 << 15
+    return np.diff(begins, axis=2, prepend=0).astype(np.uint16)
 
 
-def random_tables(table):
-    random = np.random.default_rng(9)
-    return alias_tables_of(random.integers(2048, size=table.shape), random.integers(16, size=table.shape))
+def random_maps(maps):
+    return maps_of(np.random.default_rng(9).random(maps.shape) ** 8)
 
 
-def one_entry(table):
-    """Tables that always draw the same entry."""
-    chosen = np.random.default_rng(6).integers(16, size=(*table.shape[:-1], 1))
-    return alias_tables_of(np.zeros(table.shape, np.int64), np.broadcast_to(chosen, table.shape))
+def one_texel(maps):
+    """Maps that nearly always draw the same texel."""
+    chosen = np.random.default_rng(6).integers(16, size=(*maps.shape[:-1], 1))
+    return maps_of((np.arange(16) == chosen).astype(float))
 
 
 def constant(value):
@@ -267,17 +264,17 @@ class BadGuides(unittest.TestCase):
         changes = {"bsdf_fractions": constant(0.5), **changes}
         make = guide_tables.make_guide_tables
         with mock.patch.object(integrator, "make_guide_tables",
-                               lambda guide, both: make(ChangedGuide(guide, **changes), both)):
+                               lambda guide: make(ChangedGuide(guide, **changes))):
             z, error = base.z_scores(self.scene, spp=64, max_depth=5)
         self.assertLess(np.abs(z).max(), 5, z)
         self.assertLess(np.median(error), 0.05)
 
     def test_noise(self):
-        self.check(alias_tables=random_tables, survival_factors=noise(-1, 1), outgoing_radiance=noise(-2, 0.5),
+        self.check(maps=random_maps, survival_factors=noise(-1, 1), outgoing_radiance=noise(-2, 0.5),
                    bsdf_fractions=noise(-0.7, -0.01), learned_light_fractions=noise(-1, -0.05))
 
     def test_one_texel_and_one_light(self):
-        self.check(alias_tables=one_entry, light_tables=one_group, learned_light_fractions=constant(0.9))
+        self.check(maps=one_texel, light_tables=one_group, learned_light_fractions=constant(0.9))
 
     def test_not_a_number(self):
         self.check(survival_factors=constant(np.nan), bsdf_fractions=with_nan(constant(0.5)),

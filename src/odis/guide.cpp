@@ -69,7 +69,7 @@ GuideView Guide::view() const {
   view.slots = m_data->index.slots();
   view.slotMask = m_data->index.mask();
   view.keys = m_data->keys.data();
-  view.maps = m_data->maps();
+  view.maps = m_data->maps.data();
   view.decisions = m_data->decisions.data();
   view.lightTables = m_data->lightTables.data();
   view.cached = m_data->cached.empty() ? nullptr : m_data->cached.data();
@@ -84,9 +84,9 @@ GuideView Guide::view() const {
 
 uint64_t Guide::bytes() const {
   if (!m_data) return 0;
-  return m_data->index.bytes() + m_data->keys.size() * sizeof(uint64_t) + m_data->sums.bytes() +
-         m_data->texels.bytes() + m_data->decisions.size() * sizeof(CellDecisions) +
-         m_data->lightTables.size() * sizeof(float) + m_data->pixelCells.size() * sizeof(uint32_t);
+  return m_data->index.bytes() + m_data->keys.size() * sizeof(uint64_t) + m_data->maps.bytes() +
+         m_data->decisions.size() * sizeof(CellDecisions) + m_data->lightTables.size() * sizeof(float) +
+         m_data->pixelCells.size() * sizeof(uint32_t);
 }
 float Guide::predictedVarianceRatio() const {
   return m_data ? m_data->prediction.varianceRatio : 1;
@@ -229,8 +229,8 @@ void GuideBuilder::setProgress(OdisProgressFunction function, void* user) {
   m_data->progress = Progress(function, user);
 }
 void GuideBuilder::limitBytes(uint64_t most, uint64_t vertices) {
-  constexpr uint64_t kPerGuide = kMapTexels * sizeof(uint16_t) + kSumsPerMap * sizeof(float) +
-                                 sizeof(CellDecisions) + sizeof(uint64_t) + 2 * sizeof(CellSlot);
+  constexpr uint64_t kPerGuide =
+      kMapShares * sizeof(uint16_t) + sizeof(CellDecisions) + sizeof(uint64_t) + 2 * sizeof(CellSlot);
   constexpr uint64_t kPerCell = sizeof(CellStatistics) + sizeof(Surroundings) + sizeof(LightField) +
                                 sizeof(DirectionDistribution) + 2 * sizeof(CellMoments) + 2 * kPerGuide;
   const uint64_t tables = 2 * sizeof(float) * (m_data->options.lightGroups + 1);
@@ -270,6 +270,18 @@ uint64_t GuideBuilder::bytes() const {
   return heldBytes() + ofSum + std::max(m_data->own().store.transientBytes(), cells * kPerCell);
 }
 
+// What the radiance in a cell's map is multiplied by: the mean cosine to the normals of its vertices or,
+// without the product, nothing.
+static Histogram cosinesIn(const CellStatistics& cell, bool cosineProduct) {
+  if (!cosineProduct || !(cell.count > 0)) {
+    Histogram ones;
+    ones.fill(1);
+    return ones;
+  }
+  const auto perVertex = float(1 / cell.count);
+  return meanCosines(cell.normal * perVertex, float(cell.bothSides) * perVertex);
+}
+
 // A guide of maps alone, made for coarse levels first; leaves the distributions that they were made from.
 Guide GuideBuilder::Data::buildMaps(const CellStore& store, const std::vector<CellStatistics>& cells,
                                     std::vector<DirectionDistribution>& distributions) const {
@@ -279,19 +291,18 @@ Guide GuideBuilder::Data::buildMaps(const CellStore& store, const std::vector<Ce
   result.grid = store.grid();
   result.index = store.index();
   result.keys = store.keys();
-  result.setCosineProduct(options.cosineProduct);
   distributions.resize(cells.size());
   forEachFromCoarse(*tasks, cells, [&](size_t c) {
     const uint32_t parent = cells[c].parent;
     if (!cells[c].hasMap) {
       distributions[c] = distributions[parent];
-      result.copyMap(parent, c);
+      std::copy_n(result.mapAt(parent), kMapShares, result.mapAt(c));
       return;
     }
     distributions[c] =
         directions->predict(chainOf(cells, c), parent == kNoCell ? nullptr : &distributions[parent]);
-    packMap(distributions[c].radiance(), options.floor, result.texels.at(c * kMapTexels),
-            result.sums.at(c * kSumsPerMap));
+    packMap(product(distributions[c].radiance(), options.floor, cosinesIn(cells[c], options.cosineProduct)),
+            result.mapAt(c));
   });
   return guide;
 }
@@ -333,7 +344,7 @@ Guide GuideBuilder::Data::build(ArrayView<const float> pixelValues) {
     seen += part.fractions.seen;
   }
   result.prediction =
-      chooseFractions(result.decisions, {store, cells, distributions, result.maps(), guide.view().rules,
+      chooseFractions(result.decisions, {store, cells, distributions, guide.view().maps, guide.view().rules,
                                          unguided, fractionStride(seen), pixelValues});
   if (const float fixed = options.fixedBsdfFraction; fixed > 0) {
     for (CellDecisions& cell : result.decisions) std::fill_n(cell.bsdfFraction, kRoughnessClasses, fixed);

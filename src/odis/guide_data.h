@@ -6,7 +6,6 @@
 
 #include "odis/cells/statistics.h"
 #include "odis/guide.h"
-#include "odis/maps/texel_directions.h"
 #include "odis/models/bsdf_fraction.h"
 #include "odis/models/direction_formula.h"
 #include "odis/models/lights.h"
@@ -35,24 +34,14 @@ class LineArray {
 };
 
 struct Guide::Data {
-  explicit Data(size_t cells) : sums(cells * kSumsPerMap), texels(cells * kMapTexels), decisions(cells) {}
+  explicit Data(size_t cells) : maps(cells * kMapShares), decisions(cells) {}
 
-  MapArrays maps() const { return {texels.data(), sums.data(), texelDirections().x, rim}; }
-  void copyMap(size_t from, size_t to) {
-    std::copy_n(texels.at(from * kMapTexels), kMapTexels, texels.at(to * kMapTexels));
-    std::copy_n(sums.at(from * kSumsPerMap), kSumsPerMap, sums.at(to * kSumsPerMap));
-  }
-  void setCosineProduct(bool multiply) { rim = multiply ? MapArrays().rim : kRimWithoutProduct; }
-
-  // Beside this, cosines don't matter.
-  static constexpr float kRimWithoutProduct = 1e6f;
+  uint16_t* mapAt(size_t cell) { return maps.at(cell * kMapShares); }
 
   CellGrid grid;
   CellIndex index;
   std::vector<uint64_t> keys;
-  LineArray<float> sums;
-  LineArray<uint16_t> texels;
-  float rim = MapArrays().rim;
+  LineArray<uint16_t> maps;
   std::vector<CellDecisions> decisions;
   std::vector<CachedRadiance> cached;  // [cell][half]; empty without GuideOptions::cachedError
   float cachedError = 0;

@@ -8,6 +8,7 @@
 #include "odis/files/archive.h"
 #include "odis/guide_data.h"
 #include "odis/maps/pack.h"
+#include "odis/maps/texel_directions.h"
 
 namespace odis::core {
 
@@ -26,13 +27,17 @@ IncidentRadiance radianceOf(const GuideOptions& options) {
 // What cells leave of a guide's maps.
 constexpr size_t kMostPixelMaps = kMostMaps - kMostCells;
 
-// A map as shares of its sum.
-Histogram sharesOf(const uint16_t* texels) {
+// The density of a pixel's map: its radiance, of whatever scale, times the cosine, or alone; what arrives from
+// below the horizon counts nothing.
+Histogram densityOf(const Histogram& radiance, const Float3& normal, const GuideOptions& options) {
+  Histogram cosines;
+  cosines.fill(1);
+  if (options.cosineProduct) cosines = meanCosines(normal, 0);
+  Histogram density = product(radiance, options.floor, cosines);
   float sum = 0;
-  for (int t = 0; t < kMapTexels; ++t) sum += texels[t];
-  Histogram shares;
-  for (int t = 0; t < kMapTexels; ++t) shares[size_t(t)] = texels[t] / sum;
-  return shares;
+  for (const float value : density) sum += value;
+  for (float& value : density) value /= sum;
+  return density;
 }
 
 // The finest cell around a place; kNoCell where there is none.
@@ -121,7 +126,6 @@ Guide PaperMethod::over(const Guide& cells, const PixelMaps& maps, const GuideOp
   Guide guide;
   guide.m_data = copyOf(known, maps.size());
   Guide::Data& result = *guide.m_data;
-  result.setCosineProduct(options.cosineProduct);
 
   const float fixed = options.fixedBsdfFraction > 0 ? options.fixedBsdfFraction : kFallbackBsdfFraction;
   constexpr size_t kPortion = 1024;
@@ -129,21 +133,21 @@ Guide PaperMethod::over(const Guide& cells, const PixelMaps& maps, const GuideOp
     for (size_t m = portion * kPortion; m < std::min(maps.size(), (portion + 1) * kPortion); ++m) {
       const size_t to = count + m;
       const uint32_t from = cellAt(view, maps.places[m]);
-      Histogram radiance = sharesOf(&maps.texels[m * kMapTexels]);
+      Histogram density = densityOf(maps.radiance(m), maps.places[m].normal, options);
       result.keys[to] = known.grid.key(maps.places[m].position, maps.places[m].normal, 0);
       if (from == kNoCell) {
         std::fill_n(result.decisions[to].bsdfFraction, kRoughnessClasses, fixed);
       } else {
-        const Histogram ofCell = sharesOf(view.maps.texels + from * size_t(kMapTexels));
+        const Histogram ofCell = probabilitiesOf(SamplingMap<float>(view.maps, int32_t(from)));
         for (size_t t = 0; t < kMapTexels; ++t)
-          radiance[t] = options.pixelShare * radiance[t] + (1 - options.pixelShare) * ofCell[t];
+          density[t] = options.pixelShare * density[t] + (1 - options.pixelShare) * ofCell[t];
         result.decisions[to] = known.decisions[from];
         result.keys[to] = known.keys[from];  // of its level
         std::copy_n(known.lightTables.begin() + std::ptrdiff_t(from * columns), columns,
                     result.lightTables.begin() + std::ptrdiff_t(to * columns));
         if (!result.cached.empty()) std::copy_n(&known.cached[2 * size_t(from)], 2, &result.cached[2 * to]);
       }
-      packMap(radiance, options.floor, result.texels.at(to * kMapTexels), result.sums.at(to * kSumsPerMap));
+      packMap(density, result.mapAt(to));
     }
   });
   result.pixelCells.reserve(maps.ofPixel.size());
@@ -158,14 +162,12 @@ std::shared_ptr<Guide::Data> PaperMethod::copyOf(const Guide::Data& from, size_t
   const auto result = std::make_shared<Guide::Data>(count + more);
   result->grid = from.grid;
   result->index = from.index;
-  result->rim = from.rim;
   result->cachedError = from.cachedError;
   result->maxDepth = from.maxDepth;
   result->cachedShares = from.cachedShares;
   result->lightGroups = from.lightGroups;
   result->prediction = from.prediction;
-  std::copy_n(from.texels.data(), count * kMapTexels, result->texels.at(0));
-  std::copy_n(from.sums.data(), count * kSumsPerMap, result->sums.at(0));
+  std::copy_n(from.maps.data(), count * kMapShares, result->mapAt(0));
   std::copy_n(from.decisions.begin(), count, result->decisions.begin());
   const auto copy = [&](const auto& source, auto& to, size_t each) {
     to.assign(source.begin(), source.begin() + std::ptrdiff_t(count * each));

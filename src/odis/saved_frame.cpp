@@ -136,7 +136,8 @@ struct SavedVertexSamples {
     };
     for (const CellSample& sample : tile.cells.samples)
       file.require(isFinite(sample.position) && isFinite(sample.normal) &&
-                       sample.lightGroup < kMaxLightGroups && sample.half <= 1,
+                       sample.lightGroup < kMaxLightGroups &&
+                       sample.flags <= (CellSample::kHalf | CellSample::kBothSides),
                    name + ".samples: are damaged");
     for (const BatchSamples::Cell& cell : tile.cells.cells)
       file.require(CellGrid::levelOf(cell.key) == 0, name + ".cells: are damaged");

@@ -1,11 +1,12 @@
 // Guides and builders written to a file and read again.
+#include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <stdexcept>
 
 #include "odis/cells/saved_grid.h"
 #include "odis/files/archive.h"
 #include "odis/guide_data.h"
-#include "odis/maps/pack.h"
 #include "odis/options/settings.h"
 
 namespace odis::core {
@@ -42,6 +43,12 @@ constexpr void forEachField(FieldsOf<LightParts>, const Body& body) {
 
 namespace {
 
+// Whether the shares of a table of a map are positive and add up to the whole.
+bool isSound(std::span<const uint16_t> shares) {
+  return std::find(shares.begin(), shares.end(), 0) == shares.end() &&
+         std::accumulate(shares.begin(), shares.end(), 0) == kWhole;
+}
+
 // Whether a cell decides what a host can follow.
 bool isSound(const CellDecisions& d) {
   for (const float fraction : d.bsdfFraction)
@@ -77,7 +84,7 @@ void Guide::save(ArchiveWriter& file) const {
   const size_t cells = m_data->decisions.size();
   saveGrid(file, "guide.grid", m_data->grid.flat());
   file.add("guide.keys", m_data->keys);
-  file.add("guide.texels", std::span<const uint16_t>(m_data->texels.data(), cells * kMapTexels));
+  file.add("guide.maps", std::span<const uint16_t>(m_data->maps.data(), cells * kMapShares));
   saveFields(file, "guide.decisions", m_data->decisions);
   file.addValue("guide.lightGroups", m_data->lightGroups);
   file.add("guide.lightTables", m_data->lightTables);
@@ -88,7 +95,6 @@ void Guide::save(ArchiveWriter& file) const {
   saveFields(file, "guide.prediction", m_data->prediction.image);
   file.addValue("guide.varianceRatio", m_data->prediction.varianceRatio);
   file.add("guide.pixelCells", m_data->pixelCells);
-  file.addValue("guide.rim", m_data->rim);
   file.addValue("guide.gridCells", m_data->index.size());
 }
 
@@ -96,9 +102,9 @@ Guide Guide::load(const Archive& file) {
   Guide guide;
   if (!file.value<uint8_t>("guide.built")) return guide;
   const std::vector<uint64_t> keys = loadKeys(file);
-  const std::vector<uint16_t> texels = file.get<uint16_t>("guide.texels", keys.size() * kMapTexels);
-  file.require(std::find(texels.begin(), texels.end(), uint16_t(0)) == texels.end(),
-               "guide.texels: a direction is impossible");
+  const std::vector<uint16_t> maps = file.get<uint16_t>("guide.maps", keys.size() * kMapShares);
+  for (size_t table = 0; table < maps.size(); table += kBlockTexels)
+    file.require(isSound(std::span(maps).subspan(table, kBlockTexels)), "guide.maps: are damaged");
   guide.m_data = std::make_shared<Data>(keys.size());
   Data& data = *guide.m_data;
   data.grid = CellGrid(loadGrid(file, "guide.grid"));
@@ -112,17 +118,11 @@ Guide Guide::load(const Archive& file) {
         CellGrid::levelOf(keys[c]) < kCellLevels && (c >= gridCells || data.index.insert(keys[c]) == c),
         "guide.keys: are damaged");
   if (pixels) {
-    data.rim = file.value<float>("guide.rim");
-    // Any other might leave a map nothing to sample.
-    file.require(data.rim == MapArrays().rim || data.rim == Data::kRimWithoutProduct,
-                 "guide.rim: is damaged");
     data.pixelCells = file.get<uint32_t>("guide.pixelCells");
     for (const uint32_t cell : data.pixelCells)
       file.require(cell == kNoCell || cell < keys.size(), "guide.pixelCells: are damaged");
   }
-  std::copy(texels.begin(), texels.end(), data.texels.at(0));
-  for (size_t c = 0; c < keys.size(); ++c)
-    sumBlocks(data.texels.at(c * kMapTexels), data.sums.at(c * kSumsPerMap));
+  std::copy(maps.begin(), maps.end(), data.mapAt(0));
   data.decisions = loadFields<CellDecisions>(file, "guide.decisions", keys.size());
   data.lightGroups = file.value<uint32_t>("guide.lightGroups");
   file.require(data.lightGroups <= kMaxLightGroups, "guide.lightGroups: is damaged");

@@ -32,15 +32,13 @@ inline bool sameBits(const OdisGuideView& a, const OdisGuideView& b) {
     return std::memcmp(x, y, count * sizeof *x) == 0;
   };
   return a.cellCount == b.cellCount && same(a.keys, b.keys, a.cellCount) &&
-         same(a.maps.texels, b.maps.texels, a.cellCount * size_t(kMapTexels)) &&
+         same(a.maps, b.maps, a.cellCount * size_t(kMapShares)) &&
          same(a.decisions, b.decisions, a.cellCount);
 }
 
-// The density of a direction by the map of a cell, at a vertex that reflects only.
-inline float mapPdfOf(const OdisGuideView& view, uint32_t cell, const Float3& normal, const Float3& wi) {
-  VertexMap<float> map;
-  map.prepare(view.maps, int32_t(cell), normal, 0);
-  return map.pdf(wi);
+// The density of a direction by the map of a cell.
+inline float mapPdfOf(const OdisGuideView& view, uint32_t cell, const Float3& wi) {
+  return SamplingMap<float>(view.maps, int32_t(cell)).pdf(wi);
 }
 
 // Takes a frame through its passes with made-up samples that each bring one vertex. Ends where a call fails;

@@ -67,8 +67,7 @@ TEST(CarryOver, OldSamplesCountLess) {
     const GuideView view = guide.view();
     const uint32_t cell = findCell(view, {first.position, first.normal});
     ASSERT_NE(cell, kNoCell);
-    const float ratio =
-        mapPdfOf(view, cell, first.normal, oldSide) / mapPdfOf(view, cell, first.normal, newSide);
+    const float ratio = mapPdfOf(view, cell, oldSide) / mapPdfOf(view, cell, newSide);
     EXPECT_LT(ratio, before) << weight;
     if (weight == 1) EXPECT_NEAR(ratio, 1, 0.01);
     if (weight == 0.5f) EXPECT_NEAR(ratio, 0.5, 0.1);
@@ -121,8 +120,8 @@ TEST(CarryOver, NewBoundsKeepWhatWasSeen) {
                    other = findCell(second, {v.position, v.normal});
     ASSERT_NE(cell, kNoCell);
     ASSERT_NE(other, kNoCell);
-    difference += std::abs(mapPdfOf(first, cell, v.normal, v.wi) - mapPdfOf(second, other, v.normal, v.wi)) /
-                  double(apiVertices().size());
+    difference +=
+        std::abs(mapPdfOf(first, cell, v.wi) - mapPdfOf(second, other, v.wi)) / double(apiVertices().size());
   }
   EXPECT_LT(difference, 0.1);  // of densities of about 1: cells go as wholes, their samples were split
   const Guide again = buildFrom(moved);

@@ -243,7 +243,7 @@ void expectUnguided(OdisGuidedVertex* vertex) {
   EXPECT_EQ(odisDrawLightGroup(vertex, &u), ODIS_NO_LIGHT_GROUP);
   EXPECT_EQ(odisGetLightProbability(vertex, 0, 0.3f, 1), 0.3f);
   EXPECT_EQ(odisGetShadowRayProbability(vertex, 0.001f), 1);
-  EXPECT_FALSE(odisPrepareVertex(vertex, 1, 1, false));
+  EXPECT_FALSE(odisPrepareVertex(vertex, 1, 1));
   EXPECT_FALSE(odisDrawsFromMap(vertex, &u));
   EXPECT_EQ(u, 0.25f);
   EXPECT_FALSE(odisSampleMap(vertex, uv, &wi));
@@ -275,7 +275,7 @@ TEST(ApiMisuse, LookUpsRefuseWhatIsMissing) {
   OdisPlace place{v.position, v.normal};
   OdisGuidedVertex vertex;
   ASSERT_TRUE(odisLookUp(&view, &place, 1, &vertex));
-  ASSERT_TRUE(odisPrepareVertex(&vertex, 1, 1, false));
+  ASSERT_TRUE(odisPrepareVertex(&vertex, 1, 1));
   const float uv[2] = {0.5f, 0.5f};
   OdisFloat3 wi;
   EXPECT_TRUE(odisSampleMap(&vertex, uv, &wi));
@@ -391,10 +391,7 @@ TEST(ApiMisuse, SpoiledVerticesLeaveAGuideOfNumbers) {
   ASSERT_GT(view.cellCount, 0u);
   const OdisFloat3 up{0, 0, 1};
   for (uint32_t cell = 0; cell < view.cellCount; ++cell) {
-    VertexMap<float> map;
-    map.prepare(view.maps, int32_t(cell), up, -1);
-    ASSERT_TRUE(map.sampleable());
-    const VertexMap<float>::Sample sample = map.sample(0.3f, 0.6f);
+    const SamplingMap<float>::Sample sample = SamplingMap<float>(view.maps, int32_t(cell)).sample(0.3f, 0.6f);
     EXPECT_GT(sample.pdf, 0);
     EXPECT_LT(sample.pdf, INFINITY);
     const OdisCellDecisions& d = view.decisions[cell];

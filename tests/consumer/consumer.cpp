@@ -48,7 +48,7 @@ int main() {
   vertex.prepare(1);
   OdisGuidedVertex words;
   odisLookUp(&view, &place, 1, &words);
-  odisPrepareVertex(&words, 1, 1, false);
+  odisPrepareVertex(&words, 1, 1);
   const odis::Float3 wi{0.6f, 0, 0.8f};
   const float inHeaders = vertex.mapPdf(wi), inLibrary = odisGetMapPdf(&words, &wi);
   std::printf("ODIS %s: %u cells, density %g and %g\n", odisGetVersionText(), view.cellCount,

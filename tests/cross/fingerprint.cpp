@@ -67,9 +67,7 @@ void printGuide(const char* name, const char* settings) {
   const odis::Guide guide = builder.build();
   const odis::GuideView view = guide.view();
   print(name, "cells", view.keys, view.cellCount);
-  print(name, "maps", view.maps.texels, size_t(view.cellCount) * odis::kMapTexels);
-  print(name, "sums of maps", view.maps.sums, size_t(view.cellCount) * odis::kSumsPerMap);
-  print(name, "directions", view.maps.directions, size_t(3) * odis::kMapTexels);
+  print(name, "maps", view.maps, size_t(view.cellCount) * odis::kMapShares);
   print(name, "decisions", view.decisions, view.cellCount);
   print(name, "lights", view.lightTables, size_t(view.cellCount) * (view.lightGroups + 1));
 }

@@ -19,8 +19,7 @@ std::string bytesOf(const GuideView& view) {
     bytes.append(reinterpret_cast<const char*>(data), count * sizeof *data);
   };
   add(view.keys, view.cellCount);
-  add(view.maps.texels, size_t(view.cellCount) * kMapTexels);
-  add(view.maps.sums, size_t(view.cellCount) * kSumsPerMap);
+  add(view.maps, size_t(view.cellCount) * kMapShares);
   add(view.decisions, view.cellCount);
   add(view.lightTables, view.lightGroups > 0 ? size_t(view.cellCount) * (view.lightGroups + 1) : 0);
   return bytes;

@@ -17,25 +17,19 @@ using namespace render;
 class Maps {
  public:
   explicit Maps(Random& random) {
-    for (int cell = 0; cell < kCells; ++cell) {
-      uint16_t* texels = m_texels.data() + cell * kMapTexels;
-      for (int t = 0; t < kMapTexels; ++t) texels[t] = uint16_t(1 + (cell % 3 == 0 ? 0 : random() * 60000));
-      texels[int(random() * kMapTexels)] = 65535;
-      core::sumBlocks(texels, m_sums.data() + cell * kSumsPerMap);
+    for (size_t cell = 0; cell < kCells; ++cell) {
+      core::Histogram weights;
+      for (float& weight : weights) weight = cell % 3 == 0 ? 0 : random();
+      weights[size_t(random() * kMapTexels)] = 1;
+      core::packMap(weights, &m_shares[cell * kMapShares]);
     }
-    m_arrays = m_first.arrays();  // for the directions of texels
-    m_arrays.texels = m_texels.data();
-    m_arrays.sums = m_sums.data();
   }
-  const MapArrays& arrays() const { return m_arrays; }
+  const uint16_t* data() const { return m_shares.data(); }
 
   static constexpr int kCells = 20;
 
  private:
-  core::PackedMap m_first{};
-  std::vector<uint16_t> m_texels = std::vector<uint16_t>(kCells * kMapTexels);
-  std::vector<float> m_sums = std::vector<float>(kCells * kSumsPerMap);
-  MapArrays m_arrays;
+  std::vector<uint16_t> m_shares = std::vector<uint16_t>(kCells * kMapShares);
 };
 
 // The number of vertices leaves lanes unused.
@@ -45,23 +39,16 @@ TEST(MapLanes, AnswerAsMapsDo) {
   Random random(1);
   const Maps maps(random);
   for (int round = 0; round < 500; ++round) {
-    MapPreparations preparations;
     MapSamples samples;
     MapLookUps lookUps;
-    std::array<VertexMap<float>, kCount> prepared, expected;
-    for (size_t i = 0; i < kCount; ++i) {
-      const int32_t cell = int32_t(random() * Maps::kCells);
-      const Vec3 normal = random.direction();
-      const float below = random() < 0.5f ? 0.0f : -1.0f;
-      expected[i].prepare(maps.arrays(), cell, toOdis(normal), below);
-      preparations.add(prepared[i], cell, normal, below);
-    }
-    prepareMaps(maps.arrays(), preparations);
+    std::array<SamplingMap<float>, kCount> expected;
+    for (SamplingMap<float>& map : expected)
+      map = SamplingMap<float>(maps.data(), int32_t(random() * Maps::kCells));
     std::array<Vec2, kCount> numbers;
     std::array<Vec3, kCount> directions;
     for (size_t i = 0; i < kCount; ++i) {
-      samples.add(prepared[i], numbers[i] = random.pair());
-      lookUps.add(prepared[i], directions[i] = random.direction());
+      samples.add(expected[i], numbers[i] = random.pair());
+      lookUps.add(expected[i], directions[i] = random.direction());
     }
     chooseBlocks(samples);
     sampleWithinBlocks(samples);
@@ -79,8 +66,8 @@ TEST(MapLanes, AnswerAsMapsDo) {
 
 // A map by itself, as the mixture asks for it.
 struct OneMap {
-  const VertexMap<float>& map;
-  VertexMap<float>::Sample sample(float u, float v) const { return map.sample(u, v); }
+  const SamplingMap<float>& map;
+  SamplingMap<float>::Sample sample(float u, float v) const { return map.sample(u, v); }
   float pdf(const Float3& wi) const { return map.pdf(wi); }
 };
 
@@ -161,7 +148,7 @@ void expectDirectionsOfTheMixture(const std::string& bsdf, Random& random) {
   for (OdisCellDecisions& cell : decisions)
     for (float& fraction : cell.bsdfFraction) fraction = random() < 0.25f ? 1.0f : 0.1f + 0.8f * random();
   OdisGuideView view;
-  view.maps = maps.arrays();
+  view.maps = maps.data();
   view.decisions = decisions.data();
   PathSettings settings;
   settings.scene = scene.get();

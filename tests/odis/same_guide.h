@@ -25,11 +25,7 @@ inline ::testing::AssertionResult sameView(const GuideView& a, const GuideView& 
     if (a.slots[i].cell != b.slots[i].cell || a.slots[i].key != b.slots[i].key) return differ("tables");
   const size_t cells = a.cellCount;
   if (!sameBits(a.keys, b.keys, cells)) return differ("keys");
-  if (!sameBits(a.maps.texels, b.maps.texels, cells * kMapTexels)) return differ("texels");
-  if (!sameBits(a.maps.sums, b.maps.sums, cells * kSumsPerMap)) return differ("sums of blocks");
-  if (a.maps.rim != b.maps.rim) return differ("rims");
-  if (cells > 0 && !sameBits(a.maps.directions, b.maps.directions, 3 * kMapTexels))
-    return differ("directions");
+  if (!sameBits(a.maps, b.maps, cells * kMapShares)) return differ("maps");
   static_assert(sizeof(CellDecisions) == 32);  // without gaps
   if (!sameBits(a.decisions, b.decisions, cells)) return differ("decisions");
   if (a.lightGroups > 0 && !sameBits(a.lightTables, b.lightTables, cells * (a.lightGroups + 1)))

@@ -28,9 +28,9 @@ const CellDecisions& decisionsOf(const Guide& guide, uint32_t cell) {
   return guide.view().decisions[cell];
 }
 
-std::vector<uint16_t> texelsOf(const Guide& guide, uint32_t cell) {
-  const uint16_t* texels = guide.view().maps.texels + size_t(cell) * kMapTexels;
-  return std::vector<uint16_t>(texels, texels + kMapTexels);
+std::vector<uint16_t> mapOf(const Guide& guide, uint32_t cell) {
+  const uint16_t* map = guide.view().maps + size_t(cell) * kMapShares;
+  return std::vector<uint16_t>(map, map + kMapShares);
 }
 
 TEST(CellGrid, NeighboursInOneCellShareItsKeyAndFacesDoNot) {
@@ -108,8 +108,7 @@ TEST(Guide, PointsAtTheLight) {
   const Guide guide = builder.build();
   const uint32_t cell = cellAt(guide, {0.5f, 0.5f, 0});
   ASSERT_NE(cell, kNoCell);
-  VertexMap<float> map;
-  map.prepare(guide.view().maps, int32_t(cell), {0, 0, 1}, 0);
+  const SamplingMap<float> map(guide.view().maps, int32_t(cell));
   EXPECT_GT(map.pdf(kBright), 5 * kBright.z / kPi);  // far above the cosine's density
   EXPECT_LT(bsdfFraction(guide.view(), int32_t(cell), 1.0f), 0.5f);
   EXPECT_LT(guide.predictedVarianceRatio(), 0.5f);
@@ -335,8 +334,8 @@ TEST(Guide, RebuiltMapsAreThoseOfAllThatWasAdded) {
     const Float3 position{x, 0.5f, 0};
     const uint32_t a = cellAt(after, position), b = cellAt(expected, position),
                    old = cellAt(before, position);
-    EXPECT_EQ(texelsOf(after, a), texelsOf(expected, b));
-    EXPECT_NE(texelsOf(after, a), texelsOf(before, old));
+    EXPECT_EQ(mapOf(after, a), mapOf(expected, b));
+    EXPECT_NE(mapOf(after, a), mapOf(before, old));
     EXPECT_EQ(decisionsOf(after, a).survivalFactor, decisionsOf(expected, b).survivalFactor);
     EXPECT_EQ(decisionsOf(after, a).bsdfFraction[0], decisionsOf(before, old).bsdfFraction[0]);
   }
@@ -357,7 +356,7 @@ TEST(Guide, RebuiltCellsThatAreNewHaveTheirParentsFractions) {
   ASSERT_NE(parent, kNoCell);
   EXPECT_LT(decisionsOf(before, parent).bsdfFraction[0], 1);
   EXPECT_EQ(decisionsOf(after, cell).bsdfFraction[0], decisionsOf(before, parent).bsdfFraction[0]);
-  EXPECT_NE(texelsOf(after, cell), texelsOf(before, parent));
+  EXPECT_NE(mapOf(after, cell), mapOf(before, parent));
 }
 
 TEST(Guide, FindsManyAsItFindsEach) {

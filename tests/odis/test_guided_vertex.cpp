@@ -185,8 +185,7 @@ TEST_F(GuidedVertexTest, AnswersAsTheFunctionsThatItStandsFor) {
   EXPECT_EQ(vertex.cell(), findCell(m_view, place()));
   EXPECT_EQ(vertex.bsdfFraction(), bsdfFraction(m_view, int32_t(vertex.cell()), 0.3f));
   EXPECT_EQ(vertex.shadowRayProbability(0.02f), shadowRayProbability(m_view.rules, 0.01f));
-  VertexMap<float> map;
-  map.prepare(m_view.maps, int32_t(vertex.cell()), {0, 0, 1}, 0);
+  const SamplingMap<float> map(m_view.maps, int32_t(vertex.cell()));
   EXPECT_EQ(vertex.mapPdf(kBright), map.pdf(kBright));
   EXPECT_EQ(vertex.pdf(kBright, 0.3f, 0.2f),
             mixturePdf(0.3f, 0.2f, 0.6f, vertex.bsdfFraction(), map.pdf(kBright)));

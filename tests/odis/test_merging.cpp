@@ -114,9 +114,7 @@ TEST(Merging, IsNearlyWhatOneBuilderLearnsFromAll) {
                    b = findCell(sum.view(), {v.position, v.normal});
     ASSERT_EQ(a == kNoCell, b == kNoCell);
     if (a == kNoCell) continue;
-    VertexMap<float> first, second;
-    first.prepare(one.view().maps, int32_t(a), v.normal, 0);
-    second.prepare(sum.view().maps, int32_t(b), v.normal, 0);
+    const SamplingMap<float> first(one.view().maps, int32_t(a)), second(sum.view().maps, int32_t(b));
     difference += std::abs(first.pdf(v.wi) - second.pdf(v.wi));
     ++count;
   }

@@ -14,20 +14,14 @@ namespace {
 
 // A map of sixteen bits of chance, or one that grows towards a direction.
 PackedMap someMap(bool random) {
-  PackedMap map;
+  Histogram weights;
   std::mt19937 engine(7);
   for (int t = 0; t < kMapTexels; ++t) {
-    const float towards = dot(texelDirection(t), Float3{0.8f, 0, 0.6f});
-    map.texels[t] = random ? uint16_t(1 + engine() % 65535) : uint16_t(1 + 30000 * (1 + towards));
+    const Float3 w = texelDirection(t);
+    const float towards = dot(w, Float3{0.8f, 0, 0.6f}), cosine = std::max(w.z, 0.0f);
+    weights[size_t(t)] = cosine * (random ? float(1 + engine() % 65535) : 1 + 30000 * (1 + towards));
   }
-  sumBlocks(map.texels, map.sums);
-  return map;
-}
-
-VertexMap<float> mapAbove(const PackedMap& texels) {
-  VertexMap<float> map;
-  map.prepare(texels.arrays(), 0, {0, 0, 1}, 0);
-  return map;
+  return PackedMap(weights);
 }
 
 // How often a BSDF draws from each of its lobes.
@@ -111,7 +105,7 @@ struct MixtureCase {
 };
 
 // The density of the mixture, mirror aside.
-float densityOf(const MixtureCase& c, const VertexMap<float>& map, const Float3& wi) {
+float densityOf(const MixtureCase& c, const SamplingMap<float>& map, const Float3& wi) {
   const ToyHost host(c.lobes, 0);
   return Mixture<float>(c.fraction, c.lobes.diffuse).pdf(host.bsdfPdf(wi), host.guidablePdf(wi), map.pdf(wi));
 }
@@ -121,8 +115,8 @@ constexpr int kMixtureCases = 9;
 
 TEST_P(MixtureTest, SampleHasTheDensityOfPdf) {
   const MixtureCase& c = GetParam();
-  const PackedMap texels = someMap(c.randomMap);
-  const VertexMap<float> map = mapAbove(texels);
+  const PackedMap packed = someMap(c.randomMap);
+  const SamplingMap<float> map = packed.view();
   const Mixture<float> mixture(c.fraction, c.lobes.diffuse);
   test::Chi2Options options;
   options.quadrature = 48;
@@ -139,8 +133,8 @@ TEST_P(MixtureTest, SampleHasTheDensityOfPdf) {
 
 TEST_P(MixtureTest, DensityIntegratesToOne) {
   const MixtureCase& c = GetParam();
-  const PackedMap texels = someMap(c.randomMap);
-  const VertexMap<float> map = mapAbove(texels);
+  const PackedMap packed = someMap(c.randomMap);
+  const SamplingMap<float> map = packed.view();
   double integral = 0;
   const int n = 1024;  // as many points in every texel
   for (int i = 0; i < n; ++i)
@@ -151,8 +145,8 @@ TEST_P(MixtureTest, DensityIntegratesToOne) {
 
 TEST_P(MixtureTest, SamplesCarryTheirDensityAndTheBsdfOverIt) {
   const MixtureCase& c = GetParam();
-  const PackedMap texels = someMap(c.randomMap);
-  const VertexMap<float> map = mapAbove(texels);
+  const PackedMap packed = someMap(c.randomMap);
+  const SamplingMap<float> map = packed.view();
   const Mixture<float> mixture(c.fraction, c.lobes.diffuse);
   std::mt19937 engine(5);
   std::uniform_real_distribution<float> uniform(0, 1);
@@ -203,8 +197,8 @@ TEST(Mixture, IntegratesToOneAndKeepsSharpLobes) {
   // A BSDF that draws 0.7 of the time from a cosine lobe that may be guided and 0.3 from another that may
   // not.
   const float guidable = 0.7f, fraction = 0.4f;
-  const PackedMap texels = someMap(true);
-  const VertexMap<float> map = mapAbove(texels);
+  const PackedMap packed = someMap(true);
+  const SamplingMap<float> map = packed.view();
   double integral = 0;
   const int n = 1000;
   for (int i = 0; i < n; ++i)
@@ -229,7 +223,7 @@ TEST(Mixture, IsTheBsdfAloneByDefault) {
   EXPECT_FALSE(Mixture<float>(0.5f, 0).guides());
   EXPECT_TRUE(Mixture<float>(0.5f, 0.1f).guides());
   // A map that there is nothing to sample of is not asked.
-  const VertexMap<float> none{};
+  const SamplingMap<float> none{};
   const ToyHost host({1, 0, 0}, 0.5f);
   const ToyHost::Sample guided = mixture.sample(none, 0.25f, 0.75f, host),
                         plain = host.sampleBsdf(0.25f, 0.75f);

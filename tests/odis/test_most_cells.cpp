@@ -22,8 +22,8 @@ std::string loadErrorOf(const ArchiveWriter& saved, const Load& load) {
 }
 
 TEST(MostCells, TheLastTexelFitsIn32Bits) {
-  EXPECT_LE(uint64_t(kMostMaps) * kMapTexels, uint64_t(INT32_MAX));
-  EXPECT_GT(uint64_t(kMostMaps + 1) * kMapTexels, uint64_t(INT32_MAX));
+  EXPECT_LE(uint64_t(kMostMaps) * kMapShares, uint64_t(INT32_MAX));
+  EXPECT_GT(uint64_t(kMostMaps + 1) * kMapShares, uint64_t(INT32_MAX));
 }
 
 TEST(MostCells, AGuideOfMoreIsRefused) {

@@ -52,24 +52,20 @@ TEST(NumberTypes, MapsAndDecisions) {
   std::uniform_real_distribution<float> uniform(0, 1);
   for (int i = 0; i < 200; ++i) {
     LaneInteger cells;
-    float u[kLaneCount], v[kLaneCount], sign[kLaneCount], roughness[kLaneCount];
+    float u[kLaneCount], v[kLaneCount], roughness[kLaneCount];
     for (int k = 0; k < kLaneCount; ++k) {
       cells.lane[k] = int32_t(engine() % view.cellCount);
       u[k] = uniform(engine), v[k] = uniform(engine), roughness[k] = uniform(engine);
-      sign[k] = engine() % 2 ? -1.0f : 0.0f;
     }
-    const Vector3<LaneReal> normal = {LaneReal(0), LaneReal(0.6f), LaneReal(0.8f)};
-    VertexMap<LaneReal> map;
-    map.prepare(view.maps, cells, normal, lanesOf(sign));
-    const VertexMap<LaneReal>::Sample sample = map.sample(lanesOf(u), lanesOf(v));
+    const SamplingMap<LaneReal> map(view.maps, cells);
+    const SamplingMap<LaneReal>::Sample sample = map.sample(lanesOf(u), lanesOf(v));
     const LaneReal pdf = map.pdf(sample.wi);
     const LaneReal fraction = bsdfFraction(view, cells, lanesOf(roughness));
     const LaneReal survival = survivalProbability(view.rules, lanesOf(u), lanesOf(v));
     const LaneReal shadow = shadowRayProbability(view.rules, lanesOf(u));
     for (int k = 0; k < kLaneCount; ++k) {
-      VertexMap<float> scalar;
-      scalar.prepare(view.maps, cells.lane[k], {0, 0.6f, 0.8f}, sign[k]);
-      const VertexMap<float>::Sample expected = scalar.sample(u[k], v[k]);
+      const SamplingMap<float> scalar(view.maps, cells.lane[k]);
+      const SamplingMap<float>::Sample expected = scalar.sample(u[k], v[k]);
       EXPECT_EQ(sample.pdf.lane[k], expected.pdf);
       EXPECT_EQ(sample.wi.x.lane[k], expected.wi.x);
       EXPECT_EQ(sample.wi.z.lane[k], expected.wi.z);

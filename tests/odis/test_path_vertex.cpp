@@ -280,7 +280,7 @@ TEST(Fallbacks, AreThoseOfVerticesWithNothingButWhatIsRequired) {
     ASSERT_EQ(luminance(view.decisions[cell].outgoingRadiance), 0);
     ASSERT_EQ(learnedLights(view, cell).fraction, 0);
   }
-  EXPECT_TRUE(sameBits(view.maps.texels, expected.view().maps.texels, size_t(view.cellCount) * kMapTexels));
+  EXPECT_TRUE(sameBits(view.maps, expected.view().maps, size_t(view.cellCount) * kMapShares));
 }
 
 TEST(Fallbacks, GiveWayToAFixedFraction) {

@@ -251,7 +251,7 @@ TEST_F(PixelGuide, HoldsTheCellsAndAMapForEachPixel) {
   const GuideView cells = m_cells.view(), view = guide.view();
   ASSERT_EQ(view.cellCount, cells.cellCount + m_maps.size());
   ASSERT_EQ(view.pixels.count, 640u);
-  EXPECT_TRUE(sameBits(view.maps.texels, cells.maps.texels, cells.cellCount * kMapTexels));
+  EXPECT_TRUE(sameBits(view.maps, cells.maps, cells.cellCount * kMapShares));
   const Place first{m_maps.places[m_maps.ofPixel[37]].position, kUp, 37, 0, true};
   Place later = first;
   later.first = false;
@@ -282,6 +282,9 @@ TEST_F(PixelGuide, WithoutCellsHalfOfTheDrawsAreGuided) {
   EXPECT_EQ(findCell(view, {{0, 0, 0}, kUp, 5, 0, false}), kNoCell);
 }
 
+// How far shares of 2^-15, of which each entry has one at least, are from probabilities.
+constexpr double kOfShares = 18.0 / kWhole;
+
 TEST_F(PixelGuide, BlendsAPixelsMapWithItsCells) {
   m_options.pixelShare = 0.25f;
   m_options.floor = 0;
@@ -290,40 +293,26 @@ TEST_F(PixelGuide, BlendsAPixelsMapWithItsCells) {
   const uint32_t own = view.pixels.cells[100];
   const PixelMaps::Place& place = m_maps.places[m_maps.ofPixel[100]];
   const uint32_t cell = findCell(cells, {place.position, place.normal});
-  const auto share = [](const uint16_t* texels, int t) {
-    double sum = 0;
-    for (int i = 0; i < kMapTexels; ++i) sum += texels[i];
-    return texels[t] / sum;
-  };
-  for (int t = 0; t < kMapTexels; ++t)
-    EXPECT_NEAR(share(view.maps.texels + size_t(own) * kMapTexels, t),
-                0.25 * share(&m_maps.texels[size_t(m_maps.ofPixel[100]) * kMapTexels], t) +
-                    0.75 * share(cells.maps.texels + size_t(cell) * kMapTexels, t),
-                2e-4);
+  const Histogram radiance = m_maps.radiance(m_maps.ofPixel[100]), cosines = meanCosines(place.normal, 0),
+                  blended = probabilitiesOf(SamplingMap<float>(view.maps, int32_t(own))),
+                  ofCell = probabilitiesOf(SamplingMap<float>(cells.maps, int32_t(cell)));
+  double sum = 0;
+  for (size_t t = 0; t < kMapTexels; ++t) sum += radiance[t] * cosines[t];
+  for (size_t t = 0; t < kMapTexels; ++t)
+    EXPECT_NEAR(blended[t], 0.25 * radiance[t] * cosines[t] / sum + 0.75 * ofCell[t], kOfShares);
 }
 
-// Without the product the density is the map's alone, whatever the normal.
+// Without the product the density is that of the radiance.
 TEST_F(PixelGuide, MapsWithoutCosineAreThemselves) {
   m_options.cosineProduct = false;
   const Guide guide = PaperMethod::over(Guide(), m_maps, m_options, *libraryTasks(1));
-  const MapArrays maps = guide.view().maps;
+  const Histogram radiance = m_maps.radiance(3),
+                  probabilities = probabilitiesOf(SamplingMap<float>(guide.view().maps, 3));
   double sum = 0;
-  for (int t = 0; t < kMapTexels; ++t) sum += maps.texels[3 * kMapTexels + t];
-  for (const Float3 normal : {kUp, Float3{0.6f, 0, -0.8f}, Float3{0, -1, 0}}) {
-    VertexMap<float> map;
-    map.prepare(maps, 3, normal, 0);
-    double integral = 0;
-    for (int t = 0; t < kMapTexels; ++t) {
-      const double expected = maps.texels[3 * kMapTexels + t] / sum * kMapTexels / (4 * 3.14159265358979);
-      EXPECT_NEAR(map.texelPdf(t), expected, 1e-4 * expected + 1e-9);
-      integral += map.texelPdf(t) * 4 * 3.14159265358979 / kMapTexels;
-    }
-    EXPECT_NEAR(integral, 1, 1e-4);
-    for (int i = 0; i < 100; ++i) {
-      const auto sample = map.sample((float(i) + 0.5f) / 100, float(i * 37 % 100) / 100);
-      EXPECT_FLOAT_EQ(sample.pdf, map.pdf(sample.wi));
-    }
-  }
+  for (const float value : radiance) sum += value;
+  for (size_t t = 0; t < kMapTexels; ++t)
+    EXPECT_NEAR(probabilities[t], (1 - m_options.floor) * radiance[t] / sum + m_options.floor / kMapTexels,
+                kOfShares);
 }
 
 TEST(PixelOptions, MistakesAreRefused) {

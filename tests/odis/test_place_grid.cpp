@@ -256,9 +256,7 @@ TEST(PlaceGrid, GuidesKnowTheFloorAndWhatLiesFarOut) {
   const auto densityAt = [](const Guide& guide, const Float3& position, const Float3& wi) {
     const uint32_t cell = findCell(guide.view(), {position, {0, 0, 1}});
     if (cell == kNoCell) return 0.0f;
-    VertexMap<float> map;
-    map.prepare(guide.view().maps, int32_t(cell), {0, 0, 1}, 0);
-    return map.pdf(wi);
+    return SamplingMap<float>(guide.view().maps, int32_t(cell)).pdf(wi);
   };
   EXPECT_NEAR(with.view().grid.inverseEdge / without.view().grid.inverseEdge, 1, 0.01);
   for (const float x : {0.2f, 0.5f, 0.8f})
@@ -289,8 +287,8 @@ TEST(PlaceGrid, FewVerticesFarOutHaveTheMapsOfCoarserCells) {
     const uint32_t cell = findSlot(view.slots, view.slotMask, key),
                    parent = findSlot(view.slots, view.slotMask, CellGrid::parent(key));
     EXPECT_NE(cell, kNoCell);
-    const uint16_t* maps = view.maps.texels;
-    return std::equal(maps + cell * kMapTexels, maps + (cell + 1) * kMapTexels, maps + parent * kMapTexels);
+    const uint16_t* maps = view.maps;
+    return std::equal(maps + cell * kMapShares, maps + (cell + 1) * kMapShares, maps + parent * kMapShares);
   };
   EXPECT_TRUE(hasParentsMap(vertices[20000].position));
   EXPECT_FALSE(hasParentsMap(vertices[20200].position));

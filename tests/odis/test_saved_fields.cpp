@@ -147,7 +147,7 @@ TEST(SavedFields, ABuilderOfAnOlderVersionHasDefaults) {
                           .build();
   const GuideView view = older.view();
   ASSERT_EQ(view.cellCount, same.build().view().cellCount);
-  EXPECT_TRUE(sameBits(view.maps.texels, same.build().view().maps.texels, view.cellCount * kMapTexels));
+  EXPECT_TRUE(sameBits(view.maps, same.build().view().maps, view.cellCount * kMapShares));
   EXPECT_FALSE(sameBits(view.lightTables, same.build().view().lightTables, 3 * view.cellCount));
 }
 

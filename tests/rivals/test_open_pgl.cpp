@@ -76,7 +76,7 @@ TEST_F(OpenPglTest, SamplesFollowTheirDensity) {
     chi2.testCount = 2;
     int differ = 0;
     const auto sample = [&](float, float u, float v) {
-      const VertexMap<float>::Sample drawn = sampler->sample({u, v});
+      const SamplingMap<float>::Sample drawn = sampler->sample({u, v});
       const Vec3 wi = fromOdis(drawn.wi);
       differ += std::abs(sampler->pdf(wi) / drawn.pdf - 1) > 1e-3f;
       return std::optional(wi);

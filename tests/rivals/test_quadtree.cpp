@@ -125,7 +125,7 @@ TEST(SdLeaf, SamplesFollowTheirDensity) {
     options.quadrature = 24;
     int differ = 0;
     const auto sample = [&](float, float u, float v) {
-      const VertexMap<float>::Sample drawn = leaf.sample({u, v});
+      const SamplingMap<float>::Sample drawn = leaf.sample({u, v});
       const Vec3 wi = fromOdis(drawn.wi);
       // Next to a quadrant's edge, the way there and back may end on its other side.
       differ += std::abs(leaf.pdf(wi) / drawn.pdf - 1) > 1e-4f;

@@ -167,9 +167,9 @@ bool pglFieldValidate(PGLField) {
 }
 bool pglFieldCompare(PGLField a, PGLField b) {
   const odis::GuideView &ofA = a->view(), &ofB = b->view();
-  const size_t texels = size_t(ofA.cellCount) * odis::kMapTexels;
+  const size_t shares = size_t(ofA.cellCount) * odis::kMapShares;
   return ofA.cellCount == ofB.cellCount &&
-         (texels == 0 || std::memcmp(ofA.maps.texels, ofB.maps.texels, texels * sizeof(uint16_t)) == 0);
+         (shares == 0 || std::memcmp(ofA.maps, ofB.maps, shares * sizeof(uint16_t)) == 0);
 }
 
 PGLFieldStatistics pglFieldGetSurfaceStatistics(PGLField field) {

@@ -21,7 +21,6 @@ namespace {
 
 constexpr float kPi = 3.14159265358979f;
 constexpr float kUniform = 1 / (4 * kPi);
-constexpr float kTexelsPerSteradian = odis::kMapTexels / (4 * kPi);
 
 odis::Float3 cosineDirection(const odis::Float3& n, float u, float v) {
   // An orthonormal basis (Duff et al. 2017).
@@ -33,8 +32,8 @@ odis::Float3 cosineDirection(const odis::Float3& n, float u, float v) {
 
 }  // namespace
 
-// The type behind Open PGL's handle: the map of a vertex's cell times its cosine, or the cosine alone where nothing was
-// learned. How often the host asks for it is the host's decision: mixing in the cosine where the guide would rather
+// The type behind Open PGL's handle: the map of a vertex's cell, which holds the cosine, or the cosine alone where
+// nothing was learned. How often the host asks for it is the host's decision: mixing in the cosine where the guide would rather
 // leave directions to the BSDF gives nothing back. Threads have one each, on cache lines of its own.
 struct alignas(64) SurfaceSamplingDistribution {
  public:
@@ -47,26 +46,24 @@ struct alignas(64) SurfaceSamplingDistribution {
 
   float sample(const pgl_point2f& u, pgl_vec3f& direction);
   float pdf(const pgl_vec3f& direction);
-  // The density of the cell's map alone, without the cosine at the vertex.
+  // The density of the map over the cosine, which is that of radiance but for a factor.
   float radiancePdf(const pgl_vec3f& direction);
   uint32_t cell() const { return m_cell; }
 
  private:
   float cosinePdf(const odis::Float3& wi) const { return std::max(dot(wi, m_normal), 0.0f) / kPi; }
-  // Whether directions come from the map, which is prepared when it is first needed.
-  bool guides();
+  // Whether directions come from the map.
+  bool guides() const { return m_cell != odis::kNoCell; }
+  odis::SamplingMap<float> map() const { return {m_view->maps, int32_t(m_cell)}; }
   // The texel of a direction. Hosts ask for both densities of a direction, one after the other.
   int texelOf(const pgl_vec3f& direction);
-  float sumOfTexels() const;
 
   const odis::GuideView* m_view = nullptr;
   odis::Float3 m_position, m_normal;
   uint32_t m_cell = odis::kNoCell;
-  odis::VertexMap<float> m_map;
-  float m_toRadiancePdf = 0;  // turns a texel into a density; 0: not known yet
   pgl_vec3f m_direction{0, 0, 0};
   int m_texel = odis::texelOf(odis::Float3{0, 0, 0});
-  bool m_hasNormal = false, m_isPrepared = false;
+  bool m_hasNormal = false;
 };
 
 bool SurfaceSamplingDistribution::init(const Field& field, const pgl_point3f& position) {
@@ -83,22 +80,13 @@ ODIS_FLATTENED void SurfaceSamplingDistribution::applyCosine(const pgl_vec3f& no
   if (!m_view) return;
   m_normal = toOdis(normal);
   m_hasNormal = true;
-  m_isPrepared = false;
-  m_toRadiancePdf = 0;
   m_cell = odis::findCell(*m_view, {m_position, m_normal});
   if (m_cell != odis::kNoCell) odis::prefetchCell(*m_view, m_cell);
 }
 
-inline bool SurfaceSamplingDistribution::guides() {
-  if (m_cell == odis::kNoCell) return false;
-  if (!m_isPrepared) m_map.prepare(m_view->maps, int32_t(m_cell), m_normal, 0);
-  m_isPrepared = true;
-  return m_map.sampleable();
-}
-
 ODIS_FLATTENED float SurfaceSamplingDistribution::sample(const pgl_point2f& u, pgl_vec3f& direction) {
   if (guides()) {
-    const odis::VertexMap<float>::Sample sample = m_map.sample(u.x, u.y);
+    const odis::SamplingMap<float>::Sample sample = map().sample(u.x, u.y);
     direction = fromOdis(sample.wi);
     return sample.pdf;
   }
@@ -115,24 +103,15 @@ inline int SurfaceSamplingDistribution::texelOf(const pgl_vec3f& direction) {
   return m_texel;
 }
 
-inline float SurfaceSamplingDistribution::sumOfTexels() const {
-  const float* sums = m_view->maps.sums + size_t(m_cell) * odis::kSumsPerMap + 3 * odis::kMapBlocks;
-  // Four sums side by side, which don't wait for each other.
-  float total[4] = {};
-  for (int block = 0; block < odis::kMapBlocks; ++block) total[block % 4] += sums[block];
-  return (total[0] + total[1]) + (total[2] + total[3]);
-}
-
 ODIS_FLATTENED float SurfaceSamplingDistribution::pdf(const pgl_vec3f& direction) {
-  if (guides()) return m_map.texelPdf(texelOf(direction));
+  if (guides()) return map().texelPdf(texelOf(direction));
   return m_hasNormal ? cosinePdf(toOdis(direction)) : kUniform;
 }
 
 ODIS_FLATTENED float SurfaceSamplingDistribution::radiancePdf(const pgl_vec3f& direction) {
-  if (!m_view || m_cell == odis::kNoCell) return kUniform;
-  if (m_toRadiancePdf == 0) m_toRadiancePdf = kTexelsPerSteradian / sumOfTexels();
-  return m_view->maps.texels[size_t(m_cell) * odis::kMapTexels + size_t(texelOf(direction))] *
-         m_toRadiancePdf;
+  if (!m_view || !guides()) return kUniform;
+  // Even radiance gives cos / pi over the hemisphere above, and half of that over the cosine is its density there.
+  return pdf(direction) / std::max(std::abs(dot(toOdis(direction), m_normal)), 0.1f) / 2;
 }
 
 extern "C" {

@@ -1,7 +1,6 @@
 """A guide as Dr.Jit arrays, and what a path looks up in it: odis/guide_view.h and odis/sampling_map.h for kernels."""
 
 from dataclasses import dataclass
-from functools import cache
 
 import drjit as dr
 import mitsuba as mi
@@ -12,13 +11,11 @@ import odis
 from .arrays import array_of
 
 MOST_HALF = 65504.0
-NORMAL_STEPS = 9  # along each side of the octahedral map; odd, so that axes are among the normals
-# Entries of alias tables (odis.Guide.alias_tables): the probability in bits 0 to 15, of ALIAS_WHOLE; the part that
-# stands for the entry itself from bit 16 on, of ALIAS_PART; from bit 27 on what it stands for otherwise.
-ENTRIES = 16
-ALIAS_WHOLE, ALIAS_PART = 1 << 15, 1 << 11
-# What the product of the probabilities of block and texel is multiplied by for the density over solid angle.
-TO_DENSITY = 256 / (4 * np.pi) / ALIAS_WHOLE ** 2
+# A map has a table of 16 shares for its blocks and one for the texels of each block (odis.Guide.maps), two shares a word.
+TABLE_WORDS = 8
+MAP_WORDS = 17 * TABLE_WORDS
+# What the product of the shares of block and texel is multiplied by for the density over solid angle.
+TO_DENSITY = 256 / (4 * np.pi) / 2.0 ** 30
 ONE_MINUS_EPSILON = float(np.nextafter(np.float32(1), np.float32(0)))
 # Cells are found in a grid of the finest ones, which spans at most this many of them and this much beyond those that
 # most vertices lie in; places outside are not guided. 4 bytes an entry.
@@ -35,20 +32,15 @@ ORIENTATIONS = np.array([[1, 0, 0], [-1, 0, 0], [0, 1, 0], [0, -1, 0], [0, 0, 1]
 class GuideTables:
     """What kernels read of a guide.
 
-    4 bytes an entry of the grid; a cell has 1 KB for its texels, 64 bytes a slot (some 2 KB, all of that twice
-    with both sides), 16 bytes of decisions, up to 8 bytes a group of lights, and 36 bytes of cached radiance.
+    4 bytes an entry of the grid; a cell has 544 bytes for its map, which are the library's own, 16 bytes of decisions,
+    up to 8 bytes a group of lights, and 36 bytes of cached radiance.
     """
 
     origin: object  # Point3f: corner of the grid
     inverse_edge: object  # Float: 1 / edge of its cells
     size: object  # Vector3i: of the grid, in cells
     entries: object  # UInt32 [z][y][x][orientation]: numbers of cells, or odis.NO_CELL
-    blocks: object  # UInt32 [cell][slot][block]: alias tables of the map's blocks times the cosine to a slot's normal
-    texels: object  # UInt32 [side][cell][block][texel]: alias tables of a block's texels
-    slots: object  # UInt32 [orientation][normal]: slots of the normals that cells of this orientation have
-    slot_count: object  # UInt32: for each cell
-    both_sides_slot: object  # UInt32: first slot for surfaces that scatter to both sides, 0 without
-    both_sides_cell: object  # UInt32: what is added to a cell's number for their texels
+    maps: object  # UInt32 [cell][MAP_WORDS]
     decisions: object  # Float16 [cell][8]: BSDF fractions of the roughness classes, survival factor, outgoing radiance
     # over radiance_scale, fraction of the choices of a light that are learned
     radiance_scale: object  # Float
@@ -107,38 +99,6 @@ def tabulate_cells(guide):
     return origin + low * edge, size, cells
 
 
-@cache
-def quantized_normals():
-    """The unit normals that maps are multiplied with: [normal] (3,), and the numbers of those of each orientation."""
-    steps = np.arange(NORMAL_STEPS, dtype=np.float32) / (NORMAL_STEPS - 1)
-    y, x = (axis.ravel() for axis in np.meshgrid(steps, steps, indexing="ij"))
-    normals = np.array(square_to_direction(mi.Float(x), mi.Float(y))).T
-    fine = (np.arange(400, dtype=np.float32) + 0.5) / 400
-    y, x = (axis.ravel() for axis in np.meshgrid(fine, fine, indexing="ij"))
-    direction = square_to_direction(mi.Float(x), mi.Float(y))
-    number, orientation = np.array(quantize_normal(direction)), np.array(orientation_of(direction))
-    return normals, [np.unique(number[orientation == o]) for o in range(len(ORIENTATIONS))]
-
-
-def make_map_tables(guide, both_sides):
-    """The alias tables of the cells' maps, for each normal that is told apart."""
-    normals, needed = quantized_normals()
-    slot_count = max(len(numbers) for numbers in needed)
-    slots = np.zeros((len(needed), len(normals)), np.uint32)
-    normal_of_slot = np.zeros((len(needed), slot_count), np.uint32)
-    for orientation, numbers in enumerate(needed):
-        slots[orientation, numbers] = np.arange(len(numbers))
-        normal_of_slot[orientation] = np.resize(numbers, slot_count)
-    words = len(guide) * (2 if both_sides else 1) * ENTRIES * max(slot_count, ENTRIES)
-    if words >= 1 << 32:
-        raise ValueError(f"{len(guide)} cells have tables of {words} words, more than Dr.Jit can count: set fewer cells")
-    blocks, texels = guide.alias_tables(normals[normal_of_slot].reshape(-1, 3), both_sides)
-    whole = lambda values: array_of(mi.UInt32, values)
-    return {"blocks": whole(blocks), "texels": whole(texels), "slots": whole(slots),
-            "slot_count": mi.UInt32(blocks.shape[1]), "both_sides_slot": mi.UInt32(slot_count if both_sides else 0),
-            "both_sides_cell": mi.UInt32(len(guide) if both_sides else 0)}
-
-
 def words_of(groups):
     """Words that hold the sums before groups, two a word: a power of two of them, which Dr.Jit reads at once."""
     return 1 << max(groups // 2 - 1, 0).bit_length()
@@ -155,8 +115,8 @@ def group_tables(cumulative):
     return padded.view(np.uint32), (np.diff(whole, axis=1) / WHOLE).astype(np.float32)
 
 
-def make_guide_tables(guide, both_sides):
-    """The tables of a guide that has cells. both_sides: whether surfaces are guided that scatter to both sides."""
+def make_guide_tables(guide):
+    """The tables of a guide that has cells."""
     corner, size, cells = tabulate_cells(guide)
     rules = guide.rules
     radiance_scale = max(float(guide.outgoing_radiance.max()) / MOST_HALF, 1e-30)
@@ -167,7 +127,7 @@ def make_guide_tables(guide, both_sides):
     tables = GuideTables(
         origin=mi.Point3f(*map(float, corner)), inverse_edge=mi.Float(1 / guide.finest_edge),
         size=mi.Vector3i(*map(int, size)), entries=array_of(mi.UInt32, cells),
-        **make_map_tables(guide, both_sides),
+        maps=array_of(mi.UInt32, guide.maps.reshape(-1).view(np.uint32)),
         decisions=array_of(mi.Float16, half_floats(decisions)), radiance_scale=mi.Float(radiance_scale),
         group_sums=array_of(mi.UInt32, sums), group_probabilities=array_of(mi.Float, probabilities),
         roughness_bounds=[mi.Float(x) for x in rules.roughness_bounds[:2]],
@@ -194,13 +154,6 @@ def orientation_of(normal):
     most = dr.select(x_most, normal.x, dr.select(y_most, normal.y, normal.z))
     return dr.select(x_most, mi.UInt32(0), dr.select(y_most, mi.UInt32(2), mi.UInt32(4))) \
         + dr.select(most >= 0, mi.UInt32(0), mi.UInt32(1))
-
-
-def quantize_normal(normal):
-    """The number of the normal nearest to this one, by the octahedral map."""
-    x, y = direction_to_square(normal)
-    last = NORMAL_STEPS - 1
-    return mi.UInt32(dr.round(y * last)) * NORMAL_STEPS + mi.UInt32(dr.round(x * last))
 
 
 def find_cell(tables, position, normal, active):
@@ -339,43 +292,47 @@ def texel_of(direction):
     return (row & ~mi.UInt32(3)) + (column >> 2), ((row & 3) << 2) + (column & 3)
 
 
-def draw(table, first, u, active):
-    """Draws an entry of the alias table that begins at `first` by u, uniform in [0, 1); returns it and u stretched."""
-    scaled = u * ENTRIES
-    entry = dr.minimum(mi.UInt32(scaled), ENTRIES - 1)
-    within = scaled - mi.Float(entry)
-    word = dr.gather(mi.UInt32, table, first + entry, active)
-    part = mi.Float((word >> 16) & (ALIAS_PART - 1)) * (1 / ALIAS_PART)
-    itself = within < part
-    within = dr.select(itself, within, within - part) / dr.select(itself, part, 1 - part)
-    return dr.select(itself, entry, word >> 27), dr.minimum(within, ONE_MINUS_EPSILON)
+def pick(weights, u):
+    """The one of four weights that a number u in [0, 1) falls into, and u stretched to its place in it."""
+    target = u * (weights[0] + weights[1] + weights[2] + weights[3])
+    picked, begin, width, end = mi.UInt32(0), mi.Float(0), weights[0], weights[0]
+    for i in range(1, 4):
+        passed = target >= end
+        picked, begin, width = (dr.select(passed, mi.UInt32(i), picked), dr.select(passed, end, begin),
+                                dr.select(passed, weights[i], width))
+        end = end + weights[i]
+    return picked, dr.minimum((target - begin) / width, ONE_MINUS_EPSILON)
 
 
-def probability(table, place, active):
-    """The probability of an entry, of ALIAS_WHOLE."""
-    return mi.Float(dr.gather(mi.UInt32, table, place, active) & 0xffff)
+def draw(maps, table, u, v, active):
+    """Draws an entry of a table of shares, four rows of four: v chooses the row, u the entry in it. Returns it and both
+    numbers stretched. table: number of its first word."""
+    words = dr.gather(mi.ArrayXu, maps, table // TABLE_WORDS, active, shape=(TABLE_WORDS, -1))
+    shares = [mi.Float(words[i // 2] & 0xffff if i % 2 == 0 else words[i // 2] >> 16) for i in range(16)]
+    row, v = pick([shares[4 * y] + shares[4 * y + 1] + (shares[4 * y + 2] + shares[4 * y + 3]) for y in range(4)], v)
+    column, u = pick([dr.select(row < 2, dr.select(row == 0, shares[x], shares[4 + x]),
+                                       dr.select(row == 2, shares[8 + x], shares[12 + x])) for x in range(4)], u)
+    return row * 4 + column, u, v
 
 
-class VertexMap:
-    """A cell's map times the cosine at a vertex: a density over directions (odis::VertexMap).
+def share_of(maps, table, entry, active):
+    word = dr.gather(mi.UInt32, maps, table + (entry >> 1), active)
+    return mi.Float((word >> ((entry & 1) << 4)) & 0xffff)
 
-    The normal is rounded to one of 81, axes among them, for which products with the map's blocks are tabulated; within
-    a block the cosine is, for the most part, that to the axis of the cell. What is drawn follows the density to the bit.
 
-    normal: unit shading normal on the side of the outgoing direction. both_sides: where the surface scatters to both.
-    """
+class SamplingMap:
+    """A cell's map: a density over directions (odis::SamplingMap)."""
 
-    def __init__(self, tables, cell, normal, both_sides, active):
-        self.tables = tables
-        slot = dr.gather(mi.UInt32, tables.slots,
-                         orientation_of(normal) * NORMAL_STEPS ** 2 + quantize_normal(normal), active)
-        self.first_block = (cell * tables.slot_count + slot + dr.select(both_sides, tables.both_sides_slot, 0)) * ENTRIES
-        self.first_texel = (cell + dr.select(both_sides, tables.both_sides_cell, 0)) * ENTRIES ** 2
+    def __init__(self, tables, cell):
+        self.maps, self.blocks = tables.maps, cell * MAP_WORDS
+
+    def table_of(self, block):
+        return self.blocks + (block + 1) * TABLE_WORDS
 
     def sample(self, u, v, active):
         """A direction, by u and v in [0, 1)."""
-        block, u = draw(self.tables.blocks, self.first_block, u, active)
-        texel, v = draw(self.tables.texels, self.first_texel + block * ENTRIES, v, active)
+        block, u, v = draw(self.maps, self.blocks, u, v, active)
+        texel, u, v = draw(self.maps, self.table_of(block), u, v, active)
         x = (mi.Float((block & 3) * 4 + (texel & 3)) + u) * (1 / 16)
         y = (mi.Float((block & ~mi.UInt32(3)) + (texel >> 2)) + v) * (1 / 16)
         return square_to_direction(x, y)
@@ -383,6 +340,6 @@ class VertexMap:
     def pdf(self, direction, active):
         """The density of a direction, with respect to solid angle; 0 where not active."""
         block, texel = texel_of(direction)
-        of_block = probability(self.tables.blocks, self.first_block + block, active)
-        of_texel = probability(self.tables.texels, self.first_texel + block * ENTRIES + texel, active)
+        of_block = share_of(self.maps, self.blocks, block, active)
+        of_texel = share_of(self.maps, self.table_of(block), texel, active)
         return dr.select(active, of_block * of_texel * TO_DENSITY, 0)

@@ -259,7 +259,7 @@ def make_integrator():
                     if not len(frame_pass.guide):  # not yet, or guiding does not pay
                         tables, values = None, None
                     elif rebuilt:
-                        tables = make_guide_tables(frame_pass.guide, self.known.materials.both_sides)
+                        tables = make_guide_tables(frame_pass.guide)
                         values = array_of(mi.Float, frame.pixel_values)
                 self.samples_per_lane = SAMPLES_PER_LANE if self.rays >= MANY_RAYS * traced else 1
                 rebuilt = frame_pass.wants_vertices

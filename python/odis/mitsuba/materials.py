@@ -75,7 +75,6 @@ class MaterialTable:
 
     entries: object  # UInt32: flags, and 65,535 times the roughness in the upper half
     any_delta: bool  # whether a BSDF that may be guided scatters by delta lobes, too
-    both_sides: bool  # whether one scatters to both sides
 
 
 def make_material_table(scene):
@@ -91,8 +90,7 @@ def make_material_table(scene):
         flags[number], roughness[number] = flag, alpha
     entries = flags | np.round(np.clip(roughness, 0, 1) * 65535).astype(np.uint32) << 16
     guidable = flags[(flags & GUIDABLE) != 0]
-    table = MaterialTable(array_of(mi.UInt32, entries), any_delta=bool((guidable & HAS_DELTA).any()),
-                          both_sides=bool((guidable & BOTH_SIDES).any()))
+    table = MaterialTable(array_of(mi.UInt32, entries), any_delta=bool((guidable & HAS_DELTA).any()))
     dr.make_opaque(table)
     return table, sorted({name for name, flag, _ in found.values() if flag & SMOOTH and not flag & GUIDABLE})
 

@@ -267,11 +267,11 @@ def trace(scene, camera, settings, known, tables, recorder, samples):
         # about that of a light where it is seen.
         guided, from_map, toward_map, u_within = active & (fraction < 1), mi.Bool(False), None, u
         if dr.hint(tables is not None, mode="scalar"):
-            vertex_map = guide_tables.VertexMap(tables, cell, normal, both_sides, guided)
+            cell_map = guide_tables.SamplingMap(tables, cell)
             from_map = guided & (u >= fraction)
             u_within = dr.select(guided, dr.select(from_map, (u - fraction) / (1 - fraction), u / fraction), u)
             u_within = dr.minimum(u_within, guide_tables.ONE_MINUS_EPSILON)
-            map_direction = vertex_map.sample(u_within, v, from_map)
+            map_direction = cell_map.sample(u_within, v, from_map)
             toward_map = si.to_local(map_direction)
 
         # Paths that end here are asked, too, whether they pass straight through: `valid` says so.
@@ -288,7 +288,7 @@ def trace(scene, camera, settings, known, tables, recorder, samples):
             from_map &= ~discrete
             wi, pdf = dr.select(from_map, map_direction, wi), dr.select(from_map, scattered.map_pdf, pdf)
             guidable_pdf = pdf
-            map_pdf = vertex_map.pdf(wi, guided & ~discrete)
+            map_pdf = cell_map.pdf(wi, guided & ~discrete)
             mixed = dr.fma(1 - fraction, map_pdf * share_of_smooth - pdf, pdf)
             reweighed = guided & ~discrete & (mixed > 0)
             weight = dr.select(from_map, scattered.map_value / mixed,
@@ -309,7 +309,7 @@ def trace(scene, camera, settings, known, tables, recorder, samples):
         seen = lightable & ~scene.ray_test(si.spawn_ray_to(toward.p), coherent=False, active=lightable)
         light_mix_pdf = mi.Float(bsdf_pdf)
         if dr.hint(tables is not None, mode="scalar"):
-            light_map_pdf = vertex_map.pdf(toward.d, guided & seen & ~toward.delta)
+            light_map_pdf = cell_map.pdf(toward.d, guided & seen & ~toward.delta)
             light_mix_pdf = dr.fma(1 - fraction, light_map_pdf * share_of_smooth - bsdf_pdf, bsdf_pdf)
             light_mix_pdf = dr.select(guided, light_mix_pdf, bsdf_pdf)
         mis = dr.select(toward.delta, 1, power_heuristic(toward_pdf, light_mix_pdf))

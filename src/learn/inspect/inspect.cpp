@@ -26,26 +26,12 @@ namespace {
 // At how many of a cell's vertices converged samples start, at most.
 constexpr size_t kMostStarts = 256;
 
-// A cell's histogram alone, made into a map as the formula does it with what it blends.
-core::PackedMap mapOfHistogram(const core::CellStatistics& cell, float floor) {
+// What arrived in a cell, radiance times cosine, over the cosine to its mean normal.
+core::Histogram radianceOf(const core::CellStatistics& cell, const core::Histogram& arrived) {
   const core::Histogram cosines = core::cosinesTo(core::meanNormal(cell));
   core::Histogram radiance;
-  for (size_t t = 0; t < kMapTexels; ++t) radiance[t] = cell.histogram[t] * core::inverseCosine(cosines[t]);
-  return core::packedMap(radiance, floor);
-}
-
-// The map of a cell of a guide.
-core::PackedMap mapOfCell(const GuideView& view, uint32_t cell) {
-  core::PackedMap map;
-  std::copy_n(view.maps.sums + size_t(cell) * kSumsPerMap, kSumsPerMap, map.sums);
-  std::copy_n(view.maps.texels + size_t(cell) * kMapTexels, kMapTexels, map.texels);
-  return map;
-}
-
-core::Histogram texelsOf(const core::PackedMap& map) {
-  core::Histogram result;
-  std::copy_n(map.texels, kMapTexels, result.begin());
-  return result;
+  for (size_t t = 0; t < kMapTexels; ++t) radiance[t] = arrived[t] * core::inverseCosine(cosines[t]);
+  return radiance;
 }
 
 // Means of the pilot's samples; pixels without one have the mean of those around them.
@@ -194,7 +180,7 @@ class Inspector {
   void describeLevels() {
     const VertexIntegral integral(m_place.start, m_truth);
     const float floor = m_guide.floor;
-    const core::PackedMap converged = core::packedMap(integral.texels(), floor);
+    const core::PackedMap converged = integral.mapOf(integral.texels(), floor);
     for (uint32_t c = m_cell; c != kNoCell; c = m_cells[c].parent) {
       const core::CellStatistics& cell = m_cells[c];
       LevelView& level = m_result.levels.emplace_back();
@@ -205,7 +191,8 @@ class Inspector {
       level.own = core::ownWeight(level.effective, m_guide.priorSamples[size_t(cell.level)]);
       level.statistics = cell;
       level.histogram = squareOf(cell.histogram);
-      level.judgement = integral.judge(mapOfHistogram(cell, floor), converged, m_result.bsdfFraction);
+      level.judgement = integral.judge(integral.mapOf(radianceOf(cell, cell.histogram), floor).view(),
+                                       converged.view(), m_result.bsdfFraction);
       level.judgement.entropy = entropyOf(cell.histogram);
     }
   }
@@ -225,33 +212,32 @@ class Inspector {
   void describeMaps() {
     const float floor = m_guide.floor, bsdfFraction = m_result.bsdfFraction;
     const VertexIntegral integral(m_place.start, m_truth);
-    const core::PackedMap truth = core::packedMap(integral.texels(), floor);
-    const auto fill = [&](MapView& view, const core::PackedMap& map) {
-      const VertexMap<float> here = integral.at(map);
-      view.timesCosine = squareOf(here);
-      view.mixture = integral.mixture(here, bsdfFraction);
-      view.judgement = integral.judge(map, truth, bsdfFraction);
+    const core::PackedMap truth = integral.mapOf(integral.texels(), floor);
+    const auto fill = [&](MapView& view, const SamplingMap<float>& map) {
+      view.timesCosine = squareOf(map);
+      view.mixture = integral.mixture(map, bsdfFraction);
+      view.judgement = integral.judge(map, truth.view(), bsdfFraction);
     };
     for (const NamedGuide& g : m_guides) {
       const uint32_t cell = cellOf(g.guide);
-      const core::PackedMap map = mapOfCell(g.guide.view(), cell);
+      const SamplingMap<float> map(g.guide.view().maps, int32_t(cell));
       MapView& view = m_result.maps.emplace_back();
       view.name = g.name;
-      view.radiance = squareOf(texelsOf(map));
+      view.radiance = squareOf(radianceOf(m_cells[m_cell], core::probabilitiesOf(map)));
       std::copy_n(g.guide.view().decisions[cell].bsdfFraction, kRoughnessClasses, view.bsdfFraction);
       fill(view, map);
     }
     m_result.converged.name = "converged";
     m_result.converged.radiance = integral.radiance();
-    fill(m_result.converged, truth);
+    fill(m_result.converged, truth.view());
     m_result.bsdf = integral.bsdf();
     m_result.best = integral.best();
-    m_result.bsdfAlone.moment = m_result.bsdfAlone.bestMoment = integral.moment(integral.at(truth), 1);
+    m_result.bsdfAlone.moment = m_result.bsdfAlone.bestMoment = integral.moment(truth.view(), 1);
 
     core::PackedMap halves[2];
     for (size_t i = 0; i < 2; ++i)
-      halves[i] = core::packedMap(VertexIntegral(m_place.start, m_halves[i]).texels(), floor);
-    m_result.noise = divergence(integral.at(halves[0]), integral.at(halves[1]));
+      halves[i] = integral.mapOf(VertexIntegral(m_place.start, m_halves[i]).texels(), floor);
+    m_result.noise = divergence(halves[0].view(), halves[1].view());
   }
 
   void describeLights() {

@@ -26,13 +26,11 @@ Quantiles quantilesOf(std::vector<float> values) {
 }
 
 SquareMap mapSquare(const GuideView& view, uint32_t cell) {
-  core::Histogram texels;
-  std::copy_n(view.maps.texels + size_t(cell) * kMapTexels, kMapTexels, texels.begin());
-  return squareOf(texels);
+  return squareOf(SamplingMap<float>(view.maps, int32_t(cell)));
 }
 
 float mapEntropy(const GuideView& view, uint32_t cell) {
-  return render::entropy(view.maps.texels + size_t(cell) * kMapTexels);
+  return render::entropy(SamplingMap<float>(view.maps, int32_t(cell)));
 }
 
 GuideSummary summarizeGuide(core::Guide guide) {

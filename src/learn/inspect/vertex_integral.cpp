@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "odis/maps/texel_directions.h"
 #include "odis/mixture.h"
 #include "odis/models/second_moments.h"
 #include "render/path/features.h"
@@ -34,7 +35,7 @@ void normalize(SquareMap& map) {
 }  // namespace
 
 VertexIntegral::VertexIntegral(const Start& start, const Converged& arriving)
-    : m_normal(render::toOdis(start.reference.n)), m_belowSign(start.reference.both ? -1.0f : 0.0f) {
+    : m_normal(render::toOdis(start.reference.n)), m_bothSides(start.reference.both) {
   const render::Bsdf& bsdf = start.at.shape->bsdf();
   m_guidable = bsdf.guidableProbability(start.at, start.wo);
   for (size_t t = 0; t < kTargetTexels; ++t) m_arriving.push_back(arriving.texel(t));
@@ -55,17 +56,15 @@ VertexIntegral::VertexIntegral(const Start& start, const Converged& arriving)
   }
 }
 
-VertexMap<float> VertexIntegral::at(const core::PackedMap& map) const {
-  VertexMap<float> result;
-  result.prepare(map.arrays(), 0, m_normal, m_belowSign);
-  return result;
+core::PackedMap VertexIntegral::mapOf(const core::Histogram& radiance, float floor) const {
+  return core::PackedMap(core::product(radiance, floor, core::meanCosines(m_normal, m_bothSides)));
 }
 
 // With f the BSDF times the cosine, q the mixture's density and l that of next-event estimation, indirect
 // radiance I and emission E that arrive, and w = q^2 / (q^2 + l^2): the direction's estimate is D = f (I +
 // w E) / q, next-event estimation's N = f (1 - w) E / l. Given the vertex they are independent: E[(D +
 // N)^2] = E[D^2] + 2 E[D] E[N] + E[N^2].
-float VertexIntegral::moment(const VertexMap<float>& map, float bsdfFraction) const {
+float VertexIntegral::moment(const SamplingMap<float>& map, float bsdfFraction) const {
   std::array<float, kMapTexels> mapPdf;
   for (int t = 0; t < kMapTexels; ++t) mapPdf[size_t(t)] = map.texelPdf(t);
   double direction = 0, directionSquares = 0, light = 0, lightSquares = 0;
@@ -91,15 +90,14 @@ float VertexIntegral::moment(const VertexMap<float>& map, float bsdfFraction) co
                   : kUnknown;
 }
 
-Judgement VertexIntegral::judge(const core::PackedMap& map, const core::PackedMap& converged,
+Judgement VertexIntegral::judge(const SamplingMap<float>& map, const SamplingMap<float>& converged,
                                 float bsdfFraction) const {
-  const VertexMap<float> here = at(map);
   Judgement result;
-  result.entropy = render::entropy(map.texels);
-  result.divergence = divergence(here, at(converged));
-  result.moment = moment(here, bsdfFraction);
+  result.entropy = render::entropy(map);
+  result.divergence = divergence(map, converged);
+  result.moment = moment(map, bsdfFraction);
   for (const float candidate : core::kBsdfFractions) {
-    const float moment = this->moment(here, candidate);
+    const float moment = this->moment(map, candidate);
     if (std::isnan(moment) || result.bestMoment <= moment) continue;
     result.bestMoment = moment;
     result.bestBsdfFraction = candidate;
@@ -135,7 +133,7 @@ SquareMap VertexIntegral::best() const {
   return means(
       [](const Direction& d, const Converged::Texel& from) { return d.value * weighted(from, d.pdf); });
 }
-SquareMap VertexIntegral::mixture(const VertexMap<float>& map, float bsdfFraction) const {
+SquareMap VertexIntegral::mixture(const SamplingMap<float>& map, float bsdfFraction) const {
   return means([&](const Direction& d, const Converged::Texel&) {
     return mixturePdf(d.pdf, d.guidablePdf, m_guidable, bsdfFraction, map.texelPdf(d.texel));
   });
@@ -149,7 +147,7 @@ SquareMap squareOf(const core::Histogram& texels) {
   return result;
 }
 
-SquareMap squareOf(const VertexMap<float>& map) {
+SquareMap squareOf(const SamplingMap<float>& map) {
   core::Histogram density;
   for (int t = 0; t < kMapTexels; ++t) density[size_t(t)] = map.texelPdf(t);
   return squareOf(density);
@@ -165,7 +163,7 @@ float entropyOf(const core::Histogram& weights) {
   return sum > 0 ? float(std::log2(sum) - logs / sum) : 0;
 }
 
-float divergence(const VertexMap<float>& map, const VertexMap<float>& other) {
+float divergence(const SamplingMap<float>& map, const SamplingMap<float>& other) {
   double sum = 0;
   for (int t = 0; t < kMapTexels; ++t) {
     const double p = other.texelPdf(t), q = map.texelPdf(t);

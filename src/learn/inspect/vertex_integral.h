@@ -14,16 +14,17 @@ class VertexIntegral {
  public:
   VertexIntegral(const Start& start, const Converged& arriving);
 
-  // A map as the vertex sees it. The map must outlive the result.
-  VertexMap<float> at(const core::PackedMap& map) const;
+  // The map of this radiance times the cosine at the vertex.
+  core::PackedMap mapOf(const core::Histogram& radiance, float floor) const;
 
   // The second moment over the squared mean of what the vertex scatters: next-event estimation (of emitters
-  // that can be met; without a choice among them that was learned) and one direction from `map` times the
-  // cosine, mixed with the BSDF as mixturePdf() says, both weighted by MIS. The direction's radiance has
+  // that can be met; without a choice among them that was learned) and one direction from `map`,
+  // mixed with the BSDF as mixturePdf() says, both weighted by MIS. The direction's radiance has
   // the noise of single paths. kUnknown where nothing is scattered.
-  float moment(const VertexMap<float>& map, float bsdfFraction) const;
+  float moment(const SamplingMap<float>& map, float bsdfFraction) const;
   // All there is to say of a map: `converged` is the one that its divergence is measured from.
-  Judgement judge(const core::PackedMap& map, const core::PackedMap& converged, float bsdfFraction) const;
+  Judgement judge(const SamplingMap<float>& map, const SamplingMap<float>& converged,
+                  float bsdfFraction) const;
 
   // Radiance that arrives, emission weighted by MIS against the BSDF as the pilot's is; of radiance()
   // kUnknown where nothing was measured, 0 there of texels(), which has those of maps.
@@ -31,7 +32,7 @@ class VertexIntegral {
   core::Histogram texels() const;
   SquareMap bsdf() const;  // f |cos|, luminance
   SquareMap best() const;  // that times the radiance
-  SquareMap mixture(const VertexMap<float>& map, float bsdfFraction) const;
+  SquareMap mixture(const SamplingMap<float>& map, float bsdfFraction) const;
 
  private:
   struct Direction {
@@ -46,17 +47,17 @@ class VertexIntegral {
   std::vector<Converged::Texel> m_arriving;
   float m_guidable;
   Float3 m_normal;
-  float m_belowSign;  // as VertexMap::prepare() takes it
+  bool m_bothSides;  // whether the surface scatters to both
 };
 
 // The map as texels row by row, over its mean.
 SquareMap squareOf(const core::Histogram& texels);
 // The density of each texel, over the even one.
-SquareMap squareOf(const VertexMap<float>& map);
+SquareMap squareOf(const SamplingMap<float>& map);
 
 // In bits, of densities over a map's texels that need not sum to one; 0 log 0 is 0.
 float entropyOf(const core::Histogram& weights);
 // Of the density of `other` from that of `map`.
-float divergence(const VertexMap<float>& map, const VertexMap<float>& other);
+float divergence(const SamplingMap<float>& map, const SamplingMap<float>& other);
 
 }  // namespace odis::learn

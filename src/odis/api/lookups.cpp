@@ -69,10 +69,10 @@ float odisGetShadowRayProbability(const OdisGuidedVertex* vertex, float contribu
   return vertexIn(vertex).shadowRayProbability(contribution);
 }
 
-bool odisPrepareVertex(OdisGuidedVertex* vertex, float roughness, float guidableProbability, bool bothSides) {
+bool odisPrepareVertex(OdisGuidedVertex* vertex, float roughness, float guidableProbability) {
   if (!vertex || vertex->words[0] == 0) return false;
   GuidedVertex& guided = *std::launder(reinterpret_cast<GuidedVertex*>(vertex));
-  guided.prepare(roughness, guidableProbability, bothSides);
+  guided.prepare(roughness, guidableProbability);
   return guided.guides();
 }
 

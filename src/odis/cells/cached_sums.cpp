@@ -41,7 +41,7 @@ void CellStore::addReturned(const CellOrder<CellSample>& order) {
       if (!(share > 0)) return;
       const Float3& outgoing = sample.outgoing;
       const double brightness = luminance(outgoing);
-      ReturnedSums& sums = m_cells[c].halves[sample.half];
+      ReturnedSums& sums = m_cells[c].halves[sample.half()];
       sums.count += share;
       sums.outgoing[0] += outgoing.x;
       sums.outgoing[1] += outgoing.y;
@@ -70,7 +70,7 @@ void CellStore::addReturned(const CellOrder<CellSample>& order) {
         limits[half][level] = returnedLimit(spreads[at][half].count, variances[at][half]);
     forEachItem(order.of(c), [&](const CellSample& sample) {
       if (m_depthShares.of(sample.depth) > 0)
-        passOn(m_cells[c].halves[sample.half], sample.outgoing, limits[sample.half]);
+        passOn(m_cells[c].halves[sample.half()], sample.outgoing, limits[sample.half()]);
     });
   });
 }

@@ -12,8 +12,8 @@ namespace {
 constexpr double kLeastSamples = 0.01;
 
 CellStatistics weighted(CellStatistics cell, double weight) {
-  for (double* sum :
-       {&cell.count, &cell.lightCount, &cell.sum, &cell.sumSquares, &cell.outgoingSquares, &cell.rays})
+  for (double* sum : {&cell.count, &cell.lightCount, &cell.sum, &cell.sumSquares, &cell.outgoingSquares,
+                      &cell.rays, &cell.bothSides})
     *sum *= weight;
   for (double& sum : cell.outgoing) sum *= weight;
   for (ReturnedSums& half : cell.halves) scale(half, weight);

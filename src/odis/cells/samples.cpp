@@ -51,7 +51,9 @@ BatchSamples takeSamples(const VertexBatch& batch, const VertexRules& rules) {
       const float square = lightSquare(v);
       result.samples.push_back({v.position, v.normal, v.wi, v.distance, value, returnedRadiance(v), rays,
                                 square, uint8_t(square > 0 ? v.lightGroup : 0),
-                                uint8_t(pathHalf(v.pixel, v.sample)), v.depth});
+                                uint8_t(pathHalf(v.pixel, v.sample) * CellSample::kHalf +
+                                        v.scattersBothSides * CellSample::kBothSides),
+                                v.depth});
     }
   return result;
 }

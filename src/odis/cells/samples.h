@@ -31,8 +31,13 @@ struct CellSample {
   // Estimate of the squared next-event estimate from one group of lights; kNoLights: not to be counted.
   float lightSquare;
   uint8_t lightGroup;
-  uint8_t half;  // of the paths (pathHalf) that it belongs to
+  uint8_t flags;
   uint16_t depth;
+
+  // Flags: the half of the paths (pathHalf) that it belongs to, and whether its surface scatters to both sides.
+  static constexpr uint8_t kHalf = 1, kBothSides = 2;
+  uint32_t half() const { return flags & kHalf; }
+  bool scattersBothSides() const { return (flags & kBothSides) != 0; }
 };
 inline constexpr float kNoLights = -1;
 
@@ -74,7 +79,7 @@ constexpr void forEachField(FieldsOf<CellSample>, const Body& body) {
   body("rays", &CellSample::rays);
   body("lightSquare", &CellSample::lightSquare);
   body("lightGroup", &CellSample::lightGroup);
-  body("half", &CellSample::half);
+  body("half", &CellSample::flags);  // which was all that it told
   body("depth", &CellSample::depth);
 }
 static_assert(listedBytes<CellSample>() == sizeof(CellSample));

@@ -18,6 +18,7 @@ constexpr void forEachField(FieldsOf<CellStatistics>, const Body& body) {
   body("rays", &CellStatistics::rays);
   body("centroid", &CellStatistics::centroid);
   body("normal", &CellStatistics::normal);
+  body("bothSides", &CellStatistics::bothSides);
   body("lightSquares", &CellStatistics::lightSquares);
   body("histogram", &CellStatistics::histogram);
 }

@@ -123,6 +123,7 @@ void accumulate(CellStatistics& cell, LightField* field, const Float3& middle, f
     cell.lightCount += sample.lightSquare != kNoLights;
     cell.lightSquares[sample.lightGroup] += std::max(sample.lightSquare, 0.0f);
     cell.normal = cell.normal + sample.normal;
+    cell.bothSides += sample.scattersBothSides();
     if (value <= 0) return;
     const Splat spread = splat(reaim(sample.position, sample.wi, sample.distance, cell.centroid));
     for (int k = 0; k < 4; ++k) cell.histogram[spread.texel[k]] += value * spread.weight[k];
@@ -248,6 +249,7 @@ void addTo(CellStatistics& sum, const CellStatistics& cell) {
   sum.lightCount += cell.lightCount;
   for (size_t g = 0; g < sum.lightSquares.size(); ++g) sum.lightSquares[g] += cell.lightSquares[g];
   sum.normal = sum.normal + cell.normal;
+  sum.bothSides += cell.bothSides;
   for (int t = 0; t < kMapTexels; ++t) sum.histogram[t] += cell.histogram[t];
 }
 

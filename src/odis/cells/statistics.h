@@ -22,7 +22,7 @@ namespace odis::core {
 // its parent, and over those around its parent's parent; zeros beyond the coarsest level.
 using Surroundings = std::array<Histogram, 2>;
 
-// A store has at most so many cells, some 16 GB without a guide; as many maps are left to pixels.
+// A store has at most so many cells, some 8 GB without a guide; as many maps are left to pixels.
 inline constexpr size_t kMostCells = kMostMaps / 2;
 
 class Archive;
@@ -44,7 +44,8 @@ struct CellStatistics {
   // Mean position of the first batch's samples, or of a coarser cell's children; directions are re-aimed
   // from here.
   Float3 centroid;
-  Float3 normal;                                       // sum of the samples' unit normals
+  Float3 normal;         // sum of the samples' unit normals
+  double bothSides = 0;  // number of samples whose surfaces scatter to both sides
   std::array<double, kMaxLightGroups> lightSquares{};  // sums of CellSample::lightSquare, for each group
   Histogram histogram{};                               // sums of values by direction
   const Surroundings* around = nullptr;                // null where nothing asked for it

@@ -1,51 +1,59 @@
 #include "odis/maps/pack.h"
 
 #include <algorithm>
+#include <numbers>
+#include <numeric>
 
 #include "odis/instruction_sets.h"
-#include "odis/maps/texel_directions.h"
 
 namespace odis::core {
 
-ODIS_WIDE void packMap(const Histogram& radiance, float floor, uint16_t* texels, float* sums) {
+namespace {
+
+// Writes a table of 16 shares. Each is one part at least, the others are dealt out by the weights.
+void packTable(const float* weights, uint16_t* shares) {
+  constexpr int kDealt = kWhole - kBlockTexels;
+  float total = 0;
+  for (int i = 0; i < kBlockTexels; ++i) total += weights[i];
+  const float scale = kDealt / total;
+  const bool usable = total > 0 && scale > 0 && std::isfinite(scale);
+  float sum = 0;
+  int begin = 0;
+  for (int i = 0; i < kBlockTexels; ++i) {
+    sum += usable ? weights[i] * scale : float(kDealt / kBlockTexels);
+    const bool last = i + 1 == kBlockTexels;
+    const int end = last ? kWhole : i + 1 + std::min(int(sum), kDealt);
+    shares[i] = uint16_t(end - begin);
+    begin = end;
+  }
+}
+
+}  // namespace
+
+void packMap(const Histogram& weights, uint16_t* map) {
+  float blocks[kMapBlocks];
+  for (size_t b = 0; b < kMapBlocks; ++b) {
+    const float* texels = &weights[b * kBlockTexels];
+    blocks[b] = std::accumulate(texels, texels + kBlockTexels, 0.0f);
+    packTable(texels, map + (b + 1) * kBlockTexels);
+  }
+  packTable(blocks, map);
+}
+
+ODIS_WIDE Histogram product(const Histogram& radiance, float floor, const Histogram& cosines) {
   float sum = 0;
   for (const float value : radiance) sum += value;
-  Histogram packed;
-  float brightest = 0;
-  for (size_t t = 0; t < kMapTexels; ++t) {
-    packed[t] = (sum > 0 ? (1 - floor) * radiance[t] / sum : 0) + floor / kMapTexels;
-    brightest = std::max(brightest, packed[t]);
-  }
-  for (size_t t = 0; t < kMapTexels; ++t)
-    texels[t] = uint16_t(std::max(1.0f, 65535 * (packed[t] / brightest) + 0.5f));
-  sumBlocks(texels, sums);
+  const float scale = sum > 0 ? (1 - floor) / sum : 0, even = floor / kMapTexels;
+  Histogram result;
+  for (size_t t = 0; t < kMapTexels; ++t) result[t] = (scale * radiance[t] + even) * cosines[t];
+  return result;
 }
 
-MapArrays PackedMap::arrays() const {
-  return {texels, sums, texelDirections().x};
-}
-
-PackedMap packedMap(const Histogram& radiance, float floor) {
-  PackedMap map;
-  packMap(radiance, floor, map.texels, map.sums);
-  return map;
-}
-
-ODIS_WIDE void sumBlocks(const uint16_t* texels, float* sums) {
-  const TexelDirections& w = texelDirections();
-  for (int b = 0; b < kMapBlocks; ++b) {
-    float x = 0, y = 0, z = 0, sum = 0;
-    for (int t = b * kBlockTexels; t < (b + 1) * kBlockTexels; ++t) {
-      x += texels[t] * w.x[t];
-      y += texels[t] * w.y[t];
-      z += texels[t] * w.z[t];
-      sum += texels[t];
-    }
-    sums[b] = x;
-    sums[kMapBlocks + b] = y;
-    sums[2 * kMapBlocks + b] = z;
-    sums[3 * kMapBlocks + b] = sum;
-  }
+Histogram probabilitiesOf(const SamplingMap<float>& map) {
+  Histogram result;
+  for (int t = 0; t < kMapTexels; ++t)
+    result[size_t(t)] = map.texelPdf(t) * (4 * std::numbers::pi_v<float> / kMapTexels);
+  return result;
 }
 
 }  // namespace odis::core

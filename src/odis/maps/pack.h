@@ -1,26 +1,30 @@
-// From a histogram to the map that is kept.
+// From a histogram to the sampling map that is kept.
 #pragma once
 
 #include "odis/maps/histogram.h"
 
 namespace odis::core {
 
-// Writes the texels of a map and its sums (see MapArrays) from the relative radiance of each texel, which
-// need not be normalised and may be zero: sixteen bits a texel, scaled to the brightest; at least one, so
-// that every direction stays possible. A share `floor` of the map is uniform.
-void packMap(const Histogram& radiance, float floor, uint16_t* texels, float* sums);
+// Writes the shares of a map (odis/sampling_map.h) from the relative probability of each texel, which need
+// not be normalised and may be zero. Where they are no distribution the map is even.
+void packMap(const Histogram& weights, uint16_t* map);
+
+// The radiance of each texel, relative and perhaps zero everywhere, times the cosines. A share `floor` of the
+// radiance is even.
+Histogram product(const Histogram& radiance, float floor, const Histogram& cosines);
+
+// The probability of each texel.
+Histogram probabilitiesOf(const SamplingMap<float>& map);
 
 // A map by itself.
 struct PackedMap {
-  alignas(64) float sums[kSumsPerMap];
-  uint16_t texels[kMapTexels];
+  PackedMap() = default;
+  explicit PackedMap(const Histogram& weights) { packMap(weights, shares); }
 
-  // As cell 0 of arrays; valid as long as the map is.
-  MapArrays arrays() const;
+  // Valid as long as the map is.
+  SamplingMap<float> view() const { return {shares, 0}; }
+
+  alignas(64) uint16_t shares[kMapShares];
 };
-PackedMap packedMap(const Histogram& radiance, float floor);
-
-// Writes the sums over the blocks of a map's texels.
-void sumBlocks(const uint16_t* texels, float* sums);
 
 }  // namespace odis::core

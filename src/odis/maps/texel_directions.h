@@ -8,12 +8,10 @@
 
 namespace odis::core {
 
-// Coordinates of the unit directions; the three arrays lie one after another, as MapArrays::directions has
-// them.
+// Coordinates of the unit directions.
 struct TexelDirections {
   alignas(64) float x[kMapTexels], y[kMapTexels], z[kMapTexels];
 };
-static_assert(sizeof(TexelDirections) == 3 * kMapTexels * sizeof(float));
 const TexelDirections& texelDirections();
 
 // The factor that turns radiance * cos into radiance, at most 10.
@@ -23,5 +21,10 @@ inline float inverseCosine(float cosine) {
 
 // The cosines between a unit normal and the texels' centres.
 Histogram cosinesTo(const Float3& normal);
+
+// The mean of max(cos, 0) over unit normals whose mean is `meanNormal`, for the texels' centres: as if their
+// cosines were normally distributed. Where surfaces scatter to both sides, as a share `bothSides` of them
+// does, cosines below the horizon count, too.
+Histogram meanCosines(const Float3& meanNormal, float bothSides);
 
 }  // namespace odis::core

@@ -105,8 +105,7 @@ SecondMoments addJudged(CellMoments& sums, const FractionSample& v, float scale,
                         const FractionInputs& inputs) {
   float mapPdf = 0, lightMapPdf = 0;
   if (v.guidableProbability > 0) {
-    VertexMap<float> map;
-    map.prepare(inputs.maps, int32_t(cell), v.normal, v.scattersBothSides ? -1.0f : 0.0f);
+    const SamplingMap<float> map(inputs.maps, int32_t(cell));
     if (!v.discrete) {
       const int texel = texelOf(v.wi);
       mapPdf = map.texelPdf(texel) *

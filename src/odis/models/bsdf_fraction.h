@@ -23,7 +23,7 @@ struct FractionInputs {
   const CellStore& store;
   std::span<const CellStatistics> cells;
   std::span<const DirectionDistribution> distributions;
-  MapArrays maps;
+  const uint16_t* maps;  // of the cells
   GuideRules rules;
   FractionParts parts;
   uint32_t stride;

@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "odis/maps/pack.h"
-
 namespace odis::core {
 
 namespace {
@@ -91,12 +89,20 @@ uint32_t mapOfPixel(const TileGrid& grid, const std::vector<uint32_t>& mapOf, co
   return best;
 }
 
-void pack(const Histogram& radiance, uint16_t* texels) {
-  float sums[kSumsPerMap];
-  packMap(radiance, 0, texels, sums);
+}  // namespace
+
+void PixelMaps::setRadiance(size_t map, const Histogram& radiance) {
+  const float brightest = *std::max_element(radiance.begin(), radiance.end());
+  const float scale = brightest > 0 ? 65535 / brightest : 0;
+  for (size_t t = 0; t < kMapTexels; ++t)
+    texels[map * kMapTexels + t] = uint16_t(std::max(1.0f, scale * radiance[t] + 0.5f));
 }
 
-}  // namespace
+Histogram PixelMaps::radiance(size_t map) const {
+  Histogram result;
+  std::copy_n(&texels[map * kMapTexels], kMapTexels, result.begin());
+  return result;
+}
 
 PixelMaps makePixelMaps(const FirstVertices& vertices, int tile, const PixelModel& model, const Tasks& tasks,
                         const Progress& progress) {
@@ -127,7 +133,7 @@ PixelMaps makePixelMaps(const FirstVertices& vertices, int tile, const PixelMode
                    count = std::min(kPixelBatch, places.size() - begin);
       for (size_t i = 0; i < count; ++i) look(vertices, places[begin + i], seen[i]);
       model.predict(count, seen.data(), &places[begin], radiance.data());
-      for (size_t i = 0; i < count; ++i) pack(radiance[i], &maps.texels[(begin + i) * kMapTexels]);
+      for (size_t i = 0; i < count; ++i) maps.setRadiance(begin + i, radiance[i]);
     });
   }
 
@@ -171,7 +177,7 @@ PixelMaps PixelOracle::maps(const Tasks& tasks) const {
   maps.texels.resize(maps.size() * kMapTexels);
   tasks.forEach(size_t(m_height), [&](size_t y) {
     for (size_t p = y * size_t(m_width); p < (y + 1) * size_t(m_width); ++p)
-      if (maps.ofPixel[p] != kNoMap) pack(m_pixels[p].energy, &maps.texels[maps.ofPixel[p] * kMapTexels]);
+      if (maps.ofPixel[p] != kNoMap) maps.setRadiance(maps.ofPixel[p], m_pixels[p].energy);
   });
   return maps;
 }

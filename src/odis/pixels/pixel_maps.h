@@ -17,11 +17,14 @@ struct PixelMaps {
     Float3 position, normal;
   };
   std::vector<Place> places;
-  std::vector<uint16_t> texels;   // [map][texel]: relative radiance, without a floor
+  std::vector<uint16_t> texels;   // [map][texel]: relative radiance, at least 1, of 65,535 for the brightest
   std::vector<uint32_t> ofPixel;  // [pixel]: its map, or kNoMap
 
   size_t size() const { return places.size(); }
   bool empty() const { return places.empty(); }
+  // Sets the radiance of a map, and returns it, relative.
+  void setRadiance(size_t map, const Histogram& radiance);
+  Histogram radiance(size_t map) const;
   uint64_t bytes() const {
     return places.size() * sizeof(Place) + texels.size() * sizeof(uint16_t) +
            ofPixel.size() * sizeof(uint32_t);

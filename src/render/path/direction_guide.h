@@ -14,7 +14,7 @@ class DirectionSampler {
  public:
   virtual ~DirectionSampler() = default;
   // `u` uniform in [0, 1)^2.
-  virtual VertexMap<float>::Sample sample(const Vec2& u) const = 0;
+  virtual SamplingMap<float>::Sample sample(const Vec2& u) const = 0;
   // The density with which sample() gives that direction.
   virtual float pdf(const Vec3& wi) const = 0;
   // The probability, in (0, 1], that a draw that may be guided stays with the BSDF.

@@ -34,23 +34,22 @@ float fractionAt(const GuideView& guide, const Bounces& bounces, size_t lane) {
   return bsdfFraction(guide, int32_t(cell), bounces.at.bsdfs[lane]->roughness(at, wo));
 }
 
-// Finds out what guides a vertex. A map that guides is added to `maps`.
-void beginGuided(const PathSettings& settings, Bounces& bounces, size_t lane, MapPreparations& maps) {
+// Finds out what guides a vertex.
+void beginGuided(const PathSettings& settings, Bounces& bounces, size_t lane) {
   const Surfaces& at = bounces.at;
   GuidedBsdfs& bsdfs = bounces.bsdfs;
   if (!(at.guidable[lane] > 0) || !guidesAt(settings, *bounces.arrivals[lane].path)) return;
-  const bool transmissive = at.bsdfs[lane]->traits().transmissive;
   float fraction = 1;
   if (settings.rival) {
-    bsdfs.rivals[lane] = settings.rival->at(at.p[lane], at.facing[lane], transmissive);
+    bsdfs.rivals[lane] =
+        settings.rival->at(at.p[lane], at.facing[lane], at.bsdfs[lane]->traits().transmissive);
     if (!bsdfs.rivals[lane]) return;
     fraction = bsdfs.rivals[lane]->bsdfFraction();
   } else {
     fraction = fractionAt(*settings.guide, bounces, lane);
     if (fraction >= 1) return;
     bsdfs.hasMap[lane] = bsdfs.anyMap = true;
-    maps.add(bsdfs.maps[lane], int32_t(bounces.arrivals[lane].cell), at.facing[lane],
-             transmissive ? -1.0f : 0.0f);
+    bsdfs.maps[lane] = SamplingMap<float>(settings.guide->maps, int32_t(bounces.arrivals[lane].cell));
   }
   bsdfs.bsdfFraction[lane] = fraction;
   bsdfs.guidable[lane] = at.guidable[lane];
@@ -62,11 +61,7 @@ void prepareDirections(const PathSettings& settings, Bounces& bounces) {
   GuidedBsdfs& bsdfs = bounces.bsdfs;
   bsdfs.clear();
   if (!settings.guide && !settings.rival) return;
-  MapPreparations maps;
-  for (size_t i = 0; i < bounces.count; ++i) beginGuided(settings, bounces, i, maps);
-  if (maps.count == 0) return;
-  prepareMaps(settings.guide->maps, maps);
-  for (size_t i = 0; i < bounces.count; ++i) bsdfs.finish(i);
+  for (size_t i = 0; i < bounces.count; ++i) beginGuided(settings, bounces, i);
 }
 
 void countGuidable(Bounces& bounces) {
@@ -111,7 +106,6 @@ void chooseBlocks(Bounces& bounces) {
     draws.block[i] = samples.blocks[k];
     draws.withinBlockU[i] = samples.u[k];
     draws.withinBlockV[i] = samples.v[k];
-    samples.maps[k]->prefetch(samples.blocks[k]);
   }
 }
 

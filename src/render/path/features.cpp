@@ -41,7 +41,7 @@ void FeatureSums::add(const FirstHit& first, float sampleAlpha) {
 void GuideFeatureSums::add(const FirstHit& first) {
   if (!first.valid || first.cell == kNoCell) return;
   bsdfFraction += first.bsdfFraction;
-  entropy += render::entropy(first.texels);
+  entropy += render::entropy(first.map);
   survival += first.survival;
   cell = first.cell;
   ++guided;
@@ -75,11 +75,12 @@ FeatureSums featureSumsOf(std::span<const float> c) {
   return s;
 }
 
-float entropy(const uint16_t* texels) {
+float entropy(const SamplingMap<float>& map) {
   double sum = 0, sumOfLogs = 0;
-  for (const uint16_t texel : std::span(texels, kMapTexels)) {
-    sum += texel;
-    if (texel > 0) sumOfLogs += texel * std::log2(double(texel));
+  for (int t = 0; t < kMapTexels; ++t) {
+    const double density = map.texelPdf(t);
+    sum += density;
+    sumOfLogs += density * std::log2(density);
   }
   return float(std::log2(sum) - sumOfLogs / sum);
 }

@@ -21,9 +21,9 @@ struct FirstHit {
 
   // What the guide has decided there, if asked for; no cell: nothing.
   uint32_t cell = kNoCell;
-  const uint16_t* texels = nullptr;  // of the cell's map
-  float bsdfFraction = 1;            // BSDF sampling fraction, 1 where nothing is guided
-  float survival = 1;                // that learned roulette would give a path with this throughput
+  SamplingMap<float> map;  // of the cell
+  float bsdfFraction = 1;  // BSDF sampling fraction, 1 where nothing is guided
+  float survival = 1;      // that learned roulette would give a path with this throughput
 };
 
 struct Vertex;
@@ -61,7 +61,7 @@ void appendFeatureChannels(const FirstHit& first, float sampleAlpha, std::vector
 FeatureSums featureSumsOf(std::span<const float> channels);
 
 // The entropy of a map's texels in bits: 8 for an even map, 0 if all light comes through one texel.
-float entropy(const uint16_t* texels);
+float entropy(const SamplingMap<float>& map);
 
 // Appends a pixel to the image's features and its alpha: means, features over the samples that met a surface,
 // normals made as long as 1. Albedo and normal are then scaled by the share of these samples, so that an edge

@@ -7,7 +7,7 @@ namespace {
 // A rival's density as the mixture asks for it.
 struct RivalMap {
   const DirectionSampler& rival;
-  VertexMap<float>::Sample sample(float u, float v) const { return rival.sample(Vec2(u, v)); }
+  SamplingMap<float>::Sample sample(float u, float v) const { return rival.sample(Vec2(u, v)); }
   float pdf(const Float3& wi) const { return rival.pdf(fromOdis(wi)); }
 };
 
@@ -19,13 +19,6 @@ void GuidedBsdfs::clear() {
   hasMap = {};
   rivals.fill(nullptr);
   anyMap = false;
-}
-
-void GuidedBsdfs::finish(size_t lane) {
-  if (!hasMap[lane] || maps[lane].sampleable()) return;
-  hasMap[lane] = false;
-  bsdfFraction[lane] = 1;
-  guidable[lane] = 0;
 }
 
 BsdfSample sampleWithoutMap(const GuidedBsdfs& bsdfs, size_t lane, const BsdfHost& host, const Vec2& u) {

@@ -1,5 +1,4 @@
-// The BSDFs at vertices, mixed with what guides directions there: a cell's map times the cosine, or a rival's
-// density.
+// The BSDFs at vertices, mixed with what guides directions there: a cell's map, or a rival's density.
 #pragma once
 
 #include <odis/mixture.h>
@@ -14,7 +13,7 @@ struct GuidedBsdfs {
   Column bsdfFraction;  // the BSDF sampling fraction: 1 where nothing is guided
   Column guidable;      // how often the BSDF draws from lobes that may be guided; 0 where nothing is guided
   IntColumn hasMap;     // whether a map guides
-  std::array<VertexMap<float>, kLanes> maps;
+  std::array<SamplingMap<float>, kLanes> maps;
   std::array<const DirectionSampler*, kLanes> rivals;  // null where none guides
   bool anyMap;                                         // whether any map guides
 
@@ -22,8 +21,6 @@ struct GuidedBsdfs {
 
   // Nothing is guided.
   void clear();
-  // Leaves out a map that can't be sampled, once it is prepared.
-  void finish(size_t lane);
 };
 
 // The BSDF at a vertex as Mixture::sample() asks for it.

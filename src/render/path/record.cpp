@@ -15,7 +15,7 @@ void describeFirstHits(const PathSettings& settings, Bounces& bounces) {
     first = firstHitAt(*arrival.vertex, arrival.path->distance);
     if (!settings.guideFeatures || arrival.cell == kNoCell) continue;
     first.cell = arrival.cell;
-    first.texels = settings.guide->maps.texels + size_t(arrival.cell) * kMapTexels;
+    first.map = SamplingMap<float>(settings.guide->maps, int32_t(arrival.cell));
     first.bsdfFraction = bounces.bsdfs.bsdfFraction[i];
     if (settings.learnedRoulette)
       first.survival = survivalProbability(

@@ -47,7 +47,7 @@ class PglVertex final : public DirectionSampler {
     return true;
   }
 
-  VertexMap<float>::Sample sample(const Vec2& u) const override {
+  SamplingMap<float>::Sample sample(const Vec2& u) const override {
     pgl_vec3f wi;
     const float pdf = m_distribution.SamplePDF({u.x, u.y}, wi);
     return {{wi.x, wi.y, wi.z}, pdf};

@@ -15,7 +15,7 @@ Vec3 cylinderToDirection(const Vec2& point) {
   return {r * std::cos(phi), r * std::sin(phi), z};
 }
 
-VertexMap<float>::Sample SdLeaf::sample(const Vec2& u) const {
+SamplingMap<float>::Sample SdLeaf::sample(const Vec2& u) const {
   const Quadtree::Sample sample = known.sample(u);
   return {toOdis(cylinderToDirection(sample.point)), sample.pdf * (0.25f * kInvPi)};
 }

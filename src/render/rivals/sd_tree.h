@@ -17,7 +17,7 @@ Vec3 cylinderToDirection(const Vec2& point);
 // A place: what was learnt of the light that arrives there, and what is being learnt.
 class SdLeaf final : public DirectionSampler {
  public:
-  VertexMap<float>::Sample sample(const Vec2& u) const override;
+  SamplingMap<float>::Sample sample(const Vec2& u) const override;
   float pdf(const Vec3& wi) const override;
   float bsdfFraction() const override { return fraction; }
 
