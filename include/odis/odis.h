@@ -342,8 +342,8 @@ ODIS_API float odisGetLightProbability(const OdisGuidedVertex* vertex, uint32_t 
 // The probability, in (0, 1], with which a shadow ray should be traced for light that, if nothing hides it,
 // adds `contribution` to the pixel, as luminance.
 ODIS_API float odisGetShadowRayProbability(const OdisGuidedVertex* vertex, float contribution);
-// Says what the BSDF is like: its roughness (alpha; 1 for diffuse), and how often it draws from lobes that may
-// be guided, in [0, 1]. True if directions are to be drawn from the map, too.
+// Says what the BSDF is like: its roughness (alpha; 1 for diffuse), and how often it draws from lobes that
+// may be guided, in [0, 1]. True if directions are to be drawn from the map, too.
 ODIS_API bool odisPrepareVertex(OdisGuidedVertex* vertex, float roughness, float guidableProbability);
 // Whether the map draws the direction, if the lobe that is drawn may be guided. `u`, uniform in [0, 1), is
 // stretched again to draw the direction.

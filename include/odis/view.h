@@ -22,7 +22,7 @@ typedef struct OdisPlace {
 
 // What a guide says at a vertex: odis::GuidedVertex, for hosts in C, filled in by odisLookUp.
 typedef struct OdisGuidedVertex {
-  uint64_t words[32] ODIS_DEFAULT({});
+  uint64_t words[16] ODIS_DEFAULT({});
 } OdisGuidedVertex;
 
 // Where the cells lie: the first corner of the first cell, 1 / edge of the finest, and 1 / the number of them

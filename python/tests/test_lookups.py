@@ -9,7 +9,7 @@ import odis
 
 def chi_square_threshold(degrees, significance):
     """Where a chi-square variable is exceeded with that probability, by Wilson and Hilferty's approximation."""
-    z = {0.005: 2.5758293}[significance]
+    z = {0.01: 2.3263479}[significance]
     return degrees * (1 - 2 / (9 * degrees) + z * np.sqrt(2 / (9 * degrees))) ** 3
 
 

@@ -27,8 +27,8 @@ IncidentRadiance radianceOf(const GuideOptions& options) {
 // What cells leave of a guide's maps.
 constexpr size_t kMostPixelMaps = kMostMaps - kMostCells;
 
-// The density of a pixel's map: its radiance, of whatever scale, times the cosine, or alone; what arrives from
-// below the horizon counts nothing.
+// The density of a pixel's map: its radiance, of whatever scale, times the cosine where the map was made, or
+// alone.
 Histogram densityOf(const Histogram& radiance, const Float3& normal, const GuideOptions& options) {
   Histogram cosines;
   cosines.fill(1);

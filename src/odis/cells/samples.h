@@ -34,7 +34,7 @@ struct CellSample {
   uint8_t flags;
   uint16_t depth;
 
-  // Flags: the half of the paths (pathHalf) that it belongs to, and whether its surface scatters to both sides.
+  // Flags: the half of the paths (pathHalf) that it belongs to; whether its surface scatters to both sides.
   static constexpr uint8_t kHalf = 1, kBothSides = 2;
   uint32_t half() const { return flags & kHalf; }
   bool scattersBothSides() const { return (flags & kBothSides) != 0; }

@@ -294,7 +294,7 @@ std::vector<Row> rowsOfPixels() {
           "Whether histogram and oracle at pixels hold direct light.",
           [](auto& o) -> auto& { return o.guide.pixelDirectLight; }),
       choice<bool>(
-          "map-cosine", kOnOff, "Whether maps are multiplied by the cosine at a vertex.",
+          "map-cosine", kOnOff, "Whether maps hold the mean cosine of their cell's vertices.",
           [](auto& o) -> auto& { return o.guide.cosineProduct; }),
   };
 }
