@@ -148,6 +148,7 @@ void expectDirectionsOfTheMixture(const std::string& bsdf, Random& random) {
   for (OdisCellDecisions& cell : decisions)
     for (float& fraction : cell.bsdfFraction) fraction = random() < 0.25f ? 1.0f : 0.1f + 0.8f * random();
   OdisGuideView view;
+  view.cellCount = Maps::kCells;
   view.maps = maps.data();
   view.decisions = decisions.data();
   PathSettings settings;
