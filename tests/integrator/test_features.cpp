@@ -44,8 +44,8 @@ TEST(GuideFeatures, SayWhatWasDecided) {
     // More than that only where the back of the lamp is seen, which scatters nothing.
     asTold += std::abs(frame.guideBsdfFraction[i] - 0.4f) < 1e-6f;
     EXPECT_GE(frame.guideBsdfFraction[i], 0.4f - 1e-6f);
-    // A map that is all floor is the cosine alone: 6.75 bits, more where normals differ in a cell.
-    EXPECT_NEAR(frame.guideEntropy[i], 6.85, 0.15);
+    // A map that is all floor is the cosine alone: some 6.75 bits, more where normals differ in a cell.
+    EXPECT_NEAR(frame.guideEntropy[i], 6.8, 0.25);
     EXPECT_GE(frame.guideSurvival[i], 0.3f);
     EXPECT_LE(frame.guideSurvival[i], 1);
     EXPECT_GE(frame.guideSamples[i], 2);

@@ -87,7 +87,7 @@ TEST(Inspect, MapsPointAtTheLamp) {
   // So do the pilot's samples and the formula's map.
   for (const SampleDot& dot_ : seen->samples)
     if (dot_.value > 0) EXPECT_GT(dot(squareToDirection(dot_.at), towards), std::cos(0.4f));
-  const SquareMap& formula = seen->maps.at(0).timesCosine;
+  const SquareMap& formula = seen->maps.at(0).density;
   const auto brightest =
       size_t(std::max_element(formula.values.begin(), formula.values.end()) - formula.values.begin());
   EXPECT_GT(dot(directionOf(formula, brightest), towards), std::cos(0.4f));

@@ -214,7 +214,7 @@ class Inspector {
     const VertexIntegral integral(m_place.start, m_truth);
     const core::PackedMap truth = integral.mapOf(integral.texels(), floor);
     const auto fill = [&](MapView& view, const SamplingMap<float>& map) {
-      view.timesCosine = squareOf(map);
+      view.density = squareOf(map);
       view.mixture = integral.mixture(map, bsdfFraction);
       view.judgement = integral.judge(map, truth.view(), bsdfFraction);
     };

@@ -31,7 +31,7 @@ struct SquareMap {
 // What directions that are drawn from a map do at the vertex.
 struct Judgement {
   float entropy = 0;     // of the map in bits; 8: even
-  float divergence = 0;  // of (map x cosine) from (converged map x cosine): Kullback and Leibler's, in bits
+  float divergence = 0;  // of a map from the converged one: Kullback and Leibler's, in bits
   // The second moment of what the vertex scatters, next-event estimate and one sampled direction, over its
   // squared mean: with the cell's BSDF sampling fraction, and with the best one. kUnknown where nothing
   // arrives.
@@ -53,7 +53,7 @@ struct LevelView {
 
 struct MapView {
   std::string name;
-  SquareMap radiance, timesCosine;  // the map, and its density at the vertex
+  SquareMap radiance, density;  // what the map was made of (over the mean cosine), and the map
   SquareMap mixture;                // with the BSDF, at the cell's BSDF sampling fraction
   Judgement judgement;
   float bsdfFraction[kRoughnessClasses] = {1, 1, 1};  // that the guide chose for its map
@@ -97,7 +97,7 @@ struct Inspection {
   MapView converged;
   SquareMap bsdf, best;    // BSDF x cosine, and that times what arrives: what a density should be like
   Judgement bsdfAlone;     // nothing is guided: its moment
-  float noise = 0;         // divergence of one half of the converged samples from the other, maps x cosine
+  float noise = 0;         // divergence of one half of the converged samples from the other, as maps
   uint64_t paths = 0;      // that the converged map is made of
   uint32_t starts = 0;     // vertices that these start at
   Float3 outgoing;         // converged: mean of what the cell's vertices scatter back

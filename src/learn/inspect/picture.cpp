@@ -78,8 +78,8 @@ class Painter {
   void convergedRow() {
     map(m_in.converged.radiance);
     caption("converged: radiance");
-    map(m_in.converged.timesCosine);
-    caption("converged, as a map x cosine");
+    map(m_in.converged.density);
+    caption("converged, as a map");
     map(m_in.bsdf);
     caption("BSDF x cosine");
     map(m_in.best);
@@ -89,9 +89,9 @@ class Painter {
   }
   void mapRow(const MapView& view) {
     map(view.radiance);
+    caption(view.name + ": radiance");
+    map(view.density);
     caption(view.name + ": map");
-    map(view.timesCosine);
-    caption(view.name + ": map x cosine");
     map(view.mixture);
     caption(fmt::format("mixture, BSDF fraction {:.2g}{}", m_in.bsdfFraction,
                         m_in.bsdfFraction < 1 ? "" : ": the BSDF"));

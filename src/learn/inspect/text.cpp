@@ -41,7 +41,7 @@ nlohmann::ordered_json jsonView(const MapView& view, const Judgement& truth) {
           {"bsdfFraction", view.bsdfFraction},
           {"judgement", jsonJudgement(view.judgement, truth)},
           {"radiance", jsonMap(view.radiance)},
-          {"timesCosine", jsonMap(view.timesCosine)},
+          {"density", jsonMap(view.density)},
           {"mixture", jsonMap(view.mixture)}};
 }
 
