@@ -20,9 +20,7 @@ void lookUp(const GuideView& view, const Float3& position, const Float3& normal)
   const float fraction = bsdfFraction<float>(view, int(cell), 0.3f);
   const float survival = survivalProbability(view.rules, decisions.survivalFactor, 0.5f);
   if (!(fraction > 0 && fraction <= 1 && survival > 0 && survival <= 1)) std::abort();
-  VertexMap<float> map;
-  map.prepare(view.maps, int(cell), normal, 0);
-  if (!map.sampleable()) std::abort();
+  const SamplingMap<float> map(view.maps, int(cell));
   const auto sample = map.sample(0.3f, 0.7f);
   if (!(sample.pdf > 0 && map.pdf(sample.wi) > 0)) std::abort();
   const LearnedLights lights = learnedLights(view, cell);

@@ -54,7 +54,7 @@ struct LevelView {
 struct MapView {
   std::string name;
   SquareMap radiance, density;  // what the map was made of (over the mean cosine), and the map
-  SquareMap mixture;                // with the BSDF, at the cell's BSDF sampling fraction
+  SquareMap mixture;            // with the BSDF, at the cell's BSDF sampling fraction
   Judgement judgement;
   float bsdfFraction[kRoughnessClasses] = {1, 1, 1};  // that the guide chose for its map
 };

@@ -12,7 +12,7 @@ namespace {
 
 // Writes a table of 16 shares. Each is one part at least, the others are dealt out by the weights.
 void packTable(const float* weights, uint16_t* shares) {
-  constexpr int kDealt = kWhole - kBlockTexels;
+  constexpr int kDealt = kWhole - kBlockTexels, kEven = kDealt / kBlockTexels;
   float total = 0;
   for (int i = 0; i < kBlockTexels; ++i) total += weights[i];
   const float scale = kDealt / total;
@@ -20,9 +20,10 @@ void packTable(const float* weights, uint16_t* shares) {
   float sum = 0;
   int begin = 0;
   for (int i = 0; i < kBlockTexels; ++i) {
-    sum += usable ? weights[i] * scale : float(kDealt / kBlockTexels);
+    sum += usable ? weights[i] * scale : float(kEven);
     const bool last = i + 1 == kBlockTexels;
-    const int end = last ? kWhole : i + 1 + std::min(int(sum), kDealt);
+    // Rounded to the nearest, as all of the weights before an entry that has next to none make a whole number.
+    const int end = last ? kWhole : i + 1 + std::min(int(sum + 0.5f), kDealt);
     shares[i] = uint16_t(end - begin);
     begin = end;
   }

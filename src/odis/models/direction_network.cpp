@@ -27,12 +27,13 @@ std::array<float, kBasisMaps> DirectionNetwork::blend(const CellFeatures& featur
   m_trunk.apply(features.scalars, cell);
   std::array<float, kBasisMaps> shares;
   m_blend.apply(cell, shares);
-  // Softmax over the maps that are there; the cosine lobe always is.
+  // Softmax over the maps that are there; the cosine lobe always is. In double precision, as exponentials of
+  // floats differ in their last bit from system to system.
   float most = -INFINITY, total = 0;
   for (int m = 0; m < kBasisMaps; ++m)
     if (features.there[m]) most = std::max(most, shares[m]);
   for (int m = 0; m < kBasisMaps; ++m)
-    total += shares[m] = features.there[m] ? std::exp(shares[m] - most) : 0;
+    total += shares[m] = features.there[m] ? float(std::exp(double(shares[m] - most))) : 0;
   for (float& share : shares) share /= total;
   return shares;
 }

@@ -30,13 +30,14 @@ std::array<float, kMaxLightGroups> LightNetwork::shares(const LightFeatures& fea
   m_layers[1].applyLanes(x, y);
   rectify(std::span(y, m_layers[1].outputs() * kMaxLightGroups));
   m_layers[2].applyLanes(y, x);
+  // A softmax, in double precision where functions of floats differ from system to system in their last bit.
   std::array<float, kMaxLightGroups> result{};
   float most = -INFINITY, total = 0;
   for (uint32_t g = 0; g < groups; ++g) {
-    result[g] = x[g] + std::log(std::max(features.formula[g], 1e-6f));
+    result[g] = x[g] + float(std::log(double(std::max(features.formula[g], 1e-6f))));
     most = std::max(most, result[g]);
   }
-  for (uint32_t g = 0; g < groups; ++g) total += result[g] = std::exp(result[g] - most);
+  for (uint32_t g = 0; g < groups; ++g) total += result[g] = float(std::exp(double(result[g] - most)));
   for (float& share : result) share /= total;
   return result;
 }
