@@ -22,7 +22,7 @@ void packTable(const float* weights, uint16_t* shares) {
   for (int i = 0; i < kBlockTexels; ++i) {
     sum += usable ? weights[i] * scale : float(kEven);
     const bool last = i + 1 == kBlockTexels;
-    // Rounded to the nearest, as all of the weights before an entry that has next to none make a whole number.
+    // Rounded to the nearest: all weights before an entry that has next to none make a whole number.
     const int end = last ? kWhole : i + 1 + std::min(int(sum + 0.5f), kDealt);
     shares[i] = uint16_t(end - begin);
     begin = end;
