@@ -21,9 +21,10 @@ void packTable(const float* weights, uint16_t* shares) {
   int begin = 0;
   for (int i = 0; i < kBlockTexels; ++i) {
     sum += usable ? weights[i] * scale : float(kEven);
+    // To the nearest whole number: all weights before an entry that has next to none add up to one.
+    const float nearest = sum + 0.5f;
     const bool last = i + 1 == kBlockTexels;
-    // Rounded to the nearest: all weights before an entry that has next to none make a whole number.
-    const int end = last ? kWhole : i + 1 + std::min(int(sum + 0.5f), kDealt);
+    const int end = last ? kWhole : i + 1 + std::min(int(nearest), kDealt);
     shares[i] = uint16_t(end - begin);
     begin = end;
   }
