@@ -1,3 +1,4 @@
+#!/usr/bin/env python3
 """How wild images with the radiance cache are, beside those of `odis` without it, in scenes that provoke it.
 
     bench/cache_wild.py -o OUT [--odis BINARY] [--old BINARY] [--scenes pool,ball] [--spp 4,16,64] [--seeds 16]

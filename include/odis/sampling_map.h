@@ -52,7 +52,8 @@ inline Float3 texelDirection(int texel) {
 inline constexpr int kMapTables = 1 + kMapBlocks;
 inline constexpr int kMapShares = kMapTables * kBlockTexels;
 inline constexpr int kWhole = 1 << 15;
-// A guide has at most so many maps: the numbers of their shares must fit in 32 bits, in lanes as well.
+// The greatest number of maps that a guide may have: 32 bits must number all of their shares, in lanes as
+// well.
 inline constexpr uint32_t kMostMaps = INT32_MAX / kMapShares;
 
 // The sampling map of a cell: a density over directions, constant within each texel, with respect to solid

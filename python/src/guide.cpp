@@ -59,9 +59,9 @@ void bindMaps(nb::class_<Guide>& guide) {
             return shown<NumpyArray<const uint16_t, -1, kMapTables, kBlockTexels>>(
                 self, view.maps, {view.cellCount, size_t(kMapTables), size_t(kBlockTexels)});
           },
-          "(cells, 17, 16), uint16: for each cell a table of how likely each block of texels is, and one "
-          "for\n"
-          "each block of how likely its texels are, in parts of 2^-15: at least 1, 2^15 in sum. The density\n"
+          "(cells, 17, 16), uint16: for each cell a table of how likely each block of texels is, and for "
+          "each\n"
+          "block one of how likely its texels are, in parts of 2^-15: at least 1, 2^15 in sum. The density\n"
           "over solid angle is 256 / (4 pi) times both probabilities (odis/sampling_map.h).")
       .def_prop_ro(
           "pixel_cells",
@@ -180,7 +180,7 @@ void bindGuide(nb::module_& module) {
 
 Fixed once built, and safe to use by many threads; copies are the guide itself. It can be pickled, and comes
 back in the shared context. Its arrays are read-only, lie in the guide's own memory,
-and keep it alive. About 830 bytes a cell.)");
+and keep it alive. About 610 bytes a cell.)");
   guide
       .def(
           "__len__", [](const Guide& self) { return self.view().cellCount; }, "Number of cells.")

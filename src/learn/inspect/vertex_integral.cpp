@@ -148,9 +148,7 @@ SquareMap squareOf(const core::Histogram& texels) {
 }
 
 SquareMap squareOf(const SamplingMap<float>& map) {
-  core::Histogram density;
-  for (int t = 0; t < kMapTexels; ++t) density[size_t(t)] = map.texelPdf(t);
-  return squareOf(density);
+  return squareOf(core::probabilitiesOf(map));
 }
 
 float entropyOf(const core::Histogram& weights) {

@@ -22,7 +22,7 @@ namespace odis::core {
 // its parent, and over those around its parent's parent; zeros beyond the coarsest level.
 using Surroundings = std::array<Histogram, 2>;
 
-// A store has at most so many cells, some 8 GB without a guide; as many maps are left to pixels.
+// The greatest number of cells of a store, some 8 GB without a guide. As many maps are left to pixels.
 inline constexpr size_t kMostCells = kMostMaps / 2;
 
 class Archive;
