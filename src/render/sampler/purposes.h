@@ -19,6 +19,8 @@ enum CameraNumber : uint32_t {
 
 // What the numbers of a vertex are for, in the order of their dimensions.
 enum VertexNumber : uint32_t {
+  kFlightNumber = 0,       // how far the ray that leads there gets through a medium; and, independent ones,
+  kStreamNumber = 0,       // all that media ask for beside it
   kLightChoiceNumber = 1,  // which light
   kLightPointNumber,       // which point or direction of it: two
   kLobeNumber,             // which lobe of the BSDF

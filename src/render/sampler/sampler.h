@@ -95,6 +95,12 @@ class Sampler {
     const uint32_t index = shuffledIndex(m_reversedSample, uint32_t(hash));
     return {firstSobolNumber(index, uint32_t(hash >> 32)), secondSobolNumber(index, uint32_t(mixBits(hash)))};
   }
+  // The seed of a stream of independent numbers (RandomStream) at the vertex of a path.
+  uint64_t streamSeed(int depth) const {
+    const uint32_t dimension = dimensionOf(depth, kStreamNumber);
+    return mixBits(m_base ^
+                   mixBits(independentStream(m_sample) + redrawnStream(m_redrawn, dimension) + dimension));
+  }
 
  private:
   friend class SamplerBlock;

@@ -1,0 +1,62 @@
+// The interface of participating media: how far light gets, and where it is scattered.
+//
+// Extinction may differ between red, green and blue. Each decision (scattered here or not) is drawn by the
+// mean of the channels' probabilities, weighted by the path's throughput, and each channel is divided by that
+// mean: the balance heuristic over channels, so that the mean of the throughput never grows (Kutz et al.
+// 2017, "Spectral and Decomposition Tracking for Rendering Heterogeneous Volumes", section 4.2).
+#pragma once
+
+#include <memory>
+
+#include "render/medium/phase_function.h"
+#include "render/sampler/random_stream.h"
+
+namespace odis::render {
+
+// A part of a ray that lies in one medium, from its origin.
+struct MediumSegment {
+  Vec3 origin, direction;  // world space, unit direction
+  float length = 0;        // may be infinite
+
+  Vec3 at(float distance) const { return origin + direction * distance; }
+};
+
+// What becomes of a path on a segment.
+struct Flight {
+  bool scattered = false;  // within the medium; else it arrives at the segment's end
+  float distance = 0;      // to where it is scattered
+  // What the throughput is multiplied by: transmittance, times the scattering coefficient where it is
+  // scattered, over the probability (density) of what happened.
+  Rgb weight{1, 1, 1};
+};
+
+class Medium {
+ public:
+  virtual ~Medium() = default;
+
+  // Draws what becomes of a path with this throughput. `u` in [0, 1) is the first random number that is
+  // needed; others come from the stream.
+  virtual Flight fly(const MediumSegment& segment, const Rgb& throughput, float u,
+                     RandomStream& random) const = 0;
+  // An unbiased estimate of the segment's transmittance.
+  virtual Rgb transmittance(const MediumSegment& segment, RandomStream& random) const = 0;
+  // The albedo of single scattering at a point, in [0, 1].
+  virtual Rgb albedo(const Vec3& p) const = 0;
+
+  const PhaseFunction& phase() const { return *m_phase; }
+  // Whether light is sampled by next-event estimation from within.
+  bool samplesEmitters() const { return m_samplesEmitters; }
+  virtual uint64_t bytes() const { return 0; }
+
+ protected:
+  Medium(PhaseFunctionPtr phase, bool samplesEmitters)
+      : m_phase(std::move(phase)), m_samplesEmitters(samplesEmitters) {}
+
+ private:
+  PhaseFunctionPtr m_phase;
+  bool m_samplesEmitters;
+};
+
+using MediumPtr = std::shared_ptr<const Medium>;
+
+}  // namespace odis::render
