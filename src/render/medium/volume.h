@@ -22,7 +22,7 @@ class Volume {
 
   // The value at a point in world space: a colour, or a grey.
   virtual Rgb rgb(const Vec3& p) const = 0;
-  // The first channel alone.
+  // The same as one number: the luminance of a colour, the mean of six channels.
   virtual float scalar(const Vec3& p) const { return rgb(p).x; }
   // The parameters of an SGGX distribution, Sxx, Syy, Szz, Sxy, Sxz, Syz, of volumes with six channels.
   virtual std::array<float, 6> six(const Vec3& /*p*/) const { return {}; }

@@ -6,6 +6,7 @@
 #include <map>
 
 #include "render/image/image.h"
+#include "render/medium/constant_volume.h"
 #include "render/scene/files_ahead.h"
 #include "render/shape/mesh_files.h"
 #include "render/texture/bitmap.h"
@@ -34,7 +35,8 @@ bool isWithoutEffect(const Properties& node, const std::string& name) {
        {"collapse", "kd_exact_primitive_threshold", "kd_intersection_cost", "kd_max_depth", "kd_min_max_bins",
         "kd_parallel_build", "kd_retract_bad_splits", "kd_stop_primitives", "kd_traversal_cost",
         "silhouette_sampling_weight"}},
-      {"texture", {"accel", "cache", "format", "max_anisotropy"}}};
+      {"texture", {"accel", "cache", "format", "max_anisotropy"}},
+      {"volume", {"accel", "send_data"}}};
   const auto names = known.find(node.tag);
   return names != known.end() &&
          std::find(names->second.begin(), names->second.end(), name) != names->second.end();
@@ -149,6 +151,65 @@ BsdfPtr Builder::nestedBsdf(const Properties& parent, int index) {
   throw SceneError(parent.location, "found " + std::to_string(count) + " nested BSDFs in the " + parent.tag +
                                         " '" + parent.type + "', expected at least " +
                                         std::to_string(index + 1));
+}
+
+VolumePtr Builder::volume(const Properties& parent, const std::string& name, const Declaration& declaration,
+                          const Rgb& fallback) {
+  Declaration withFallback = declaration;
+  if (!withFallback.fallback) withFallback.fallback = fallback;
+  parent.declare(name, withFallback);
+  const Properties* node = parent.child("volume", name);
+  if (!node && !parent.has(name)) return std::make_shared<ConstantVolume>(fallback);
+  const VolumePtr made = node ? volume(*node)
+                              : std::make_shared<ConstantVolume>(
+                                    parent.color(name, declaration.clamped ? kAnyNumber : declaration.range));
+  const SourceLocation& at = node ? node->placeOf("filename") : parent.placeOf(name);
+  if (made->channels() == 6)
+    throw SceneError(at, "found a volume of 6 channels for '" + name + "', expected 1 or 3");
+  const NumberRange& range = declaration.range;
+  for (int channel = 0; channel < 3; ++channel) {
+    const float least = made->least()[channel], greatest = made->greatest()[channel];
+    if (range.contains(least) && range.contains(greatest)) continue;
+    const std::string found =
+        fmt::format("found values from {:.6g} to {:.6g} in the volume for '{}'", least, greatest, name);
+    if (!declaration.clamped) throw SceneError(at, found + ", expected " + range.text());
+    warn(at, found + ", which are clamped to " + range.text());
+    break;
+  }
+  return made;
+}
+
+VolumePtr Builder::volume(const Properties& node) {
+  const auto known = m_volumes.find(&node);
+  if (known != m_volumes.end()) return known->second;
+  VolumePtr made;
+  if (const VolumeFactory factory = findVolumeFactory(node.type)) {
+    made = factory(node, *this);
+    warnUnqueried(node);
+  } else {
+    warn(node.location, unknownType(node, volumeTypes()) + ", a constant of 1 is used");
+    made = std::make_shared<ConstantVolume>(Rgb(1.0f));
+  }
+  return m_volumes[&node] = made;
+}
+
+PhaseFunctionPtr Builder::phaseFunction(const Properties& node) {
+  const auto known = m_phaseFunctions.find(&node);
+  if (known != m_phaseFunctions.end()) return known->second;
+  PhaseFunctionPtr made;
+  if (const PhaseFunctionFactory factory = findPhaseFunctionFactory(node.type)) {
+    made = factory(node, *this);
+    warnUnqueried(node);
+  } else {
+    warn(node.location, unknownType(node, phaseFunctionTypes()) + ", an isotropic one is used");
+    made = findPhaseFunctionFactory("isotropic")(Properties(), *this);
+  }
+  return m_phaseFunctions[&node] = made;
+}
+
+PhaseFunctionPtr Builder::nestedPhaseFunction(const Properties& medium) {
+  if (const Properties* node = medium.child("phase")) return phaseFunction(*node);
+  return findPhaseFunctionFactory("isotropic")(Properties(), *this);
 }
 
 std::vector<EmitterPtr> Builder::emitters(const Properties& node) {

@@ -1,5 +1,5 @@
-// Turns parsed elements into textures, BSDFs, emitters and shapes. Each object is made once, however often it
-// is referred to.
+// Turns parsed elements into textures, BSDFs, emitters, volumes, phase functions and shapes. Each object is
+// made once, however often it is referred to.
 #pragma once
 
 #include <functional>
@@ -14,6 +14,8 @@
 #include "render/bsdf/bsdf.h"
 #include "render/bsdf/rough_transmittance.h"
 #include "render/emitter/emitter.h"
+#include "render/medium/phase_function.h"
+#include "render/medium/volume.h"
 #include "render/shape/shape.h"
 #include "render/texture/texture.h"
 #include "render/xml/properties.h"
@@ -58,6 +60,15 @@ class Builder {
   BsdfPtr bsdf(const Properties& node);
   // The nested BSDF number `index` (0 first) of `parent`; throws SceneError if it is not there.
   BsdfPtr nestedBsdf(const Properties& parent, int index);
+  // A parameter that is a volume: a nested <volume>, a colour or a number as a constant, or the fallback as a
+  // constant. Of one or three channels. Throws SceneError for values outside of the declared range; of
+  // volumes that are declared as clamped it warns, and whoever looks them up clamps.
+  VolumePtr volume(const Properties& parent, const std::string& name, const Declaration& declaration,
+                   const Rgb& fallback);
+  VolumePtr volume(const Properties& node);
+  PhaseFunctionPtr phaseFunction(const Properties& node);
+  // The <phase> nested in a medium; isotropic if there is none.
+  PhaseFunctionPtr nestedPhaseFunction(const Properties& medium);
   // An emitter of its own (point, envmap, sun, ...); some elements (sunsky) make more than one.
   std::vector<EmitterPtr> emitters(const Properties& node);
 
@@ -89,6 +100,8 @@ class Builder {
   bool m_toldOfClosedShutter = false;
   std::unordered_map<const Properties*, TexturePtr> m_textures;
   std::unordered_map<const Properties*, BsdfPtr> m_bsdfs;
+  std::unordered_map<const Properties*, VolumePtr> m_volumes;
+  std::unordered_map<const Properties*, PhaseFunctionPtr> m_phaseFunctions;
   std::unordered_map<std::string, std::shared_ptr<const Image>> m_images;
   std::unique_ptr<FilesAhead> m_filesAhead;
   std::map<std::tuple<Microfacet::Type, float, float>, std::shared_ptr<const RoughTransmittance>>
@@ -99,13 +112,19 @@ class Builder {
 using TextureFactory = TexturePtr (*)(const Properties&, Builder&);
 using BsdfFactory = BsdfPtr (*)(const Properties&, Builder&);
 using EmitterFactory = std::vector<EmitterPtr> (*)(const Properties&, Builder&);
+using VolumeFactory = VolumePtr (*)(const Properties&, Builder&);
+using PhaseFunctionFactory = PhaseFunctionPtr (*)(const Properties&, Builder&);
 // Null if the type is unknown. Beside them the types that there are, in the order of the alphabet.
-TextureFactory findTextureFactory(const std::string& type);  // src/render/texture/registry.cpp
-BsdfFactory findBsdfFactory(const std::string& type);        // src/render/bsdf/registry.cpp
-EmitterFactory findEmitterFactory(const std::string& type);  // src/render/emitter/registry.cpp
+TextureFactory findTextureFactory(const std::string& type);              // src/render/texture/registry.cpp
+BsdfFactory findBsdfFactory(const std::string& type);                    // src/render/bsdf/registry.cpp
+EmitterFactory findEmitterFactory(const std::string& type);              // src/render/emitter/registry.cpp
+VolumeFactory findVolumeFactory(const std::string& type);                // src/render/medium/registry.cpp
+PhaseFunctionFactory findPhaseFunctionFactory(const std::string& type);  // likewise
 std::vector<std::string> textureTypes();
 std::vector<std::string> bsdfTypes();
 std::vector<std::string> emitterTypes();
+std::vector<std::string> volumeTypes();
+std::vector<std::string> phaseFunctionTypes();
 std::vector<std::string> shapeTypes();  // src/render/shape/registry.cpp
 
 // Makes the geometry of a <shape> element: its BSDF and emitter are set by who calls. Throws SceneError;

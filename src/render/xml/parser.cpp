@@ -34,9 +34,7 @@ std::vector<std::string> knownTags() {
 // Those of which something is drawn, for suggestions.
 std::vector<std::string> usefulTags() {
   std::vector<std::string> tags = knownTags();
-  std::erase_if(tags, [](const std::string& tag) {
-    return tag == "medium" || tag == "phase" || tag == "subsurface" || tag == "volume";
-  });
+  std::erase(tags, "subsurface");
   return tags;
 }
 

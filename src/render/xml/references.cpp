@@ -10,11 +10,12 @@ namespace {
 
 // Chains of references end up as nested calls of whoever builds the scene.
 constexpr int kMaxReferenceDepth = 200;
-// A BSDF that blends two of which each blends the same two, and so on, takes for ever to evaluate.
+// A BSDF that blends two of which each blends the same two, and so on, takes for ever to evaluate; so does
+// such a phase function.
 constexpr uint64_t kMaxReferencedParts = 1000;
 
 bool isMaterial(const Properties& node) {
-  return node.tag == "bsdf" || node.tag == "texture";
+  return node.tag == "bsdf" || node.tag == "texture" || node.tag == "phase";
 }
 
 }  // namespace

@@ -1,0 +1,33 @@
+// The volumes and phase functions that scenes may name.
+#include "render/medium/volume_factories.h"
+#include "render/scene/factory_table.h"
+
+namespace odis::render {
+
+namespace {
+
+constexpr std::pair<const char*, VolumeFactory> kVolumes[] = {
+    {"constvolume", makeConstantVolume},
+};
+
+constexpr std::pair<const char*, PhaseFunctionFactory> kPhaseFunctions[] = {
+    {"hg", makeHenyeyGreenstein},
+    {"isotropic", makeIsotropic},
+};
+
+}  // namespace
+
+VolumeFactory findVolumeFactory(const std::string& type) {
+  return findFactory(kVolumes, type);
+}
+PhaseFunctionFactory findPhaseFunctionFactory(const std::string& type) {
+  return findFactory(kPhaseFunctions, type);
+}
+std::vector<std::string> volumeTypes() {
+  return typesIn(kVolumes);
+}
+std::vector<std::string> phaseFunctionTypes() {
+  return typesIn(kPhaseFunctions);
+}
+
+}  // namespace odis::render
