@@ -7,7 +7,7 @@ extern "C" int LLVMFuzzerTestOneInput(const uint8_t* bytes, size_t size) {
   using namespace odis::render;
   const odis::fuzz::MemoryFile file(bytes, size);
   try {
-    const auto shape = std::make_shared<SdfGrid>(readVolume(file.path(), {}), Matrix4(), size % 2 == 0);
+    const auto shape = std::make_shared<SdfGrid>(readDistanceGrid(file.path(), {}), Matrix4(), size % 2 == 0);
     Scene scene;
     scene.addShape(shape);
     scene.finish();

@@ -388,7 +388,7 @@ TEST(Load, SuggestsOnlyWhatThereIs) {
   EXPECT_TRUE(loaded.warnsOf("the emitter 'directional' of a shape is unknown, it is left out"));
   EXPECT_TRUE(loaded.warnsOf("the integrator 'volpat' is unknown, the radiance"));
   EXPECT_FALSE(loaded.warnsOf("'specfilm'"));
-  EXPECT_EQ(load("<mediun type='homogeneous'/>").error.find("did you mean"), std::string::npos);
+  EXPECT_EQ(load("<subsurfac type='dipole'/>").error.find("did you mean"), std::string::npos);
   const Loaded path = load("<integrator type='pat'/>" + kLight);
   EXPECT_TRUE(path.warnsOf("the integrator 'pat' is unknown (did you mean 'path'?)"));
 }

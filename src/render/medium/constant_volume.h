@@ -11,7 +11,7 @@ class ConstantVolume final : public Volume {
       : m_value(value), m_grey(value.x == value.y && value.y == value.z) {}
 
   Rgb rgb(const Vec3&) const override { return m_value; }
-  float scalar(const Vec3&) const override { return m_grey ? m_value.x : luminance(m_value); }
+  float scalar(const Vec3&) const override { return m_grey ? m_value.x : average(m_value); }
   int channels() const override { return m_grey ? 1 : 3; }
   Rgb greatest() const override { return m_value; }
   Rgb least() const override { return m_value; }

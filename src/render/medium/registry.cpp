@@ -8,6 +8,7 @@ namespace {
 
 constexpr std::pair<const char*, VolumeFactory> kVolumes[] = {
     {"constvolume", makeConstantVolume},
+    {"gridvolume", makeGridVolume},
 };
 
 constexpr std::pair<const char*, PhaseFunctionFactory> kPhaseFunctions[] = {

@@ -22,8 +22,8 @@ class Volume {
 
   // The value at a point in world space: a colour, or a grey.
   virtual Rgb rgb(const Vec3& p) const = 0;
-  // The same as one number: the luminance of a colour, the mean of six channels.
-  virtual float scalar(const Vec3& p) const { return rgb(p).x; }
+  // The same as one number: the luminance of a grid's colour, the mean of other channels.
+  virtual float scalar(const Vec3& p) const = 0;
   // The parameters of an SGGX distribution, Sxx, Syy, Szz, Sxy, Sxz, Syz, of volumes with six channels.
   virtual std::array<float, 6> six(const Vec3& /*p*/) const { return {}; }
   virtual int channels() const = 0;  // 1, 3 or 6

@@ -6,6 +6,7 @@
 namespace odis::render {
 
 VolumePtr makeConstantVolume(const Properties& node, Builder& builder);
+VolumePtr makeGridVolume(const Properties& node, Builder& builder);
 
 PhaseFunctionPtr makeHenyeyGreenstein(const Properties& node, Builder& builder);
 PhaseFunctionPtr makeIsotropic(const Properties& node, Builder& builder);

@@ -18,9 +18,9 @@ struct DistanceGrid {
   std::vector<float> values;
 };
 
-// Reads a file of one channel in Mitsuba's format of volumes. Throws SceneError: at `at` if it can't be read,
-// in the file if it is no such file. src/render/shape/volume_file.cpp
-DistanceGrid readVolume(const std::string& path, const SourceLocation& at);
+// Reads a volume of one channel. Throws SceneError: at `at` if it can't be read, in the file if it is no such
+// file. src/render/shape/sdfgrid.cpp
+DistanceGrid readDistanceGrid(const std::string& path, const SourceLocation& at);
 
 // Hansson-Soderlund et al. 2022, "Ray Tracing of Signed Distance Function Grids". Every cell that the surface
 // passes through is a primitive. There are no texture coordinates.

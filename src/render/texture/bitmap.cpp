@@ -23,37 +23,6 @@ namespace odis::render {
 
 namespace {
 
-// What an index outside of the image turns into where there is no texel.
-constexpr int kZero = -1, kOne = -2;
-
-int wrap(int i, int n, WrapMode mode) {
-  if (i >= 0 && i < n) return i;
-  switch (mode) {
-    case WrapMode::repeat: {
-      const int r = i % n;
-      return r < 0 ? r + n : r;
-    }
-    case WrapMode::clamp:
-      return i < 0 ? 0 : n - 1;
-    case WrapMode::mirror: {
-      int r = i % (2 * n);
-      if (r < 0) r += 2 * n;
-      return r < n ? r : 2 * n - 1 - r;
-    }
-    case WrapMode::zero:
-      return kZero;
-    case WrapMode::one:
-      return kOne;
-  }
-  return kZero;
-}
-
-// floor() as an int, of what fits one.
-int floorOf(float x) {
-  const int i = int(x);
-  return i - int(float(i) > x);
-}
-
 // Texel coordinates that fit an int; NaN and the absurd become the origin.
 float tame(float x) {
   return std::abs(x) < 1e9f ? x : 0.0f;
@@ -125,7 +94,7 @@ BitmapTexture::Patch BitmapTexture::patch(const Vec2& uv) const {
 template <class T, class Fetch>
 T BitmapTexture::texel(int x, int y, Fetch&& fetch) const {
   if (x >= 0 && y >= 0) return fetch(x, y);
-  return T((x < 0 ? x : y) == kOne ? 1.0f : 0.0f);
+  return T((x < 0 ? x : y) == kOneTexel ? 1.0f : 0.0f);
 }
 
 template <class T, class Fetch>

@@ -4,10 +4,9 @@
 #include "render/image/image.h"
 #include "render/texture/texture.h"
 #include "render/texture/uv_transform.h"
+#include "render/texture/wrap_mode.h"
 
 namespace odis::render {
-
-enum class WrapMode { repeat, clamp, mirror, zero, one };
 
 class BitmapTexture final : public Texture {
  public:
