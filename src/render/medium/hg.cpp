@@ -3,7 +3,7 @@
 //   g   0.8   mean cosine of the angle of deflection, between -1 (backwards) and 1 (forwards), 0 is isotropic
 //
 // Henyey and Greenstein 1941, "Diffuse radiation in the Galaxy".
-#include "render/math/angles.h"
+#include "render/medium/around_axis.h"
 #include "render/medium/volume_factories.h"
 
 namespace odis::render {
@@ -18,10 +18,7 @@ class HenyeyGreenstein final : public PhaseFunction {
   Sample sample(const MediumPoint& at, float, const Vec2& u) const override {
     const float a = m_asymmetry;
     const float c = 2 * u.x * sqr(1 - a) * (1 + a * (1 - u.x)) / sqr((1 - a) + 2 * a * (1 - u.x));
-    const float sinTheta = safeSqrt(c * (2 - c));
-    const auto [sinPhi, cosPhi] = sinCosOfTurns(u.y);
-    const CoordinateFrame frame(axis(at));
-    return {frame.toWorld({sinTheta * cosPhi, sinTheta * sinPhi, 1 - c}), density(c)};
+    return {aroundAxis(axis(at), 1 - c, safeSqrt(c * (2 - c)), u.y), density(c)};
   }
 
   float pdf(const MediumPoint& at, const Vec3& wi) const override {

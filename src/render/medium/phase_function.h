@@ -34,6 +34,8 @@ class PhaseFunction {
   virtual float roughness() const { return 1; }
   // The factor that the density of a medium has for rays along `at.wo`: the projected area of microflakes.
   virtual float projectedArea(const MediumPoint& /*at*/) const { return 1; }
+  // An upper bound of it over all places and directions.
+  virtual float greatestProjectedArea() const { return 1; }
 };
 
 using PhaseFunctionPtr = std::shared_ptr<const PhaseFunction>;

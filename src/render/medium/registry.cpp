@@ -12,8 +12,8 @@ constexpr std::pair<const char*, VolumeFactory> kVolumes[] = {
 };
 
 constexpr std::pair<const char*, PhaseFunctionFactory> kPhaseFunctions[] = {
-    {"hg", makeHenyeyGreenstein},
-    {"isotropic", makeIsotropic},
+    {"blendphase", makeBlendPhase}, {"hg", makeHenyeyGreenstein}, {"isotropic", makeIsotropic},
+    {"rayleigh", makeRayleigh},     {"sggx", makeSggx},           {"tabphase", makeTabulated},
 };
 
 }  // namespace

@@ -8,6 +8,7 @@ TexturePtr makeBitmapTexture(const Properties&, Builder&);
 TexturePtr makeCheckerboardTexture(const Properties&, Builder&);
 TexturePtr makeMeshAttributeTexture(const Properties&, Builder&);
 TexturePtr makeScaleTexture(const Properties&, Builder&);
+TexturePtr makeVolumeTexture(const Properties&, Builder&);
 
 namespace {
 
@@ -16,6 +17,7 @@ constexpr std::pair<const char*, TextureFactory> kFactories[] = {
     {"checkerboard", makeCheckerboardTexture},
     {"mesh_attribute", makeMeshAttributeTexture},
     {"scale", makeScaleTexture},
+    {"volume", makeVolumeTexture},
 };
 
 }  // namespace
