@@ -1,5 +1,6 @@
 // Nested cells in world space: cubes of doubling size, each split by the dominant axis of the surface
-// normal. A cell is named by a key of 64 bits: three coordinates of 19 bits, the axis, the level.
+// normal; vertices in media, which have none, have cells of their own. A cell is named by a key of 64 bits:
+// three coordinates of 19 bits, the axis, the level.
 //
 // Up to the grid's reach all cells of a level have the same size. Beyond it they lie in rings, each twice as
 // far out as the one before and made of cells twice as large, so that a horizon needs few of them. The number
@@ -80,6 +81,8 @@ class CellGrid {
                 levelOf(key) + 1);
   }
   ODIS_HOST_DEVICE static int levelOf(uint64_t key) { return int(key >> 60); }
+  // Whether a cell is one of a medium: its vertices have no normals, and all cosines are 1.
+  ODIS_HOST_DEVICE static bool isOfMedium(uint64_t key) { return axisOf(key) == kNoAxis; }
 
  private:
   static constexpr int kBits = 19, kMiddle = 1 << (kBits - 1);
@@ -87,6 +90,7 @@ class CellGrid {
   // Coordinates of all rings stay below half a stride, and those of the outermost one within 19 bits.
   static constexpr int kRingBits = 11, kRingStride = 1 << kRingBits, kMostRing = 120;
   static constexpr int kRingMiddle = kRingStride / 2;
+  static constexpr uint32_t kNoAxis = 6;
   // Cells of ring r have 2^(r + kRingExponent) times the edge of those within reach.
   static constexpr int kRingExponent = 2;
 
@@ -122,12 +126,13 @@ class CellGrid {
     const int towardsZero = int(x);
     return towardsZero - int(x < float(towardsZero));
   }
-  // 0 to 5: +x, -x, +y, -y, +z, -z.
+  // 0 to 5: +x, -x, +y, -y, +z, -z; 6 of zero, which is that of vertices in media.
   ODIS_HOST_DEVICE static uint32_t dominantAxis(const Float3& n) {
     const float x = abs(n.x), y = abs(n.y), z = abs(n.z);
     // Without branches, which would often be mispredicted: compilers choose between integers without.
     const bool isX = (x >= y) & (x >= z), isY = !isX & (y >= z);
-    const uint32_t alongX = !(n.x >= 0), alongY = 2 + uint32_t(!(n.y >= 0)),
+    const uint32_t zero = kNoAxis * uint32_t(x + y + z == 0);  // its isX holds
+    const uint32_t alongX = uint32_t(!(n.x >= 0)) + zero, alongY = 2 + uint32_t(!(n.y >= 0)),
                    alongZ = 4 + uint32_t(!(n.z >= 0));
     return isX ? alongX : isY ? alongY : alongZ;
   }

@@ -16,6 +16,14 @@ inline OdisSurfaceEvent surfaceEvent(const Float3& position, const Float3& norma
   return event;
 }
 
+inline OdisMediumEvent mediumEvent(const Float3& position, const Float3& wo, float distance) {
+  OdisMediumEvent event;
+  event.position = position;
+  event.wo = wo;
+  event.distance = distance;
+  return event;
+}
+
 inline OdisEmissionEvent emissionEvent(const Float3& radiance, float misWeight, float lightPdf) {
   OdisEmissionEvent event;
   event.radiance = radiance;

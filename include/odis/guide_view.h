@@ -30,9 +30,11 @@ using GuideView = OdisGuideView;
 inline constexpr int kRoughnessClasses = ODIS_ROUGHNESS_CLASSES;
 inline constexpr uint32_t kMaxLightGroups = ODIS_MAX_LIGHT_GROUPS;
 
-// The cell of the pixel's own map, for the first vertices of paths; kNoCell where there is none.
+// The cell of the pixel's own map, for the first vertices of paths; kNoCell where there is none, as in media.
 ODIS_HOST_DEVICE inline uint32_t pixelCell(const GuideView& view, const Place& place) {
-  return place.first && place.pixel < view.pixels.count ? view.pixels.cells[place.pixel] : kNoCell;
+  return place.first && place.pixel < view.pixels.count && !isZero(place.normal)
+             ? view.pixels.cells[place.pixel]
+             : kNoCell;
 }
 
 // The finest cell that there is of those around a key of the finest level, whose cellHash() is given; kNoCell

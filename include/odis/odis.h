@@ -102,7 +102,8 @@ ODIS_API const char* odisReadSetting(const char* settings, const char* name);
 // Many paths may be open at once, their events in any order as long as each path's own are in order:
 //
 //   for each ray of the path:
-//     odisRecordSurface or odisRecordEscape
+//     odisRecordAttenuation        for each factor that the path's weight has on the way, in media
+//     odisRecordSurface, odisRecordMedium or odisRecordEscape
 //     odisRecordEmission           for each emitter that the ray met
 //     odisRecordCachedRadiance     if the path ended with cached radiance: it is complete then
 //     odisRecordSurvival           if roulette was played on arrival
@@ -110,7 +111,8 @@ ODIS_API const char* odisReadSetting(const char* settings, const char* name);
 //     odisRecordBounce             if the path was scattered, even if it ends then
 //   odisFinishPaths                closes all paths
 //
-// A surface without a bounce (the path ended there by its depth, or by roulette on arrival) leaves no vertex.
+// In what follows a surface is also a place in a medium where the path is scattered. One without a bounce
+// (the path ended there by its depth, or by roulette on arrival) leaves no vertex.
 // Another order is an error: what follows an escape, cached radiance or a bounce without being about the next
 // ray, roulette after the shadow ray, and a second roulette or light event of one surface. Numbers out of
 // their range are counted where the vertices are used (OdisVertexCounts).
@@ -121,6 +123,15 @@ ODIS_API void odisReleaseRecorder(OdisRecorder recorder);
 ODIS_API uint32_t odisBeginPath(OdisRecorder recorder, const OdisPathIdentity* identity);
 ODIS_API void odisInitSurfaceEvent(OdisSurfaceEvent* event, size_t size);
 ODIS_API bool odisRecordSurface(OdisRecorder recorder, uint32_t path, const OdisSurfaceEvent* event);
+ODIS_API void odisInitMediumEvent(OdisMediumEvent* event, size_t size);
+// A ray was scattered in a medium: what follows is as after a surface.
+ODIS_API bool odisRecordMedium(OdisRecorder recorder, uint32_t path, const OdisMediumEvent* event);
+// The ray under way is multiplied by `factor`, of finite numbers from 0: transmittance over its probability,
+// scattering coefficient over density, the colour of a boundary that is passed. Told as often as there are
+// factors, the camera ray's included, before or after the ray's surface, medium or escape event, but before
+// roulette, light events and cached radiance there. What arrives at the vertex that the ray left is
+// multiplied by all of them, emission by those that were told before it.
+ODIS_API bool odisRecordAttenuation(OdisRecorder recorder, uint32_t path, const OdisFloat3* factor);
 // The ray left the scene. Emission of the environment follows as an event of its own.
 ODIS_API bool odisRecordEscape(OdisRecorder recorder, uint32_t path);
 ODIS_API void odisInitEmissionEvent(OdisEmissionEvent* event, size_t size);

@@ -42,6 +42,7 @@ using FrameSample = OdisFrameSample;
 using FrameStatistics = OdisFrameStatistics;
 using PathIdentity = OdisPathIdentity;
 using SurfaceEvent = OdisSurfaceEvent;
+using MediumEvent = OdisMediumEvent;
 using EmissionEvent = OdisEmissionEvent;
 using LightEvent = OdisLightEvent;
 using BounceEvent = OdisBounceEvent;
@@ -190,6 +191,8 @@ class PathRecorder : public Handle<OdisRecorder, odisRetainRecorder, odisRelease
     return checked(UINT32_MAX, [&] { return odisBeginPath(get(), &identity); });
   }
   void surface(uint32_t path, const SurfaceEvent& e) { record(path, odisRecordSurface, &e); }
+  void medium(uint32_t path, const MediumEvent& e) { record(path, odisRecordMedium, &e); }
+  void attenuation(uint32_t path, const Float3& factor) { record(path, odisRecordAttenuation, &factor); }
   void escape(uint32_t path) { record(path, odisRecordEscape); }
   void emission(uint32_t path, const EmissionEvent& e) { record(path, odisRecordEmission, &e); }
   void cached(uint32_t path, const Float3& radiance) { record(path, odisRecordCachedRadiance, &radiance); }

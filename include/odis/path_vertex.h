@@ -30,6 +30,11 @@ enum class VertexState : uint8_t {
   unknownLights
 };
 
+// Whether the path was scattered in a medium, not on a surface.
+inline bool isInMedium(const PathVertex& v) {
+  return isZero(v.normal);
+}
+
 // Whether optional numbers of a vertex are unknown or what they can be. Probabilities and cosines may be a
 // little above 1, as sums of rounded numbers are.
 inline bool isWithinRange(const PathVertex& v) {
@@ -37,11 +42,12 @@ inline bool isWithinRange(const PathVertex& v) {
   const auto isPositive = [](float x) { return x >= 0; };  // what is not a number isn't, either
   const auto isPositiveOrUnknown = [](float x) { return !(x < 0); };
   return isPositive(v.distance) && isPositive(v.roughness) && !(v.survival > kOne) &&
-         isPositiveOrUnknown(v.cosine) && !(v.cosine > kOne) && isPositiveOrUnknown(v.guidablePdf) &&
-         isPositiveOrUnknown(v.guidableProbability) && !(v.guidableProbability > kOne) &&
-         isPositiveOrUnknown(v.raysAfter) && isPositive(v.emissionLightPdf) && isPositive(v.lightPdf) &&
-         isPositive(v.lightBsdfPdf) && isPositive(v.lightGuidablePdf) &&
-         isPositive(v.lightGroupProbability) && !(v.lightGroupProbability > kOne);
+         (isInMedium(v) || (isPositiveOrUnknown(v.cosine) && !(v.cosine > kOne))) &&
+         isPositiveOrUnknown(v.guidablePdf) && isPositiveOrUnknown(v.guidableProbability) &&
+         !(v.guidableProbability > kOne) && isPositiveOrUnknown(v.raysAfter) &&
+         isPositive(v.emissionLightPdf) && isPositive(v.lightPdf) && isPositive(v.lightBsdfPdf) &&
+         isPositive(v.lightGuidablePdf) && isPositive(v.lightGroupProbability) &&
+         !(v.lightGroupProbability > kOne);
 }
 
 // The state of a vertex, whichever lobe `wi` is of.
@@ -50,13 +56,14 @@ inline VertexState checkNumbers(const PathVertex& v) {
   const auto nothing = [](const Float3& w) { return 0 * w.x + 0 * w.y + 0 * w.z; };
   // Interpolated normals and directions from half floats are a little off.
   const auto isUnit = [](const Float3& w) { return dot(w, w) > 0.9f && dot(w, w) < 1.1f; };
-  const float cosine = std::isnan(v.cosine) ? 0 : v.cosine;
+  const bool inMedium = isInMedium(v);
+  const float cosine = inMedium || std::isnan(v.cosine) ? 0 : v.cosine;
   if (!(nothing(v.position) + nothing(v.normal) + nothing(v.wi) + nothing(v.radiance) + 0 * v.pdf +
             0 * cosine ==
         0))
     return VertexState::notFinite;
   if (!(v.pdf > 0 && v.survival > 0)) return VertexState::noDensity;
-  if (!isUnit(v.normal) || !isUnit(v.wi)) return VertexState::notUnit;
+  if (!(inMedium || isUnit(v.normal)) || !isUnit(v.wi)) return VertexState::notUnit;
   if (v.depth == 0) return VertexState::noDepth;
   // A `wo` that is left out is zero; half floats are a little off.
   if (dot(v.normal, v.wo) < -1e-3f) return VertexState::wrongSide;

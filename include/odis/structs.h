@@ -243,7 +243,7 @@ typedef struct OdisVertexCounts {
   uint64_t discrete ODIS_DEFAULT(0);   // delta lobes: there is nothing to learn from
   uint64_t notFinite ODIS_DEFAULT(0);  // position, normal, wi, radiance, pdf or cosine
   uint64_t noDensity ODIS_DEFAULT(0);  // pdf or survival not positive
-  uint64_t notUnit ODIS_DEFAULT(0);    // normal or wi
+  uint64_t notUnit ODIS_DEFAULT(0);    // normal, unless zero (in media), or wi
   uint64_t noDepth ODIS_DEFAULT(0);    // depth 0
   uint64_t outsideFrame
       ODIS_DEFAULT(0);  // pixel or sample that the pass did not ask for; counted by frames alone
@@ -255,6 +255,8 @@ typedef struct OdisVertexCounts {
   // lightGroup beyond OdisGuideOptions.lightGroups, where that is not 0.
   uint64_t unknownLights ODIS_DEFAULT(0);
   uint64_t twice ODIS_DEFAULT(0);  // pixel, sample and depth of a vertex before; counted by frames alone
+  // Of those accepted: scattered in media, which a normal of zero says.
+  uint64_t inMedia ODIS_DEFAULT(0);
 } OdisVertexCounts;
 
 // ---- the events of a path ----
@@ -276,10 +278,20 @@ typedef struct OdisSurfaceEvent {
   float time ODIS_DEFAULT(0);
 } OdisSurfaceEvent;
 
+// A ray was scattered in a medium.
+typedef struct OdisMediumEvent {
+  size_t size ODIS_DEFAULT(sizeof(OdisMediumEvent));
+  OdisFloat3 position;
+  OdisFloat3 wo;                                 // towards where the ray came from
+  float distance ODIS_DEFAULT(0);                // >= 0: from the last vertex, boundaries passed over
+  uint32_t lightableGroups ODIS_DEFAULT(~(0u));  // see OdisPathVertex
+  float time ODIS_DEFAULT(0);
+} OdisMediumEvent;
+
 // A ray met emission.
 typedef struct OdisEmissionEvent {
   size_t size ODIS_DEFAULT(sizeof(OdisEmissionEvent));
-  OdisFloat3 radiance;
+  OdisFloat3 radiance;              // the emitter's own, without what odisRecordAttenuation was told
   float misWeight ODIS_DEFAULT(1);  // of the ray's direction against next-event estimation
   float lightPdf
       ODIS_DEFAULT(0);  // density with which next-event estimation would have found it; 0 if it can't
@@ -307,7 +319,7 @@ typedef struct OdisBounceEvent {
   float guidablePdf ODIS_DEFAULT(ODIS_UNKNOWN);  // see OdisPathVertex for this and what follows
   float guidableProbability ODIS_DEFAULT(ODIS_UNKNOWN);
   float survival ODIS_DEFAULT(1);
-  float cosine ODIS_DEFAULT(ODIS_UNKNOWN);
+  float cosine ODIS_DEFAULT(ODIS_UNKNOWN);  // in media it is 1, whatever is said here
   float roughness ODIS_DEFAULT(1);
   bool discrete ODIS_DEFAULT(false), scattersBothSides ODIS_DEFAULT(false);
 } OdisBounceEvent;

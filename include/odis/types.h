@@ -40,6 +40,11 @@ ODIS_HOST_DEVICE inline Real dot(const Vector3<Real>& a, const Vector3<Real>& b)
   return a.x * b.x + a.y * b.y + a.z * b.z;
 }
 
+// Whether a vector is zero, as the normals of vertices in media are.
+ODIS_HOST_DEVICE inline bool isZero(const Float3& v) {
+  return v.x == 0 && v.y == 0 && v.z == 0;
+}
+
 // The luminance of a linear colour with the primaries of sRGB.
 ODIS_HOST_DEVICE inline float luminance(const Float3& color) {
   return 0.212671f * color.x + 0.715160f * color.y + 0.072169f * color.z;

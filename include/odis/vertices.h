@@ -11,7 +11,9 @@
 // (OdisVertexCounts).
 typedef struct OdisPathVertex {
   OdisFloat3 position;
-  OdisFloat3 normal;  // shading normal, on the side of wo
+  // Shading normal, on the side of wo. Zero: the path was scattered in a medium, not on a surface. There the
+  // phase function takes the BSDF's place, its roughness is 1 - |mean cosine|, and cosines are 1.
+  OdisFloat3 normal;
   // Optional: towards the previous vertex. Nothing that guides today depends on it; data sets keep it.
   OdisFloat3 wo;
   OdisFloat3 wi;  // the sampled direction
@@ -35,7 +37,8 @@ typedef struct OdisPathVertex {
   float distance ODIS_DEFAULT(INFINITY);
   // Optional, >= 0: alpha of the microfacet lobe that matters most, 1 for diffuse and for what is above.
   float roughness ODIS_DEFAULT(1);
-  // Optional, in [0, 1]: |cos| between wi and the normal. Unknown: computed from the two.
+  // Optional, in [0, 1]: |cos| between wi and the normal. Unknown: computed from the two. In media it
+  // is 1, whatever is said here.
   float cosine ODIS_DEFAULT(ODIS_UNKNOWN);
 
   // Optional: what this vertex adds to its pixel, as luminances with all that the path was multiplied by, and

@@ -10,7 +10,8 @@
 
 // Where a look-up is made, and for which sample of which pixel, counted as in the frame.
 typedef struct OdisPlace {
-  OdisFloat3 position, normal;  // unit shading normal, on the side of the outgoing direction
+  // Unit shading normal, on the side of the outgoing direction; zero where the path is scattered in a medium.
+  OdisFloat3 position, normal;
   uint32_t pixel ODIS_DEFAULT(0), sample ODIS_DEFAULT(0);
   // Whether no vertex of the path before this one had lobes that may be guided: maps at pixels are for these.
   bool first ODIS_DEFAULT(false);

@@ -141,7 +141,7 @@ void bindLookups(nb::class_<Guide>& guide) {
       .def("find_cells", findCells, "positions"_a, "normals"_a,
            R"(The finest cell that there is for each vertex: (count,), uint32; NO_CELL where there is none.
 
-positions, normals: float32 of shape (count, 3); shading normals, unit, on wo's side.)")
+positions, normals: float32 of shape (count, 3); shading normals, unit, on wo's side, zero in media.)")
       .def("sample", sample, "cells"_a, "uv"_a,
            R"(Samples the cells' maps: directions (count, 3), densities (count,), float32.
 

@@ -246,10 +246,12 @@ void bindVertices(nb::module_& module) {
               "guidable_pdf above pdf in a pass that is not guided; counted by frames alone.")
       .def_ro("unknown_lights", &VertexCounts::unknownLights, "light_group beyond GuideOptions.light_groups.")
       .def_ro("twice", &VertexCounts::twice,
-              "pixel, sample and depth of a vertex before; counted by frames alone.");
+              "pixel, sample and depth of a vertex before; counted by frames alone.")
+      .def_ro("in_media", &VertexCounts::inMedia,
+              "Of those accepted: scattered in media (a normal of zero).");
   printAttributes(
       counts, {"accepted", "discrete", "not_finite", "no_density", "not_unit", "no_depth", "outside_frame",
-               "wrong_side", "out_of_range", "guidable_above_pdf", "unknown_lights", "twice"});
+               "wrong_side", "out_of_range", "guidable_above_pdf", "unknown_lights", "twice", "in_media"});
 }
 
 }  // namespace odis::python

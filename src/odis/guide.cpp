@@ -270,10 +270,10 @@ uint64_t GuideBuilder::bytes() const {
   return heldBytes() + ofSum + std::max(m_data->own().store.transientBytes(), cells * kPerCell);
 }
 
-// What the radiance in a cell's map is multiplied by: the mean cosine to the normals of its vertices or,
-// without the product, nothing.
+// What the radiance in a cell's map is multiplied by: the mean cosine to the normals of its vertices or, in
+// media and without the product, nothing.
 static Histogram cosinesIn(const CellStatistics& cell, bool cosineProduct) {
-  if (!cosineProduct || !(cell.count > 0)) {
+  if (!cosineProduct || !(cell.count > 0) || cell.inMedium) {
     Histogram ones;
     ones.fill(1);
     return ones;
@@ -292,6 +292,7 @@ Guide GuideBuilder::Data::buildMaps(const CellStore& store, const std::vector<Ce
   result.index = store.index();
   result.keys = store.keys();
   distributions.resize(cells.size());
+  const DirectionFormula formula(options.priorSamples);
   forEachFromCoarse(*tasks, cells, [&](size_t c) {
     const uint32_t parent = cells[c].parent;
     if (!cells[c].hasMap) {
@@ -299,8 +300,8 @@ Guide GuideBuilder::Data::buildMaps(const CellStore& store, const std::vector<Ce
       std::copy_n(result.mapAt(parent), kMapShares, result.mapAt(c));
       return;
     }
-    distributions[c] =
-        directions->predict(chainOf(cells, c), parent == kNoCell ? nullptr : &distributions[parent]);
+    distributions[c] = modelFor<DirectionModel>(cells[c], *directions, formula)
+                           .predict(chainOf(cells, c), parent == kNoCell ? nullptr : &distributions[parent]);
     packMap(product(distributions[c].radiance(), options.floor, cosinesIn(cells[c], options.cosineProduct)),
             result.mapAt(c));
   });

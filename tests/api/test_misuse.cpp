@@ -31,6 +31,7 @@ TEST(ApiMisuse, NullIsAnError) {
   OdisGuideView view;
   const OdisPathVertices vertices;
   const OdisSurfaceEvent surface;
+  const OdisMediumEvent medium;
   const OdisEmissionEvent emission;
   const OdisLightEvent light;
   const OdisBounceEvent bounce;
@@ -42,6 +43,8 @@ TEST(ApiMisuse, NullIsAnError) {
   REFUSED(odisNewRecorder(nullptr));
   REFUSED(odisBeginPath(nullptr, nullptr) != UINT32_MAX);
   REFUSED(odisRecordSurface(nullptr, 0, &surface));
+  REFUSED(odisRecordMedium(nullptr, 0, &medium));
+  REFUSED(odisRecordAttenuation(nullptr, 0, &grey));
   REFUSED(odisRecordEscape(nullptr, 0));
   REFUSED(odisRecordEmission(nullptr, 0, &emission));
   REFUSED(odisRecordSurvival(nullptr, 0, 1));
@@ -119,6 +122,8 @@ TEST(ApiMisuse, NullArgumentsOfObjectsAreErrors) {
   PathRecorder recorder(context);
   REFUSED(odisBeginPath(recorder.get(), nullptr) != UINT32_MAX);
   REFUSED(odisRecordSurface(recorder.get(), recorder.begin({}), nullptr));
+  REFUSED(odisRecordMedium(recorder.get(), recorder.begin({}), nullptr));
+  REFUSED(odisRecordAttenuation(recorder.get(), recorder.begin({}), nullptr));
   REFUSED(odisFinishPaths(recorder.get(), nullptr));
   GuideBuilder builder({}, context);
   const OdisPathVertices none;
@@ -168,6 +173,7 @@ TEST(ApiMisuse, StructsOfAnotherSizeAreRefused) {
   OdisFrameOptions frame;
   OdisGuideOptions guide;
   OdisSurfaceEvent surface;
+  OdisMediumEvent medium;
   OdisEmissionEvent emission;
   OdisLightEvent light;
   OdisBounceEvent bounce;
@@ -181,6 +187,8 @@ TEST(ApiMisuse, StructsOfAnotherSizeAreRefused) {
     odisInitGuideOptions(&guide, size);
     REFUSED(false);
     odisInitSurfaceEvent(&surface, size);
+    REFUSED(false);
+    odisInitMediumEvent(&medium, size);
     REFUSED(false);
     odisInitEmissionEvent(&emission, size);
     REFUSED(false);
@@ -307,6 +315,13 @@ TEST(ApiMisuse, TheOrderOfEventsIsChecked) {
   OUT_OF_ORDER(odisRecordLight(recorder.get(), path, &light));
   OUT_OF_ORDER(odisRecordLightHidden(recorder.get(), path));
   REFUSED(odisRecordEscape(recorder.get(), path + 1));
+  for (const float factor : {-0.5f, INFINITY, NAN}) {
+    const OdisFloat3 attenuation{1, factor, 1};
+    REFUSED(odisRecordAttenuation(recorder.get(), path, &attenuation));
+  }
+  OdisMediumEvent medium;
+  medium.distance = -1;
+  REFUSED(odisRecordMedium(recorder.get(), path, &medium));
   recorder.finish();
   REFUSED(odisRecordEscape(recorder.get(), path));
 }

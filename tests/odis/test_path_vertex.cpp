@@ -62,7 +62,7 @@ std::vector<Defect> defects() {
           noDensity([](PathVertex& v) { v.survival = 0; }),
           noDensity([](PathVertex& v) { v.survival = NAN; }),
           notUnit([](PathVertex& v) {
-            v.normal = {0, 0, 0};
+            v.normal = {0, 0, 1e-20f};
           }),
           notUnit([](PathVertex& v) {
             v.normal = {0, 0, 2};
@@ -122,7 +122,7 @@ TEST(VertexCounts, EachReasonIsCountedByBuilders) {
 }
 
 TEST(VertexCounts, AddUp) {
-  const VertexCounts one{sizeof one, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12};
+  const VertexCounts one{sizeof one, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13};
   VertexCounts sum = one;
   addCounts(sum, one);
   EXPECT_EQ(refusedVertices(one), 77u);
@@ -138,6 +138,7 @@ TEST(VertexCounts, AddUp) {
   EXPECT_EQ(sum.guidableAbovePdf, 20u);
   EXPECT_EQ(sum.unknownLights, 22u);
   EXPECT_EQ(sum.twice, 24u);
+  EXPECT_EQ(sum.inMedia, 26u);
 }
 
 TEST(VertexCounts, AreNothingBeforeAnythingIsAdded) {
@@ -182,9 +183,9 @@ TEST(VertexCounts, FramesCountWhatThePassDidNotAskFor) {
     vertices.push_back(leastVertex());
     vertices.back().pixel = pixel;
   }
-  vertices[3].pixel = 16;   // beyond the frame
-  vertices[4].sample = 1;   // not yet
-  vertices[5].normal = {};  // of no use
+  vertices[3].pixel = 16;  // beyond the frame
+  vertices[4].sample = 1;  // not yet
+  vertices[5].wi = {};     // of no use
   frame.add(samples, vertices);
   frame.endPass();
   const VertexCounts counts = frame.vertexCounts();

@@ -24,7 +24,8 @@ MARGIN = 16
 # Learned probabilities of groups of lights are multiples of 1 / WHOLE, so that their sums fit in 16 bits.
 WHOLE = 1 << 16
 DEEP_PATH, MOST_DEEP_SURVIVAL = 32, 0.95  # as in odis/guide_view.h
-# The normals of the six orientations of cells, in the order of the grid: +x, -x, +y, -y, +z, -z.
+# The normals of the orientations of cells of surfaces, in the order of the grid: +x, -x, +y, -y, +z, -z. Cells of media
+# (a normal of zero, the seventh orientation of the grid) are left out: the integrator traces surfaces alone.
 ORIENTATIONS = np.array([[1, 0, 0], [-1, 0, 0], [0, 1, 0], [0, -1, 0], [0, 0, 1], [0, 0, -1]], np.float32)
 
 
@@ -148,7 +149,7 @@ def make_guide_tables(guide):
 
 
 def orientation_of(normal):
-    """The number of the axis that a normal points along, in the order of ORIENTATIONS."""
+    """The number of the axis that a normal, not zero, points along, in the order of ORIENTATIONS."""
     a = dr.abs(normal)
     x_most, y_most = (a.x >= a.y) & (a.x >= a.z), a.y >= a.z
     most = dr.select(x_most, normal.x, dr.select(y_most, normal.y, normal.z))
@@ -161,7 +162,7 @@ def find_cell(tables, position, normal, active):
     local = (position - tables.origin) * tables.inverse_edge
     at = mi.Vector3i(dr.floor(local))
     # Before they become integers: what is huge has none.
-    inside = active & dr.all((local >= 0) & (local < mi.Vector3f(tables.size)))
+    inside = active & dr.all((local >= 0) & (local < mi.Vector3f(tables.size))) & dr.any(normal != 0)
     entry = ((at.z * tables.size.y + at.y) * tables.size.x + at.x) * 6 + mi.Int32(orientation_of(normal))
     return dr.select(inside, dr.gather(mi.UInt32, tables.entries, mi.UInt32(entry), inside), odis.NO_CELL)
 

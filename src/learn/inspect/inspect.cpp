@@ -28,7 +28,7 @@ constexpr size_t kMostStarts = 256;
 
 // What arrived in a cell, radiance times cosine, over the cosine to its mean normal.
 core::Histogram radianceOf(const core::CellStatistics& cell, const core::Histogram& arrived) {
-  const core::Histogram cosines = core::cosinesTo(core::meanNormal(cell));
+  const core::Histogram cosines = core::cosinesOf(cell);
   core::Histogram radiance;
   for (size_t t = 0; t < kMapTexels; ++t) radiance[t] = arrived[t] * core::inverseCosine(cosines[t]);
   return radiance;

@@ -25,7 +25,8 @@ Json jsonCounts(const VertexCounts& c) {
           {"outOfRange", c.outOfRange},
           {"guidableAbovePdf", c.guidableAbovePdf},
           {"unknownLights", c.unknownLights},
-          {"twice", c.twice}};
+          {"twice", c.twice},
+          {"inMedia", c.inMedia}};
 }
 
 Json jsonGuide(const GuideSummary& guide) {

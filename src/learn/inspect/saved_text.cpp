@@ -31,6 +31,7 @@ std::string levelsText(const std::array<uint32_t, kCellLevels>& cells) {
 // Counts with their reasons; those that are 0 are left out.
 std::string countsText(const VertexCounts& c) {
   std::string text = fmt::format("{} taken", c.accepted);
+  if (c.inMedia > 0) text += fmt::format(", {} of them in media", c.inMedia);
   const std::pair<const char*, uint64_t> reasons[] = {{"discrete", c.discrete},
                                                       {"not finite", c.notFinite},
                                                       {"without density", c.noDensity},

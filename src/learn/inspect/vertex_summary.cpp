@@ -12,7 +12,7 @@ VertexSummary summarizeVertices(VertexParts parts) {
     for (const PathVertex& v : part) {
       ++result.count;
       const VertexState state = checkVertex(v);
-      core::countVertex(result.counts, state);
+      core::countVertex(result.counts, v, state);
       if (v.depth > 0) ++result.depth[std::min<size_t>(v.depth, VertexSummary::kDepths) - 1];
       result.discrete += v.discrete;
       result.scattersBothSides += v.scattersBothSides;

@@ -73,6 +73,9 @@ inline const char* initializerOf(const OdisPathVertices&) {
 inline const char* initializerOf(const OdisSurfaceEvent&) {
   return "odisInitSurfaceEvent";
 }
+inline const char* initializerOf(const OdisMediumEvent&) {
+  return "odisInitMediumEvent";
+}
 inline const char* initializerOf(const OdisEmissionEvent&) {
   return "odisInitEmissionEvent";
 }

@@ -91,6 +91,19 @@ bool odisRecordSurface(OdisRecorder recorder, uint32_t path, const OdisSurfaceEv
   return recordEvent(recorder, event, "odisRecordSurface",
                      [&](PathRecorder& to, const OdisSurfaceEvent& e) { to.surface(path, e); });
 }
+void odisInitMediumEvent(OdisMediumEvent* event, size_t size) {
+  initialize(event, size, "OdisMediumEvent");
+}
+bool odisRecordMedium(OdisRecorder recorder, uint32_t path, const OdisMediumEvent* event) {
+  return recordEvent(recorder, event, "odisRecordMedium",
+                     [&](PathRecorder& to, const OdisMediumEvent& e) { to.medium(path, e); });
+}
+bool odisRecordAttenuation(OdisRecorder recorder, uint32_t path, const OdisFloat3* factor) {
+  return recordFor(recorder, "odisRecordAttenuation", [&](PathRecorder& to) {
+    odis::core::requireArgument(factor, "odisRecordAttenuation: factor");
+    to.attenuation(path, *factor);
+  });
+}
 bool odisRecordEscape(OdisRecorder recorder, uint32_t path) {
   return recordFor(recorder, "odisRecordEscape", [&](PathRecorder& to) { to.escape(path); });
 }

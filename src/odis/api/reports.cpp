@@ -69,6 +69,7 @@ void RefusalWarnings::report(OdisContextImpl& context, const VertexCounts& count
 
 std::string countsText(const VertexCounts& counts) {
   std::string text = std::to_string(counts.accepted) + " vertices were taken";
+  if (counts.inMedia > 0) text += ", " + std::to_string(counts.inMedia) + " of them in media";
   for (const RefusalReason& reason : RefusalWarnings::reasons())
     if (const uint64_t count = counts.*reason.count; count > 0)
       text += ", " + std::to_string(count) + " left out " + reason.words;

@@ -79,6 +79,7 @@ void CellStore::add(const CellStore& other, double weight) {
   for (size_t c = 0; c < other.m_cells.size(); ++c) {
     const CellStatistics& cell = other.m_cells[c];
     if (cell.level > 0 || cell.count * weight < kLeastSamples) continue;
+    // In media the sum of the normals is zero, which makes a key of a medium again.
     newCell[c] = insert(sameGrid ? other.m_links[c].key : m_grid.key(cell.centroid, cell.normal, 0));
   }
   addNewCells();

@@ -44,7 +44,7 @@ BatchSamples takeSamples(const VertexBatch& batch, const VertexRules& rules) {
   for (const ArrayView<const PathVertex>& piece : batch)
     for (const PathVertex& v : piece) {
       const VertexState state = checkVertex(v, rules);
-      countVertex(result.counts, state);
+      countVertex(result.counts, v, state);
       if (state != VertexState::usable && !tellsWhatReturns(v, rules)) continue;
       const float value = v.discrete ? 0 : sampleValue(v);
       const float rays = 1 + (std::isnan(v.raysAfter) ? 0 : v.raysAfter);

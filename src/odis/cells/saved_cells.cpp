@@ -89,8 +89,10 @@ void CellStore::load(const Archive& file, const std::string& name) {
   for (CellStatistics& cell : m_cells) {
     if (cell.level > 0) continue;
     const uint32_t parent = cell.parent;
+    const bool inMedium = cell.inMedium;
     cell = cells[next];
     cell.parent = parent;
+    cell.inMedium = inMedium;
     if (m_caches) cell.halves = {returned[2 * next], returned[2 * next + 1]};
     ++next;
   }

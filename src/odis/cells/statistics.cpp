@@ -6,6 +6,7 @@
 
 #include "odis/cells/place_grid.h"
 #include "odis/cells/surroundings.h"
+#include "odis/maps/texel_directions.h"
 #include "odis/record/vertex_check.h"
 
 namespace odis::core {
@@ -26,6 +27,13 @@ Float3 reaim(const Float3& position, const Float3& wi, float distance, const Flo
   const float squared = dot(direction, direction);
   const bool usable = squared > 1e-20f && squared < INFINITY && dot(direction, wi) > 0;
   return usable ? direction * (1 / std::sqrt(squared)) : wi;
+}
+
+Histogram cosinesOf(const CellStatistics& cell) {
+  if (!cell.inMedium) return cosinesTo(meanNormal(cell));
+  Histogram ones;
+  ones.fill(1);
+  return ones;
 }
 
 CellStore::CellStore(float clamp, bool looksAround, std::shared_ptr<const Tasks> tasks)
@@ -175,6 +183,7 @@ void CellStore::addNewCells() {
     m_cells[c].parent = link.parent;
     assert(link.level < kCellLevels);
     m_cells[c].level = link.level;
+    m_cells[c].inMedium = CellGrid::isOfMedium(link.key);
     if (m_looksAround && link.level == 1) m_fieldOf[c] = fields++;
   }
   m_fields.resize(fields);
@@ -261,6 +270,7 @@ const std::vector<CellStatistics>& CellStore::rollUp() {
       cell = {};
       cell.parent = m_links[c].parent;
       cell.level = level;
+      cell.inMedium = CellGrid::isOfMedium(m_links[c].key);
       for (const uint32_t child : childrenOf(c)) addTo(cell, m_cells[child]);
     });
   forEachCell(*m_tasks, m_cells.size(), [&](size_t c) {

@@ -49,6 +49,8 @@ struct CellStatistics {
   std::array<double, kMaxLightGroups> lightSquares{};  // sums of CellSample::lightSquare, for each group
   Histogram histogram{};                               // sums of values by direction
   const Surroundings* around = nullptr;                // null where nothing asked for it
+  // Whether its vertices are those of a medium, as its key says: they have no normals, and cosines are 1.
+  bool inMedium = false;
   // Whether it has a map of its own, not its parent's. Cells beyond the grid's reach that paths seldom come
   // to have none, so that they cost next to nothing.
   bool hasMap = true;
@@ -59,6 +61,9 @@ inline Float3 meanNormal(const CellStatistics& cell) {
   const float length = std::sqrt(dot(cell.normal, cell.normal));
   return length > 0 ? cell.normal * (1 / length) : Float3{0, 0, 1};
 }
+
+// The cosines, with their sign, between the mean normal of a cell and the texels' centres; 1 in media.
+Histogram cosinesOf(const CellStatistics& cell);
 
 // Adds what a cell has seen to what another one has.
 void addTo(CellStatistics& sum, const CellStatistics& cell);

@@ -5,7 +5,6 @@
 #include "odis/cells/shrinkage.h"
 #include "odis/instruction_sets.h"
 #include "odis/maps/fast_log2.h"
-#include "odis/maps/texel_directions.h"
 
 namespace odis::core {
 
@@ -94,7 +93,7 @@ void computeFeatures(const CellChain& chain, CellFeatures& features) {
     there[m] = perSum[m] > 0;
     if (!there[m]) seen[m] = &kNothing.histogram;
   }
-  cosines = cosinesTo(meanNormal(own));
+  cosines = cosinesOf(own);
   lobe = lobeOf(cosines);
   there[kOwnBlurred] = there[0];
   there[kParentBlurred] = there[1];

@@ -12,10 +12,10 @@ DirectionDistribution DirectionFormula::predict(const CellChain& chain,
                                                 const DirectionDistribution* parent) const {
   const CellStatistics& cell = *chain[0];
   DirectionDistribution result;
-  const Histogram cosines = cosinesTo(meanNormal(cell));
+  const Histogram cosines = cosinesOf(cell);
 
   // What is believed before the cell has seen anything: its parent's map, or a cosine lobe on top of a little
-  // of everything (surfaces that transmit light receive it from both sides).
+  // of everything (surfaces that transmit light receive it from both sides); in media all is even.
   Histogram prior;
   float priorSum = 0;
   for (int t = 0; t < kMapTexels; ++t) {

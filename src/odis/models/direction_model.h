@@ -26,6 +26,8 @@ class DirectionModel {
   // (null for the coarsest level). Called for parents before their children; thread-safe.
   virtual DirectionDistribution predict(const CellChain& chain,
                                         const DirectionDistribution* parent) const = 0;
+  // Whether it is for cells of media, too: a network that was trained on surfaces leaves them to the formula.
+  virtual bool knowsMedia() const { return true; }
   // Whether it asks for CellStatistics::around.
   virtual bool looksAround() const { return false; }
 };

@@ -14,6 +14,7 @@ class DirectionNetwork : public DirectionModel {
   // Tensors directions.*. Throws WeightsError.
   explicit DirectionNetwork(const Weights& weights);
   DirectionDistribution predict(const CellChain& chain, const DirectionDistribution* parent) const override;
+  bool knowsMedia() const override { return false; }
   bool looksAround() const override { return true; }
 
   // The share of each map, with the sum 1; none of those that are empty.

@@ -14,6 +14,7 @@ class LightNetwork : public LightModel {
   // Tensors lights.*. Throws WeightsError.
   explicit LightNetwork(const Weights& weights);
   LightSquares predict(const CellChain& chain, const LightSquares* parent, uint32_t groups) const override;
+  bool knowsMedia() const override { return false; }
   // Cells that have seen little follow their ancestors; the network knows how little that is.
   double reliability(const CellStatistics&) const override { return 1; }
 

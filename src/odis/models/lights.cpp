@@ -60,11 +60,13 @@ double LightFormula::reliability(const CellStatistics& cell) const {
 std::vector<float> tabulateLights(const Tasks& tasks, std::vector<CellDecisions>& result,
                                   std::span<const CellStatistics> cells, const LightModel& model,
                                   uint32_t groups, std::span<const LightParts> parts) {
+  const LightFormula formula;
   std::vector<LightSquares> squares(cells.size());
   std::vector<float> table(cells.size() * (groups + 1));
   forEachFromCoarse(tasks, cells, [&](size_t c) {
     const uint32_t parent = cells[c].parent;
-    squares[c] = model.predict(chainOf(cells, c), parent == kNoCell ? nullptr : &squares[parent], groups);
+    const LightModel& decides = modelFor<LightModel>(cells[c], model, formula);
+    squares[c] = decides.predict(chainOf(cells, c), parent == kNoCell ? nullptr : &squares[parent], groups);
     std::array<double, kMaxLightGroups> weights{};
     for (uint32_t g = 0; g < groups; ++g) {
       const double weight = std::sqrt(squares[c][g]);
@@ -74,7 +76,7 @@ std::vector<float> tabulateLights(const Tasks& tasks, std::vector<CellDecisions>
       if (light.first <= groups && light.count <= groups - light.first)
         evenOut(std::span(weights).subspan(light.first, light.count));
     const double total = std::accumulate(weights.begin(), weights.end(), 0.0);
-    result[c].learnedLightFraction = total > 0 ? float(kLearnedFraction * model.reliability(cells[c])) : 0;
+    result[c].learnedLightFraction = total > 0 ? float(kLearnedFraction * decides.reliability(cells[c])) : 0;
     float* cdf = &table[c * (groups + 1)];
     double sum = 0;
     for (uint32_t g = 0; g < groups && total > 0; ++g) {

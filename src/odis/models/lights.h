@@ -26,6 +26,8 @@ class LightModel {
   // Given the statistics of the cell and its ancestors, and its parent's result (null for the coarsest
   // level). Called for parents before their children; thread-safe. `groups` is at most kMaxLightGroups.
   virtual LightSquares predict(const CellChain& chain, const LightSquares* parent, uint32_t groups) const = 0;
+  // As DirectionModel's.
+  virtual bool knowsMedia() const { return true; }
   // How reliable the cell's result is, from 0 to 1: the learned-light fraction is in proportion to it.
   virtual double reliability(const CellStatistics& cell) const = 0;
 };
@@ -36,6 +38,12 @@ class LightFormula : public LightModel {
   LightSquares predict(const CellChain& chain, const LightSquares* parent, uint32_t groups) const override;
   double reliability(const CellStatistics& cell) const override;
 };
+
+// The model that decides in a cell: the formula where the model knows nothing of media and the cell is one.
+template <class Model>
+const Model& modelFor(const CellStatistics& cell, const Model& model, const Model& formula) {
+  return cell.inMedium && !model.knowsMedia() ? formula : model;
+}
 
 // Makes the light tables of all cells (GuideView::lightTables) and fills in their learned-light fractions.
 // The best probability of a group is in proportion to the root of its squared contribution. Groups that are

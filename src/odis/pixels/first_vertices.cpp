@@ -45,10 +45,15 @@ FirstVertex describeFirst(const PathVertex& v, IncidentRadiance kind) {
 }
 
 void FirstVertices::add(ArrayView<const PathVertex> vertices, IncidentRadiance kind) {
+  uint32_t inMedium = ~0u;  // the pixel whose path begins in a medium
   for (const PathVertex& v : vertices) {
-    if (v.sample != 0 || v.pixel >= m_pixels.size() || !mayBeGuided(v)) continue;
+    if (v.sample != 0 || v.pixel >= m_pixels.size() || v.pixel == inMedium || !mayBeGuided(v)) continue;
     FirstVertex& first = m_pixels[v.pixel];
-    if (!first.there) first = describeFirst(v, kind);
+    if (first.there) continue;
+    if (isInMedium(v))
+      inMedium = v.pixel;
+    else
+      first = describeFirst(v, kind);
   }
 }
 

@@ -39,7 +39,8 @@ class FirstVertices {
   const FirstVertex& at(int x, int y) const { return m_pixels[size_t(y) * size_t(m_width) + size_t(x)]; }
   FirstVertex& at(int x, int y) { return m_pixels[size_t(y) * size_t(m_width) + size_t(x)]; }
 
-  // Takes the first vertices of a frame's paths; vertices follow each other path by path, from the camera on.
+  // Takes the first vertices of a frame's paths, if they are on surfaces; vertices follow each other path by
+  // path, from the camera on.
   // Where a pixel has several samples, the first counts.
   // Thread-safe for different pixels.
   void add(ArrayView<const PathVertex> vertices, IncidentRadiance kind);

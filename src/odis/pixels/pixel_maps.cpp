@@ -153,6 +153,7 @@ void PixelOracle::add(ArrayView<const PathVertex> vertices) {
     if (v.pixel == lastPixel && v.sample == lastSample) continue;  // beyond the path's first vertex
     lastPixel = v.pixel;
     lastSample = v.sample;
+    if (isInMedium(v)) continue;
     const FirstVertex first = describeFirst(v, m_radiance);
     Pixel& pixel = m_pixels[v.pixel];
     ++pixel.count;

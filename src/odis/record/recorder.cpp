@@ -45,26 +45,55 @@ uint32_t PathRecorder::begin(const PathIdentity& identity) {
   return uint32_t(m_paths.size() - 1);
 }
 
-void PathRecorder::surface(uint32_t index, const SurfaceEvent& event) {
-  OpenPath& path = open(index);
+PathVertex& PathRecorder::arrive(OpenPath& path, float distance) {
   requireOrder(!path.ended, kEnded);
-  requireNumber(!(event.distance < 0), "OdisSurfaceEvent.distance: expected a number from 0");
+  requireNumber(!(distance < 0),
+                "OdisSurfaceEvent.distance, OdisMediumEvent.distance: expected a number from 0");
   ++path.rays;
   ++path.surfaces;
-  if (path.last != kNone) m_pending[path.last].vertex.distance = event.distance;
+  if (path.last != kNone) m_pending[path.last].vertex.distance = distance;
   path.current = uint32_t(m_pending.size());
   path.survivalOnArrival = 1;
+  path.decided = false;
   PathVertex& v = m_pending.emplace_back().vertex;
-  v.position = event.position;
-  v.normal = event.normal;
-  v.wo = event.wo;
-  v.lightableGroups = event.lightableGroups;
-  v.time = event.time;
   v.pixel = path.identity.pixel;
   v.sample = path.identity.sample;
   v.sampleWeight = path.identity.sampleWeight;
   v.depth = uint16_t(std::min(path.surfaces, 0xffffu));
   v.light = 0;
+  return v;
+}
+
+void PathRecorder::surface(uint32_t index, const SurfaceEvent& event) {
+  PathVertex& v = arrive(open(index), event.distance);
+  v.position = event.position;
+  v.normal = event.normal;
+  v.wo = event.wo;
+  v.lightableGroups = event.lightableGroups;
+  v.time = event.time;
+}
+
+void PathRecorder::medium(uint32_t index, const MediumEvent& event) {
+  PathVertex& v = arrive(open(index), event.distance);
+  v.position = event.position;
+  v.normal = {};
+  v.wo = event.wo;
+  v.lightableGroups = event.lightableGroups;
+  v.time = event.time;
+}
+
+void PathRecorder::attenuation(uint32_t index, const Float3& factor) {
+  OpenPath& path = open(index);
+  const auto isFactor = [](float x) { return x >= 0 && x < INFINITY; };
+  requireNumber(isFactor(factor.x) && isFactor(factor.y) && isFactor(factor.z),
+                "odisRecordAttenuation: expected finite numbers from 0");
+  requireOrder(!path.decided,
+               "attenuation is of the ray under way: it comes before roulette, light events and "
+               "cached radiance where the ray ends");
+  path.throughput = path.throughput * factor;
+  if (path.last == kNone) return;
+  Pending& p = m_pending[path.last];
+  p.attenuation = p.attenuation * factor;
 }
 
 void PathRecorder::emission(uint32_t index, const EmissionEvent& event) {
@@ -73,12 +102,13 @@ void PathRecorder::emission(uint32_t index, const EmissionEvent& event) {
                 "OdisEmissionEvent.misWeight: expected a number from 0 to 1");
   if (path.last == kNone) return;  // what the camera sees directly is no vertex's light
   Pending& p = m_pending[path.last];
-  const float before = luminance(p.emission), now = luminance(event.radiance);
+  const Float3 arriving = event.radiance * p.attenuation;
+  const float before = luminance(p.emission), now = luminance(arriving);
   if (!(before + now > 0)) return;
   // Several environments may be met at once; the brightest decides what the BSDF sampling fraction is told.
   if (now > before) p.vertex.emissionLightPdf = event.lightPdf;
   p.emissionWeight = (before * p.emissionWeight + now * event.misWeight) / (before + now);
-  p.emission = p.emission + event.radiance;
+  p.emission = p.emission + arriving;
 }
 
 void PathRecorder::cached(uint32_t index, const Float3& radiance) {
@@ -88,6 +118,7 @@ void PathRecorder::cached(uint32_t index, const Float3& radiance) {
                "cached radiance comes before roulette and light events of its surface");
   path.cached = radiance;
   path.current = kNone;
+  path.decided = true;
   path.ended = true;
 }
 
@@ -100,6 +131,7 @@ void PathRecorder::survived(uint32_t index, float probability) {
   requireOrder(path.lit != path.current, "roulette on arrival comes before the light event of its surface");
   requireOrder(path.survivalOnArrival == 1, "a surface has one roulette on arrival");
   path.survivalOnArrival = probability;
+  path.decided = true;
   path.throughput = path.throughput / probability;
 }
 
@@ -109,6 +141,7 @@ void PathRecorder::light(uint32_t index, const LightEvent& event) {
   requireOrder(path.lit != path.current, "a surface has one light event: tell the sum of several lights");
   ++path.rays;
   path.lit = path.current;
+  path.decided = true;
   PathVertex& v = m_pending[path.current].vertex;
   v.direct = event.weighted;
   v.light = luminance(path.throughput * event.unweighted);
@@ -145,12 +178,13 @@ void PathRecorder::bounce(uint32_t index, const BounceEvent& event) {
   v.guidableProbability = event.guidableProbability;
   v.distance = INFINITY;
   v.roughness = event.roughness;
-  v.cosine = event.cosine;
+  v.cosine = isInMedium(v) ? 1 : event.cosine;
   v.discrete = event.discrete;
-  v.scattersBothSides = event.scattersBothSides;
+  v.scattersBothSides = event.scattersBothSides || isInMedium(v);
   path.throughput = path.throughput * event.weight;
   path.last = path.current;
   path.current = kNone;
+  path.decided = false;
   ++path.count;
 }
 
@@ -162,6 +196,7 @@ void PathRecorder::complete(const OpenPath& path, PathVertex* vertices) const {
     const Pending& p = m_pending[from];
     from = p.previous;
     PathVertex& v = vertices[i] = p.vertex;
+    beyond = p.attenuation * beyond;
     v.radiance = p.emission * p.emissionWeight + beyond;
     const Float3 weight = p.throughput * v.weight;
     v.indirect = luminance(weight * beyond);

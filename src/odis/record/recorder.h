@@ -3,7 +3,8 @@
 //   PathRecorder recorder;                       // one for each thread or tile
 //   const uint32_t path = recorder.begin({pixel, sample});
 //   for each ray of the path:
-//     recorder.surface(path, ...) or recorder.escape(path)
+//     recorder.attenuation(path, factor)               // for each factor of its weight on the way, in media
+//     recorder.surface(path, ...), recorder.medium(path, ...) or recorder.escape(path)
 //     recorder.emission(path, ...)                     // for each emitter that the ray met
 //     recorder.cached(path, radiance)                  // if the path ended with cached radiance
 //     recorder.survived(path, probability)             // if roulette was played on arrival
@@ -12,7 +13,8 @@
 //   recorder.finish()                                  // the vertices of all paths
 //
 // Many paths may be open at once, their events in any order as long as each path's own are in order. A
-// surface without a bounce (the path ended there by its depth, or by roulette on arrival) leaves no vertex.
+// surface or a place in a medium without a bounce (the path ended there by its depth, or by roulette on
+// arrival) leaves no vertex.
 #pragma once
 
 #include <vector>
@@ -23,6 +25,7 @@ namespace odis::core {
 
 using PathIdentity = OdisPathIdentity;
 using SurfaceEvent = OdisSurfaceEvent;
+using MediumEvent = OdisMediumEvent;
 using EmissionEvent = OdisEmissionEvent;
 using LightEvent = OdisLightEvent;
 using BounceEvent = OdisBounceEvent;
@@ -36,6 +39,10 @@ class PathRecorder {
   uint32_t begin(const PathIdentity& identity);
 
   void surface(uint32_t path, const SurfaceEvent& event);
+  // The path is scattered in a medium.
+  void medium(uint32_t path, const MediumEvent& event);
+  // The ray under way is multiplied by this; emission that is told before is not.
+  void attenuation(uint32_t path, const Float3& factor);
   // The ray left the scene. Emission of the environment follows as an event of its own.
   void escape(uint32_t path);
   void emission(uint32_t path, const EmissionEvent& event);
@@ -60,10 +67,11 @@ class PathRecorder {
   // A vertex, with what it must remember until its path is complete.
   struct Pending {
     PathVertex vertex;
-    uint32_t previous = kNone;  // of the same path
-    Float3 throughput;          // of the path up to the vertex, it excluded
-    Float3 emission;            // met by the vertex's direction, without MIS weight
-    float emissionWeight = 0;   // MIS weight of that
+    uint32_t previous = kNone;    // of the same path
+    Float3 throughput;            // of the path up to the vertex, it excluded
+    Float3 emission;              // met by the vertex's direction, attenuated, without MIS weight
+    Float3 attenuation{1, 1, 1};  // of its ray by now
+    float emissionWeight = 0;     // MIS weight of that
     float survivalOnArrival = 1;
     uint32_t raysBefore = 0;  // traced by the path when the direction was sampled
   };
@@ -76,9 +84,12 @@ class PathRecorder {
     uint32_t last = kNone, current = kNone, lit = kNone;
     uint32_t count = 0;  // of complete vertices
     uint32_t surfaces = 0, rays = 0;
-    bool ended = false;  // escaped, or ended with cached radiance
+    bool ended = false;    // escaped, or ended with cached radiance
+    bool decided = false;  // whether an event after its arrival at `current` is about that
   };
   OpenPath& open(uint32_t index);
+  // A ray's end at a place where the path may be scattered, of this length.
+  PathVertex& arrive(OpenPath& path, float distance);
   void complete(const OpenPath& path, PathVertex* vertices) const;
 
   std::vector<OpenPath> m_paths;

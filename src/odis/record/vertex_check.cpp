@@ -20,10 +20,11 @@ VertexState checkVertex(const PathVertex& v, const VertexRules& rules) {
   return v.discrete ? VertexState::discrete : checkNumbers(v, rules);
 }
 
-void countVertex(VertexCounts& counts, VertexState state) {
+void countVertex(VertexCounts& counts, const PathVertex& vertex, VertexState state) {
   switch (state) {
     case VertexState::usable:
       ++counts.accepted;
+      counts.inMedia += isInMedium(vertex);
       break;
     case VertexState::discrete:
       ++counts.discrete;
@@ -68,9 +69,11 @@ void addCounts(VertexCounts& counts, const VertexCounts& other) {
   counts.guidableAbovePdf += other.guidableAbovePdf;
   counts.unknownLights += other.unknownLights;
   counts.twice += other.twice;
+  counts.inMedia += other.inMedia;
 }
 
 float cosineOf(const PathVertex& v) {
+  if (isInMedium(v)) return 1;
   return std::isnan(v.cosine) ? std::abs(dot(v.wi, v.normal)) : v.cosine;
 }
 

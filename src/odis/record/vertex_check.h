@@ -17,10 +17,10 @@ using odis::checkVertex;
 VertexState checkNumbers(const PathVertex& vertex, const VertexRules& rules);
 VertexState checkVertex(const PathVertex& vertex, const VertexRules& rules);
 
-void countVertex(VertexCounts& counts, VertexState state);
+void countVertex(VertexCounts& counts, const PathVertex& vertex, VertexState state);
 void addCounts(VertexCounts& counts, const VertexCounts& other);
 
-// |cos| between wi and the normal.
+// |cos| between wi and the normal; 1 in media.
 float cosineOf(const PathVertex& vertex);
 
 // The part of the vertex's pdf that comes from lobes that may be guided, and how often the BSDF draws from

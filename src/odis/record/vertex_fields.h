@@ -40,6 +40,7 @@ constexpr void forEachField(FieldsOf<VertexCounts>, const Body& body) {
   body("guidableAbovePdf", &VertexCounts::guidableAbovePdf);
   body("unknownLights", &VertexCounts::unknownLights);
   body("twice", &VertexCounts::twice);
+  body("inMedia", &VertexCounts::inMedia);
 }
 static_assert(listedBytes<VertexCounts>() + sizeof(VertexCounts::size) == sizeof(VertexCounts));
 
