@@ -24,9 +24,10 @@ struct ElementType {
 
   std::string heading() const {
     static const std::map<std::string, std::string> headings = {
-        {"bsdf", "BSDFs"},      {"texture", "Textures"}, {"emitter", "Emitters"},
-        {"shape", "Shapes"},    {"sensor", "Sensors"},   {"film", "Film"},
-        {"rfilter", "Filters"}, {"sampler", "Samplers"}, {"integrator", "Integrators"}};
+        {"bsdf", "BSDFs"},      {"texture", "Textures"},     {"emitter", "Emitters"},
+        {"shape", "Shapes"},    {"sensor", "Sensors"},       {"film", "Film"},
+        {"rfilter", "Filters"}, {"sampler", "Samplers"},     {"integrator", "Integrators"},
+        {"volume", "Volumes"},  {"phase", "Phase functions"}};
     return headings.at(tag);
   }
 };
@@ -39,6 +40,8 @@ inline std::vector<ElementType> allElementTypes() {
   for (const std::string& type : render::emitterTypes()) all.push_back({"emitter", type});
   for (const std::string& type : render::shapeTypes()) all.push_back({"shape", type});
   for (const std::string& type : render::sensorTypes()) all.push_back({"sensor", type});
+  for (const std::string& type : render::volumeTypes()) all.push_back({"volume", type});
+  for (const std::string& type : render::phaseFunctionTypes()) all.push_back({"phase", type});
   all.push_back({"film", "hdrfilm"});
   for (const char* type : {"box", "catmullrom", "gaussian", "lanczos", "mitchell", "tent"})
     all.push_back({"rfilter", type});
@@ -46,12 +49,19 @@ inline std::vector<ElementType> allElementTypes() {
   all.push_back({"integrator", "path"});
   const std::string bsdf = "<bsdf type='diffuse'/>", texture = "<texture type='checkerboard'/>";
   const std::map<std::string, std::string> children = {
-      {"blendbsdf", bsdf + bsdf}, {"bumpmap", texture + bsdf},   {"coating", bsdf},  {"mask", bsdf},
-      {"roughcoating", bsdf},     {"normalmap", texture + bsdf}, {"scale", texture}, {"twosided", bsdf}};
+      {"blendbsdf", bsdf + bsdf},
+      {"bumpmap", texture + bsdf},
+      {"coating", bsdf},
+      {"mask", bsdf},
+      {"roughcoating", bsdf},
+      {"normalmap", texture + bsdf},
+      {"scale", texture},
+      {"twosided", bsdf},
+      {"blendphase", "<phase type='hg'/><phase type='isotropic'/>"}};
   for (ElementType& element : all) {
     if (const auto found = children.find(element.type); found != children.end())
       element.children = found->second;
-    for (const char* file : {"bitmap", "bsplinecurve", "envmap", "linearcurve", "measured",
+    for (const char* file : {"bitmap", "bsplinecurve", "envmap", "gridvolume", "linearcurve", "measured",
                              "measured_polarized", "obj", "ply", "sdfgrid", "serialized"})
       if (element.type == file)
         element.parameters["filename"] = std::string("<string name='filename' value='file.") + file + "'/>";
@@ -61,7 +71,11 @@ inline std::vector<ElementType> allElementTypes() {
   };
   find("mesh_attribute").parameters["name"] = "<string name='name' value='vertex_color'/>";
   find("measured_polarized").parameters["wavelength"] = "<float name='wavelength' value='560'/>";
-  find("blendbsdf").parameters["weight"] = "<float name='weight' value='0.5'/>";
+  for (const char* type : {"blendbsdf", "blendphase"})
+    find(type).parameters["weight"] = "<float name='weight' value='0.5'/>";
+  find("sggx").parameters["s"] =
+      "<volume name='S' type='gridvolume'><string name='filename' value='file.sggx'/></volume>";
+  find("tabphase").parameters["values"] = "<string name='values' value='1, 2'/>";
   // The default would be a table that takes a while.
   for (const char* type : {"sky", "sunsky"})
     find(type).parameters["resolution"] = "<integer name='resolution' value='4'/>";
@@ -94,7 +108,10 @@ class ElementMaker {
     std::ifstream cloth(ODIS_SOURCE "/tests/bsdf/data/cloth.bsdf", std::ios::binary);
     m_folder.write("file.measured", {std::istreambuf_iterator<char>(cloth), {}});
     std::ifstream volume(ODIS_SOURCE "/fuzz/corpus/volume/plane.vol", std::ios::binary);
-    m_folder.write("file.sdfgrid", {std::istreambuf_iterator<char>(volume), {}});
+    const std::string plane{std::istreambuf_iterator<char>(volume), {}};
+    for (const char* grid : {"file.sdfgrid", "file.gridvolume"}) m_folder.write(grid, plane);
+    std::ifstream flakes(ODIS_SOURCE "/fuzz/corpus/grid/flakes.vol", std::ios::binary);
+    m_folder.write("file.sggx", {std::istreambuf_iterator<char>(flakes), {}});
     m_folder.write("file.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
     m_folder.write(
         "file.ply",
@@ -133,6 +150,8 @@ class ElementMaker {
     render::Builder builder(warnings);
     if (node.tag == "bsdf") made.bsdf = builder.bsdf(node);
     if (node.tag == "texture") builder.texture(node);
+    if (node.tag == "volume") builder.volume(node);
+    if (node.tag == "phase") builder.phaseFunction(node);
     if (node.tag == "shape") makeShape(node, builder);
     if (node.tag == "sensor") {
       readShutter(node);

@@ -84,7 +84,8 @@ std::vector<Trial> trialsOf(const std::string& name, const Declaration& declarat
       trials.push_back({valueElement("string", name, word), true});
     return trials;
   }
-  if (type == "string" || type == "texture") return {{valueElement("boolean", name, "true"), false}};
+  if (type == "string" || type == "texture" || type == "volume")
+    return {{valueElement("boolean", name, "true"), false}};
   if (type == "point or vector")
     return {{valueElement("point", name, "0.5 0.5 0.5"), true},
             {valueElement("vector", name, "nan 0 0"), false},

@@ -99,6 +99,7 @@ class Sggx final : public PhaseFunction {
 
 PhaseFunctionPtr makeSggx(const Properties& node, Builder& builder) {
   node.declare("s", {.type = "volume"});
+  if (node.has("s")) node.refuse("s", "a value", "a volume of 6 channels");
   const Properties* parameters = node.child("volume", "s");
   if (!parameters) throw SceneError(node.location, "sggx has no volume 'S', expected one of 6 channels");
   const VolumePtr volume = builder.volume(*parameters);
