@@ -156,6 +156,25 @@ TEST_F(PhaseFunctions, MeanCosinesAreG) {
   }
 }
 
+TEST_F(PhaseFunctions, HgIsExactNearItsPeak) {
+  // Against double precision, at angles from the peak that are far narrower than it is, to some that are wider.
+  Random random(17);
+  for (const float g : {-0.99f, 0.99f, 0.999f, 0.9f, 1e-6f}) {
+    const PhaseFunctionPtr phase = m_parts.phase(hgText(fmt::format("{}", g)));
+    for (int i = 0; i < 200; ++i) {
+      const float angle = 0.3f * std::pow(0.95f, float(i));
+      const Vec3 wo = random.direction(), axis = g < 0 ? wo : -wo;
+      const Vec3 wi = normalize(axis + render::CoordinateFrame(axis).s * angle);
+      const Imath::V3d exactWo = Imath::V3d(wo).normalized(), exactWi = Imath::V3d(wi).normalized();
+      const double away = (exactWi + exactWo).length(), square = double(g) * g;
+      // 1 + g^2 - 2 g cos, where cos = 1 - away^2 / 2 is that of the deflection.
+      const double t = (1 - double(g)) * (1 - double(g)) + g * away * away;
+      const double expected = (1 - square) / (4 * std::numbers::pi * t * std::sqrt(t));
+      ASSERT_NEAR(phase->pdf({{}, wo}, wi) / expected, 1, 5e-5) << g << " " << angle;
+    }
+  }
+}
+
 TEST_F(PhaseFunctions, ATablesRoughnessIsOfItsMeanCosine) {
   // The density (1 + cos) / 2 has the mean cosine 1 / 3.
   EXPECT_NEAR(

@@ -118,10 +118,10 @@ TEST(CellsOfMedia, MapsHaveNoCosine) {
     const Guide guide = builder.build({});
     const GuideView view = guide.view();
     ASSERT_GT(view.cellCount, 0u);
-    const uint32_t coarsest = uint32_t(
-        std::find_if(view.keys, view.keys + view.cellCount,
-                     [](uint64_t key) { return CellGrid::levelOf(key) == kCellLevels - 1; }) -
-        view.keys);
+    const uint32_t coarsest =
+        uint32_t(std::find_if(view.keys, view.keys + view.cellCount,
+                              [](uint64_t key) { return CellGrid::levelOf(key) == kCellLevels - 1; }) -
+                 view.keys);
     ASSERT_LT(coarsest, view.cellCount);
     const SamplingMap<float> map(view.maps, int32_t(coarsest));
     const float even = 1 / (4 * std::numbers::pi_v<float>);
@@ -158,11 +158,11 @@ TEST(CellsOfMedia, FollowFormulasWhereNetworksDecideOnSurfaces) {
   for (uint32_t cell = 0; cell < formula.cellCount; ++cell) {
     ASSERT_EQ(formula.keys[cell], network.keys[cell]);
     const size_t begin = size_t(cell) * kMapShares, end = begin + kMapShares;
-    const bool same = std::equal(formula.maps + begin, formula.maps + end, network.maps + begin) &&
-                      std::equal(formula.lightTables + 3 * cell, formula.lightTables + 3 * cell + 3,
-                                 network.lightTables + 3 * cell) &&
-                      formula.decisions[cell].learnedLightFraction ==
-                          network.decisions[cell].learnedLightFraction;
+    const bool same =
+        std::equal(formula.maps + begin, formula.maps + end, network.maps + begin) &&
+        std::equal(formula.lightTables + 3 * cell, formula.lightTables + 3 * cell + 3,
+                   network.lightTables + 3 * cell) &&
+        formula.decisions[cell].learnedLightFraction == network.decisions[cell].learnedLightFraction;
     if (CellGrid::isOfMedium(formula.keys[cell])) {
       EXPECT_TRUE(same);
       ++media;

@@ -133,13 +133,14 @@ auto GridVolume<T, kChannels>::lookUp(const Vec3& p) const -> Value {
       result[size_t(channel)] = volumeNumber(value[channel]);
     return result;
   }
-  const T* corners[8];
-  for (int i = 0; i < 8; ++i) corners[i] = at(index[i & 1][0], index[i >> 1 & 1][1], index[i >> 2][2]);
-  for (int channel = 0; channel < kChannels; ++channel) {
+  const size_t x0 = size_t(index[0][0]) * kChannels, x1 = size_t(index[1][0]) * kChannels;
+  const T* rows[4];
+  for (int i = 0; i < 4; ++i) rows[i] = at(0, index[i & 1][1], index[i >> 1][2]);
+  for (size_t channel = 0; channel < kChannels; ++channel) {
     float x[4];
     for (int i = 0; i < 4; ++i)
-      x[i] = lerp(t[0], volumeNumber(corners[2 * i][channel]), volumeNumber(corners[2 * i + 1][channel]));
-    result[size_t(channel)] = lerp(t[2], lerp(t[1], x[0], x[1]), lerp(t[1], x[2], x[3]));
+      x[i] = lerp(t[0], volumeNumber(rows[i][x0 + channel]), volumeNumber(rows[i][x1 + channel]));
+    result[channel] = lerp(t[2], lerp(t[1], x[0], x[1]), lerp(t[1], x[2], x[3]));
   }
   return result;
 }
