@@ -1,8 +1,7 @@
 // A frame's image has the expectation of plain path tracing, whatever its guide and its vertices say.
 // Images of 64 x 64 pixels.
-#include <random>
-
 #include "frame/run_frame.h"
+#include "frame/wrong_models.h"
 #include "support/models.h"
 
 namespace odis::test {
@@ -10,44 +9,6 @@ namespace odis::test {
 namespace {
 
 constexpr uint32_t kSide = 64;
-
-// Maps that have nothing to do with the light.
-class WrongDirections : public core::DirectionModel {
- public:
-  enum class Kind { random, oneTexel, zero, notANumber };
-  explicit WrongDirections(Kind kind) : m_kind(kind) {}
-  core::DirectionDistribution predict(const core::CellChain& chain,
-                                      const core::DirectionDistribution*) const override {
-    std::mt19937 engine(uint32_t(chain[0]->count) * 7919u + uint32_t(chain[0]->level));
-    const uint32_t bright = engine() % kMapTexels;
-    core::DirectionDistribution result;
-    for (uint32_t t = 0; t < kMapTexels; ++t) {
-      result.inverseCosine[t] = 1;
-      result.probability[t] = m_kind == Kind::random       ? float(engine() % 1000) / 1000
-                              : m_kind == Kind::oneTexel   ? float(t == bright)
-                              : m_kind == Kind::notANumber ? (engine() % 4 == 0 ? NAN : 1.0f)
-                                                           : 0;
-    }
-    return result;
-  }
-
- private:
-  Kind m_kind;
-};
-
-// Tables that draw one lamp only, or numbers that make no table.
-class WrongLights : public core::LightModel {
- public:
-  core::LightSquares predict(const core::CellChain& chain, const core::LightSquares*,
-                             uint32_t) const override {
-    std::mt19937 engine(uint32_t(chain[0]->count) * 104729u + uint32_t(chain[0]->level));
-    core::LightSquares result{};
-    const uint32_t kind = engine() % 3;
-    result[engine() % 2] = kind == 0 ? 1 : kind == 1 ? NAN : -1;
-    return result;
-  }
-  double reliability(const core::CellStatistics&) const override { return 0.9; }
-};
 
 class UnbiasedFrame : public ::testing::Test {
  protected:

@@ -28,17 +28,26 @@ class ToyNumbers {
   uint64_t m_state;
 };
 
-// A diffuse BSDF as Mixture asks for it. World space.
+// A diffuse BSDF or, where the normal is zero, an isotropic phase function, as Mixture asks for it. World
+// space.
 struct ToyBsdf {
   struct Sample {
     Float3 wi;
-    float pdf = 0, weight = 0;  // weight: albedo * cos / pi / pdf
+    float pdf = 0, weight = 0;  // weight: albedo * cos / pi / pdf, 1 / (4 pi) / pdf in fog
   };
   Float3 normal;
   float albedo;
 
-  float density(const Float3& wi) const { return std::max(dot(wi, normal), 0.0f) / kPi; }
+  bool isPhase() const { return isZero(normal); }
+  float density(const Float3& wi) const {
+    return isPhase() ? 1 / (4 * kPi) : std::max(dot(wi, normal), 0.0f) / kPi;
+  }
   Sample sampleBsdf(float u, float v) const {
+    if (isPhase()) {
+      const float z = 1 - 2 * u, r = std::sqrt(std::max(1 - z * z, 0.0f));
+      const Float3 wi{r * std::cos(2 * kPi * v), r * std::sin(2 * kPi * v), z};
+      return {wi, density(wi), albedo};
+    }
     const Float3 tangent = std::abs(normal.x) > 0.5f ? Float3{0, 1, 0} : Float3{1, 0, 0};
     Float3 s = tangent - normal * dot(tangent, normal);
     s = s / lengthOf(s);
@@ -120,12 +129,34 @@ class ToyHost {
     return dot(to, to) * lengthOf(to) / (m_room.lampSize * m_room.lampSize * std::max(to.z, 1e-6f));
   }
 
+  // Lets fog scatter the path before it hits: distances are drawn too far, so that there is a weight. The hit
+  // is in the fog then, without a normal and without emission.
+  void fly(State& s, ToyRoom::Hit& hit) const {
+    const float rate = 0.75f * m_room.extinction;
+    const float distance = -std::log(1 - s.numbers.next()) / rate;
+    const bool scattered = distance < hit.distance;
+    if (scattered) {
+      hit = {};
+      hit.position = s.origin + s.direction * distance;
+      hit.distance = distance;
+    }
+    const float longer = m_room.transmittance(hit.distance) / std::exp(-rate * hit.distance);
+    const float weight = scattered ? longer * m_room.fogAlbedo * m_room.extinction / rate : longer;
+    s.throughput *= weight;
+    s.recorder.attenuation(s.path, gray(weight));
+  }
+
   // One bounce; false where the path ends.
   bool extend(State& s) const {
-    const ToyRoom::Hit hit = m_room.intersect(s.origin, s.direction);
+    ToyRoom::Hit hit = m_room.intersect(s.origin, s.direction);
     ++s.rays;
+    if (m_room.extinction > 0) fly(s, hit);
+    const bool inFog = isZero(hit.normal);
     if (s.depth == 1) s.sight.distance = hit.distance, s.sight.normal = hit.normal;
-    s.recorder.surface(s.path, surfaceEvent(hit.position, hit.normal, s.direction * -1.0f, hit.distance));
+    if (inFog)
+      s.recorder.medium(s.path, mediumEvent(hit.position, s.direction * -1.0f, hit.distance));
+    else
+      s.recorder.surface(s.path, surfaceEvent(hit.position, hit.normal, s.direction * -1.0f, hit.distance));
     if (hit.emission.x > 0) {
       const float lightPdf =
           s.depth > 1 && hit.lamp >= 0
@@ -139,7 +170,7 @@ class ToyHost {
     s.vertex = GuidedVertex(s.pass, {hit.position, hit.normal, s.pixel, s.sample, false, s.depth});
     if (!playRoulette(s)) return false;
     s.vertex.prepare(1);
-    const ToyBsdf bsdf{hit.normal, m_room.albedo};
+    const ToyBsdf bsdf{hit.normal, inFog ? 1 : m_room.albedo};
     estimateDirectLight(s, hit, bsdf);
     const float u = s.numbers.next(), v = s.numbers.next();
     const ToyBsdf::Sample next = s.vertex.sample(u, v, bsdf);
@@ -181,7 +212,8 @@ class ToyHost {
     const float bsdfPdf = bsdf.density(wi);
     if (!(bsdfPdf > 0) || !(wi.z > 1e-4f)) return;
     const float pdf = lampPdf(to) * lampProbability;
-    const float unweighted = m_room.albedo * bsdfPdf * m_room.lampRadiance[lamp] / pdf;
+    const float unweighted =
+        bsdf.albedo * bsdfPdf * m_room.lampRadiance[lamp] * m_room.transmittance(lengthOf(to)) / pdf;
     const float weighted = unweighted * powerHeuristic(pdf, s.vertex.pdf(wi, bsdfPdf, bsdfPdf));
     const float traced = s.vertex.shadowRayProbability(s.throughput * weighted);
     if (!(uShadow < traced)) return;

@@ -17,6 +17,9 @@ struct ToyRoom {
   float lampSize = 0.2f, lampRadiance[2] = {12, 4};
   float patchSize = 0, patchRadiance = 0;
   float albedo = 0.6f;
+  // Fog that fills the room, of an isotropic phase function: the extinction coefficient, and which part of it
+  // scatters.
+  float extinction = 0, fogAlbedo = 0.9f;
 
   struct Hit {
     Float3 position, normal;  // a little off the surface, so that rays may start there
@@ -26,6 +29,7 @@ struct ToyRoom {
   };
   Hit intersect(const Float3& o, const Float3& d) const;
   bool isHidden(const Float3& from, const Float3& to) const;
+  float transmittance(float distance) const { return std::exp(-extinction * distance); }
   float lampLeft(int lamp) const { return lamp == 0 ? 0.1f : 0.7f; }
 };
 
