@@ -30,11 +30,9 @@ using GuideView = OdisGuideView;
 inline constexpr int kRoughnessClasses = ODIS_ROUGHNESS_CLASSES;
 inline constexpr uint32_t kMaxLightGroups = ODIS_MAX_LIGHT_GROUPS;
 
-// The cell of the pixel's own map, for the first vertices of paths; kNoCell where there is none, as in media.
+// The cell of the pixel's own map, for the first vertices of paths, on surfaces; kNoCell where there is none.
 ODIS_HOST_DEVICE inline uint32_t pixelCell(const GuideView& view, const Place& place) {
-  return place.first && place.pixel < view.pixels.count && !isZero(place.normal)
-             ? view.pixels.cells[place.pixel]
-             : kNoCell;
+  return place.first && place.pixel < view.pixels.count ? view.pixels.cells[place.pixel] : kNoCell;
 }
 
 // The finest cell that there is of those around a key of the finest level, whose cellHash() is given; kNoCell
@@ -53,7 +51,7 @@ ODIS_HOST_DEVICE inline uint32_t findAround(const GuideView& view, uint64_t key,
 // at all.
 ODIS_HOST_DEVICE inline uint32_t findCell(const GuideView& view, const Place& place) {
   if (place.discrete) return kNoCell;
-  const uint32_t cell = pixelCell(view, place);
+  const uint32_t cell = isZero(place.normal) ? kNoCell : pixelCell(view, place);
   if (cell != kNoCell) return cell;
   const uint64_t key = CellGrid(view.grid).key(place.position, place.normal, 0);
   return findAround(view, key, cellHash(key));
@@ -88,7 +86,7 @@ inline void findCells(const GuideView& view, const Place* places, size_t count, 
     findAround(view, keys, hashes, size, cells + begin);
   }
   for (size_t i = 0; i < count; ++i) {
-    const uint32_t own = pixelCell(view, places[i]);
+    const uint32_t own = isZero(places[i].normal) ? kNoCell : pixelCell(view, places[i]);
     cells[i] = places[i].discrete ? kNoCell : own == kNoCell ? cells[i] : own;
   }
 }

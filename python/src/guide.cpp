@@ -50,8 +50,9 @@ void bindMaps(nb::class_<Guide>& guide) {
             return shown<NumpyArray<const uint64_t, -1>>(self, view.keys, {view.cellCount});
           },
           "(cells,), uint64: where each cell lies: three coordinates of 19 bits from the lowest bit on, the\n"
-          "axis of its normals from bit 57 on, its level from bit 60 on. Far out, in rings of larger cells,\n"
-          "2048 >> level times the ring's number is added to the first coordinate (odis/cell_grid.h).")
+          "axis of its normals from bit 57 on (6: in media), its level from bit 60 on. Far out, in rings of\n"
+          "larger cells, 2048 >> level times the ring's number is added to the first coordinate\n"
+          "(odis/cell_grid.h).")
       .def_prop_ro(
           "maps",
           [](Self self) {

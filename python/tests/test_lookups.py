@@ -37,6 +37,20 @@ class Lookups(unittest.TestCase):
         away = self.guide.find_cells(self.positions + np.float32(1e6), self.normals)
         self.assertEqual(set(away), {odis.NO_CELL})
 
+    def test_media_have_cells_of_their_own(self):
+        fields = made_up.vertices(2000)
+        fog = dict(fields, normal=np.zeros_like(fields["normal"]), cosine=np.zeros(2000, np.float32))
+        builder = odis.GuideBuilder()
+        builder.add(odis.PathVertices(**fog))
+        self.assertEqual(builder.vertex_counts.in_media, 2000)
+        builder.add(odis.PathVertices(**fields))
+        self.assertEqual((builder.vertex_counts.in_media, builder.vertex_counts.accepted), (2000, 4000))
+        guide = builder.build()
+        in_fog = guide.find_cells(fog["position"], fog["normal"])
+        on_floor = guide.find_cells(fields["position"], fields["normal"])
+        self.assertEqual(set(guide.cell_keys[in_fog] >> np.uint64(57) & np.uint64(7)), {6})
+        self.assertEqual(set(guide.cell_keys[on_floor] >> np.uint64(57) & np.uint64(7)), {4})
+
     def test_samples_have_their_density(self):
         """Chi-square at 0.01: counts in bins of (cos theta, phi) against the integral of the density over each bin."""
         random = np.random.default_rng(3)

@@ -286,11 +286,51 @@ TEST_F(PglFields, TakeSamplesWithoutPaths) {
   EXPECT_GT(distribution.PDF({0.6f, 0, 0.8f}), 3 * distribution.PDF({-0.6f, 0, 0.8f}));
 }
 
-TEST_F(PglFields, VolumesAreLeftToTheHost) {
+TEST_F(PglFields, VolumesThatNothingIsKnownOfAreLeftToTheHost) {
   const auto field = taughtField(2000);
   pgl::VolumeSamplingDistribution distribution(field.get());
   float unused = 0;
   EXPECT_FALSE(distribution.Init(field.get(), {0, 0, 0}, unused));
+  EXPECT_NEAR(distribution.PDF({0, 0, 1}), 1 / (4 * kPi), 1e-6f);
+}
+
+TEST_F(PglFields, GuideDirectionsInVolumes) {
+  const auto field = newField();
+  pgl::SampleStorage samples;
+  ToyNumbers numbers = numbersOf(2);
+  for (int i = 0; i < 40000; ++i) {
+    const float z = 2 * numbers.next() - 1, phi = 2 * kPi * numbers.next(), r = std::sqrt(1 - z * z);
+    const Float3 wi{r * std::cos(phi), r * std::sin(phi), z};
+    const float pdf = 1 / (4 * kPi), radiance = dot(wi, {0.6f, 0, -0.8f}) > 0.95f ? 10.0f : 0.1f;
+    samples.AddSample({{numbers.next(), numbers.next(), numbers.next()},
+                       toPgl(wi),
+                       radiance / pdf,
+                       pdf,
+                       1,
+                       pgl::SampleData::EInsideVolume});
+  }
+  EXPECT_EQ(samples.GetSizeSurface(), 0u);
+  EXPECT_EQ(samples.GetSizeVolume(), 40000u);
+  field->Update(samples);
+  pgl::VolumeSamplingDistribution distribution(field.get());
+  float unused = 0;
+  ASSERT_TRUE(distribution.Init(field.get(), {0.5f, 0.5f, 0.5f}, unused));
+  distribution.ApplySingleLobeHenyeyGreensteinProduct({0, 0, 1}, 0.3f);
+  EXPECT_GT(distribution.PDF({0.6f, 0, -0.8f}), 5 * distribution.PDF({-0.6f, 0, 0.8f}));
+  Chi2Options options;
+  options.quadrature = 48;  // the density jumps at the borders of texels
+  int different = 0;
+  EXPECT_TRUE(chi2Test(
+      [&](float u, float v, float) {
+        pgl_vec3f wi;
+        const float pdf = distribution.SamplePDF({u, v}, wi);
+        different += std::abs(pdf - distribution.PDF(wi)) > 1e-4f * pdf;
+        return std::optional(fromPgl(wi));
+      },
+      [&](const Float3& wi) { return distribution.PDF(toPgl(wi)); }, options));
+  EXPECT_LE(different, 5);
+  distribution.Clear();
+  EXPECT_NEAR(distribution.PDF({0, 0, 1}), 1 / (4 * kPi), 1e-6f);
 }
 
 }  // namespace

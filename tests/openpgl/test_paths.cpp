@@ -58,22 +58,47 @@ TEST(PglPaths, RadianceComesFromFurtherAlong) {
   EXPECT_TRUE(path.Validate());
 }
 
-TEST(PglPaths, NothingIsLearnedAtMirrorsNorInVolumes) {
-  for (const bool volume : {false, true}) {
+TEST(PglPaths, NothingIsLearnedAtMirrorsNorWithoutANormal) {
+  for (const bool mirror : {false, true}) {
     pgl::PathSegmentStorage path;
     scatter(addVertex(path, 0), 1, 1);
     pgl::PathSegment* middle = addVertex(path, 1);
     scatter(middle, 0.5f, 1);
-    if (volume)
-      pgl::SetVolumeScatter(middle, true);
-    else
+    if (mirror)
       pgl::SetIsDelta(middle, true);
+    else
+      pgl::SetNormal(middle, {0, 0, 0});
     pgl::SetDirectContribution(addVertex(path, 2), {4, 4, 4});
     const std::vector<pgl::SampleData> samples = samplesOf(path);
     ASSERT_EQ(samples.size(), 1u);
     EXPECT_EQ(samples[0].position.z, 0);
     EXPECT_NEAR(samples[0].weight, 2, 1e-6);
   }
+}
+
+TEST(PglPaths, VolumesAreVerticesAndTransmittanceIsPartOfWhatArrives) {
+  pgl::PathSegmentStorage path;
+  pgl::PathSegment* first = addVertex(path, 0);
+  scatter(first, 1, 1);
+  pgl::SetTransmittanceWeight(first, {0.5f, 0.5f, 0.5f});
+  pgl::PathSegment* fog = addVertex(path, 1);
+  scatter(fog, 0.75f, 0.25f);
+  pgl::SetVolumeScatter(fog, true);
+  pgl::SetTransmittanceWeight(fog, {0.25f, 0.25f, 0.25f});
+  pgl::SetDirectContribution(addVertex(path, 2), {4, 4, 4});
+  const std::vector<pgl::SampleData> samples = samplesOf(path);
+  ASSERT_EQ(samples.size(), 2u);
+  EXPECT_NEAR(samples[0].weight * samples[0].pdf, 0.5f * 0.75f * 0.25f * 4, 1e-6);
+  EXPECT_EQ(samples[0].flags, 0u);
+  EXPECT_NEAR(samples[1].weight * samples[1].pdf, 0.25f * 4, 1e-6);
+  EXPECT_EQ(samples[1].flags, uint32_t(pgl::SampleData::EInsideVolume));
+  EXPECT_NEAR(path.CalculatePixelEstimate(false).x, 0.5f * 0.75f * 0.25f * 4, 1e-6);
+  pgl::SampleStorage storage;
+  storage.AddSamples(samples.data(), samples.size());
+  EXPECT_EQ(storage.GetSizeSurface(), 1u);
+  EXPECT_EQ(storage.GetSizeVolume(), 1u);
+  EXPECT_EQ(storage.GetSampleVolume(0).position.z, 1);
+  EXPECT_EQ(storage.GetSampleSurface(0).position.z, 0);
 }
 
 TEST(PglPaths, BackgroundIsOneMoreSegment) {

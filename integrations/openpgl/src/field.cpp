@@ -158,7 +158,7 @@ void pglFieldUpdate(PGLField field, PGLSampleStorage samples) {
 void pglFieldUpdateSurface(PGLField field, PGLSampleStorage samples) {
   pglFieldUpdate(field, samples);
 }
-void pglFieldUpdateVolume(PGLField, PGLSampleStorage) {}
+void pglFieldUpdateVolume(PGLField, PGLSampleStorage) {}  // the update of surfaces takes all samples
 void pglFieldReset(PGLField field) {
   field->reset();
 }
@@ -176,7 +176,7 @@ PGLFieldStatistics pglFieldGetSurfaceStatistics(PGLField field) {
   return new FieldStatistics{field->statistics()};
 }
 PGLFieldStatistics pglFieldGetVolumeStatistics(PGLField) {
-  return new FieldStatistics{"ODIS: volumes are not guided"};
+  return new FieldStatistics{"ODIS: volumes are counted with surfaces"};
 }
 void pglReleaseFieldStatistics(PGLFieldStatistics statistics) {
   delete statistics;

@@ -20,8 +20,8 @@ struct Field {
   // Without cells where nothing was learned yet.
   const odis::GuideView& view() const { return m_view; }
   // Whether a host is given directions at a place.
-  bool guidesAt(const odis::Float3& position) const {
-    return m_gains && m_view.cellCount > 0 && !m_unguided.contains(position);
+  bool guidesAt(const odis::Float3& position, bool inVolume) const {
+    return m_gains && m_view.cellCount > 0 && !m_unguided.contains(position, inVolume);
   }
   size_t iteration() const;
   std::string statistics() const;

@@ -24,6 +24,11 @@ bool isZero(const pgl_vec3f& v) {
 bool isFinite(const pgl_vec3f& v) {
   return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
 }
+// What a ray is multiplied by, where that is a number.
+odis::Float3 factorOf(const pgl_vec3f& v) {
+  const bool isFactor = isFinite(v) && v.x >= 0 && v.y >= 0 && v.z >= 0;
+  return isFactor ? odis::openpgl_interface::toOdis(v) : odis::Float3{0, 0, 0};
+}
 uint64_t hashOf(const PGLPathSegmentData& segment) {
   uint64_t hash = 0;
   for (const float f : {segment.position.x, segment.position.y, segment.position.z, segment.directionOut.x,
@@ -72,21 +77,27 @@ bool PathSegmentStorage::scatters(size_t segment) const {
   return m_segments[segment].pdfDirectionIn > 0 || segment + 1 < m_count;
 }
 
+void PathSegmentStorage::recordArrival(uint32_t path, size_t i) {
+  const PGLPathSegmentData& segment = m_segments[i];
+  const odis::Float3 position = toOdis(segment.position), wo = toOdis(segment.directionOut);
+  float distance = 0;
+  if (i > 0) {
+    const PGLPathSegmentData& before = m_segments[i - 1];
+    const odis::Float3 way = position - toOdis(before.position);
+    distance = std::sqrt(dot(way, way));
+    m_recorder.attenuation(path, factorOf(before.transmittanceWeight));
+  }
+  if (segment.volumeScatter) return m_recorder.medium(path, odis::mediumEvent(position, wo, distance));
+  // The host's normal may lie on the other side.
+  odis::Float3 normal = toOdis(segment.normal);
+  if (dot(normal, wo) < 0) normal = normal * -1.0f;
+  m_recorder.surface(path, odis::surfaceEvent(position, normal, wo, distance));
+}
+
 void PathSegmentStorage::record(uint32_t path, size_t i) {
   const PGLPathSegmentData& segment = m_segments[i];
   const PGLPathSegmentData* before = i > 0 ? &m_segments[i - 1] : nullptr;
-
-  odis::SurfaceEvent surface;
-  surface.position = toOdis(segment.position);
-  surface.normal = toOdis(segment.normal);
-  surface.wo = toOdis(segment.directionOut);
-  // The host's normal may lie on the other side.
-  if (dot(surface.normal, surface.wo) < 0) surface.normal = surface.normal * -1.0f;
-  if (before) {
-    const odis::Float3 way = surface.position - toOdis(before->position);
-    surface.distance = std::sqrt(dot(way, way));
-  }
-  m_recorder.surface(path, surface);
+  recordArrival(path, i);
 
   if (!isZero(segment.directContribution)) {
     odis::EmissionEvent emission;
@@ -102,26 +113,28 @@ void PathSegmentStorage::record(uint32_t path, size_t i) {
 
   odis::LightEvent light;
   light.weighted = light.unweighted = toOdis(segment.scatteredContribution);
-  light.wi = surface.normal;
+  light.wi = toOdis(segment.normal);
   m_recorder.light(path, light);
 
   odis::BounceEvent bounce;
   bounce.wi = toOdis(segment.directionIn);
   bounce.pdf = segment.pdfDirectionIn;
-  bounce.roughness = segment.roughness * segment.roughness;
-  // Nothing is learned in volumes.
-  bounce.discrete = segment.isDelta || segment.volumeScatter;
-  if (scatters(i)) bounce.weight = toOdis(times(segment.scatteringWeight, segment.transmittanceWeight));
+  // Cycles tells the root of a surface's alpha, and 1 - |mean cosine| of a phase function.
+  bounce.roughness = segment.volumeScatter ? segment.roughness : segment.roughness * segment.roughness;
+  // A surface without a normal is not one of a volume.
+  bounce.discrete = segment.isDelta || (!segment.volumeScatter && isZero(segment.normal));
+  if (scatters(i)) bounce.weight = toOdis(segment.scatteringWeight);
   m_recorder.bounce(path, bounce);
 }
 
 void PathSegmentStorage::addSampleOf(const odis::PathVertex& vertex) {
   const float radiance = meanOf(vertex.radiance);
+  const uint32_t flags = flagsOf(vertex);
   if (radiance > 0)
     m_samples.push_back({fromOdis(vertex.position), fromOdis(vertex.wi), radiance / vertex.pdf, vertex.pdf,
-                         std::min(vertex.distance, maxDistance), 0});
+                         std::min(vertex.distance, maxDistance), flags});
   else
-    m_zeroSamples.push_back({fromOdis(vertex.position), fromOdis(vertex.wi), 0});
+    m_zeroSamples.push_back({fromOdis(vertex.position), fromOdis(vertex.wi), flags});
 }
 
 size_t PathSegmentStorage::prepare() {

@@ -36,6 +36,7 @@ struct alignas(64) PathSegmentStorage {
 
  private:
   bool scatters(size_t segment) const;
+  void recordArrival(uint32_t path, size_t segment);
   void record(uint32_t path, size_t segment);
   void addSampleOf(const odis::PathVertex& vertex);
 

@@ -12,11 +12,16 @@ using namespace odis::openpgl_interface;
 
 namespace {
 
-// A vertex of a sample that came without a path: its normal is not known, so that its direction stands in.
-odis::PathVertex vertexOf(const pgl_point3f& position, const pgl_vec3f& direction) {
+size_t countInVolumes(odis::ArrayView<const odis::PathVertex> vertices) {
+  return size_t(std::count_if(vertices.begin(), vertices.end(), odis::isInMedium));
+}
+
+// A vertex of a sample that came without a path: on surfaces its normal is not known, so that its direction stands in.
+odis::PathVertex vertexOf(const pgl_point3f& position, const pgl_vec3f& direction, bool inVolume) {
   odis::PathVertex vertex;
   vertex.position = toOdis(position);
-  vertex.normal = vertex.wi = toOdis(direction);
+  vertex.wi = toOdis(direction);
+  if (!inVolume) vertex.normal = vertex.wi;
   vertex.depth = 1;
   vertex.pixel = std::bit_cast<uint32_t>(position.x) * 0x9e3779b9u ^ std::bit_cast<uint32_t>(position.y);
   vertex.sample = std::bit_cast<uint32_t>(position.z) * 0x85ebca6bu ^ std::bit_cast<uint32_t>(direction.x);
@@ -50,16 +55,18 @@ void SampleStorage::Paths::clear() {
   m_paths.clear();
 }
 
-size_t SampleStorage::Paths::thinOut(const Thinning& thinning) {
+std::array<size_t, 2> SampleStorage::Paths::thinOut(const Thinning& thinning) {
   const std::vector<Path> before = std::move(m_paths);
   clear();
-  size_t removed = 0;
+  std::array<size_t, 2> removed{};
   // What is kept never moves beyond where it was: it goes to the same blocks in the same order.
   for (const Path& path : before)
-    if (thinning.keeps(path.number))
+    if (thinning.keeps(path.number)) {
       add(path.number, path.vertices);
-    else
-      removed += path.vertices.size();
+    } else {
+      removed[0] += path.vertices.size();
+      removed[1] += countInVolumes(path.vertices);
+    }
   return removed;
 }
 
@@ -76,6 +83,7 @@ void SampleStorage::add(odis::ArrayView<const odis::PathVertex> path) {
     if (!m_thinning->keeps(number)) return;
     shard.paths.add(number, path);
     m_count += path.size();
+    m_inVolumes += countInVolumes(path);
   }
   if (m_count > m_most) thinOut();
 }
@@ -86,14 +94,17 @@ void SampleStorage::thinOut() {
     m_thinning->halve();
     for (Shard& shard : m_shards) {
       const std::lock_guard lock(shard.mutex);
-      m_count -= shard.paths.thinOut(*m_thinning);
+      const auto [removed, inVolumes] = shard.paths.thinOut(*m_thinning);
+      m_count -= removed;
+      m_inVolumes -= inVolumes;
     }
   }
 }
 
 void SampleStorage::add(const PGLSampleData& sample) {
-  if (sample.flags & kVolumeFlags) return;
-  odis::PathVertex vertex = vertexOf(sample.position, sample.direction);
+  const bool inVolume = sample.flags & PGLSampleData::EInsideVolume;
+  if (!inVolume && sample.flags & kVolumeFlags) return;
+  odis::PathVertex vertex = vertexOf(sample.position, sample.direction, inVolume);
   vertex.pdf = sample.pdf;
   const float radiance = sample.weight * sample.pdf;
   vertex.radiance = {radiance, radiance, radiance};
@@ -103,8 +114,8 @@ void SampleStorage::add(const PGLSampleData& sample) {
 
 void SampleStorage::add(const PGLZeroValueSampleData& sample) {
   // Hosts of 0.7 set the first byte only.
-  if (sample.flags & PGLSampleData::EInsideVolume) return;
-  odis::PathVertex vertex = vertexOf(sample.position, sample.direction);
+  odis::PathVertex vertex =
+      vertexOf(sample.position, sample.direction, sample.flags & PGLSampleData::EInsideVolume);
   vertex.pdf = 1;
   add({&vertex, 1});
 }
@@ -114,7 +125,7 @@ void SampleStorage::clear() {
     const std::lock_guard lock(shard.mutex);
     shard.paths.clear();
   }
-  m_count = 0;
+  m_count = m_inVolumes = 0;
   m_thinning->forget();
 }
 
@@ -135,12 +146,21 @@ std::vector<PGLSampleData> SampleStorage::samples() {
   for (const odis::PathVertex& v : vertices()) {
     if (!odis::isUsable(v)) continue;
     const float radiance = meanOf(v.radiance);
-    result.push_back({fromOdis(v.position), fromOdis(v.wi), radiance / v.pdf, v.pdf, v.distance, 0});
+    result.push_back({fromOdis(v.position), fromOdis(v.wi), radiance / v.pdf, v.pdf, v.distance, flagsOf(v)});
   }
   return result;
 }
 
 namespace {
+
+// One of the samples on surfaces, or of those in volumes.
+PGLSampleData sampleAt(SampleStorage& storage, int index, bool inVolume) {
+  std::vector<PGLSampleData> all = storage.samples();
+  std::erase_if(all, [&](const PGLSampleData& s) {
+    return ((s.flags & PGLSampleData::EInsideVolume) != 0) != inVolume;
+  });
+  return index >= 0 && size_t(index) < all.size() ? all[size_t(index)] : PGLSampleData{};
+}
 
 // Adds samples that a host got from a path: the path's vertices know more.
 void addSamples(SampleStorage& storage, const PGLSampleData* data, size_t count) {
@@ -199,10 +219,10 @@ void pglSampleStorageClearSurface(PGLSampleStorage samples) {
 }
 void pglSampleStorageClearVolume(PGLSampleStorage) {}
 size_t pglSampleStorageGetSizeSurface(PGLSampleStorage samples) {
-  return samples->size();
+  return samples->size() - samples->inVolumes();
 }
-size_t pglSampleStorageGetSizeVolume(PGLSampleStorage) {
-  return 0;
+size_t pglSampleStorageGetSizeVolume(PGLSampleStorage samples) {
+  return samples->inVolumes();
 }
 size_t pglSampleStorageGetSizeZeroValueSurface(PGLSampleStorage) {
   return 0;
@@ -211,11 +231,10 @@ size_t pglSampleStorageGetSizeZeroValueVolume(PGLSampleStorage) {
   return 0;
 }
 PGLSampleData pglSampleStorageGetSampleSurface(PGLSampleStorage samples, int index) {
-  const std::vector<PGLSampleData> all = samples->samples();
-  return index >= 0 && size_t(index) < all.size() ? all[size_t(index)] : PGLSampleData{};
+  return sampleAt(*samples, index, false);
 }
-PGLSampleData pglSampleStorageGetSampleVolume(PGLSampleStorage, int) {
-  return {};
+PGLSampleData pglSampleStorageGetSampleVolume(PGLSampleStorage samples, int index) {
+  return sampleAt(*samples, index, true);
 }
 PGLZeroValueSampleData pglSampleStorageGetZeroValueSampleSurface(PGLSampleStorage, int) {
   return {};

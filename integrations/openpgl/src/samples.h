@@ -35,8 +35,9 @@ struct SampleStorage {
   void add(const PGLZeroValueSampleData& sample);
   void clear();
 
-  // The number of vertices.
+  // The number of vertices, and of those in volumes.
   size_t size() const { return m_count; }
+  size_t inVolumes() const { return m_inVolumes; }
   // From the next sample on.
   void keepAtMost(size_t vertices) { m_most = vertices < kMostVertices ? vertices : kMostVertices; }
   std::shared_ptr<const Thinning> thinning() const { return m_thinning; }
@@ -56,8 +57,8 @@ struct SampleStorage {
     };
     void add(uint64_t number, odis::ArrayView<const odis::PathVertex> vertices);
     void clear();
-    // Removes the paths that are not kept; returns the number of their vertices.
-    size_t thinOut(const Thinning& thinning);
+    // Removes the paths that are not kept; returns the number of their vertices, and of those in volumes.
+    std::array<size_t, 2> thinOut(const Thinning& thinning);
     const std::vector<Path>& all() const { return m_paths; }
 
    private:
@@ -81,7 +82,7 @@ struct SampleStorage {
   void thinOut();
 
   std::array<Shard, 64> m_shards;
-  std::atomic<size_t> m_count{0}, m_most{kMostVertices};
+  std::atomic<size_t> m_count{0}, m_inVolumes{0}, m_most{kMostVertices};
   std::shared_ptr<Thinning> m_thinning = std::make_shared<Thinning>();
   std::mutex m_thinningMutex;
   std::vector<odis::PathVertex> m_sorted;

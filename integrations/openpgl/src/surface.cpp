@@ -68,7 +68,7 @@ struct alignas(64) SurfaceSamplingDistribution {
 
 bool SurfaceSamplingDistribution::init(const Field& field, const pgl_point3f& position) {
   m_position = toOdis(position);
-  m_view = field.guidesAt(m_position) ? &field.view() : nullptr;
+  m_view = field.guidesAt(m_position, false) ? &field.view() : nullptr;
   m_cell = odis::kNoCell;
   m_hasNormal = false;
   return m_view;

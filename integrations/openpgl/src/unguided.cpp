@@ -43,7 +43,7 @@ struct Moments {
 UnguidedPlaces::UnguidedPlaces(const CellGrid& grid, ArrayView<const PathVertex> vertices) : m_grid(grid) {
   std::unordered_map<uint64_t, Moments> places;
   for (const PathVertex& vertex : vertices)
-    if (isUsable(vertex)) places[keyOf(vertex.position)].add(vertex);
+    if (isUsable(vertex)) places[keyOf(vertex.position, isInMedium(vertex))].add(vertex);
   m_slots.assign(std::bit_ceil(2 * places.size() + 1), kEmpty);
   for (const auto& [key, moments] : places)
     if (moments.variesLittle()) {

@@ -15,16 +15,18 @@ class UnguidedPlaces {
   // Judges by vertices whose directions were sampled from the BSDF alone.
   UnguidedPlaces(const CellGrid& grid, ArrayView<const PathVertex> vertices);
 
-  bool contains(const Float3& position) const {
-    const uint64_t key = keyOf(position);
+  bool contains(const Float3& position, bool inVolume) const {
+    const uint64_t key = keyOf(position, inVolume);
     return m_slots[slotOf(key)] == key;
   }
   size_t size() const { return m_count; }
 
  private:
-  // A place is a cube twice as long as the finest cells. Its key holds no normal (the one here stands for all of them),
-  // because hosts ask before they tell it.
-  uint64_t keyOf(const Float3& position) const { return m_grid.key(position, {1, 0, 0}, 1); }
+  // A place is a cube twice as long as the finest cells. On surfaces its key holds no normal (the one here stands for all
+  // of them), because hosts ask before they tell it.
+  uint64_t keyOf(const Float3& position, bool inVolume) const {
+    return m_grid.key(position, {inVolume ? 0.0f : 1.0f, 0, 0}, 1);
+  }
 
   // Where a key is, or else an empty slot.
   size_t slotOf(uint64_t key) const {

@@ -16,6 +16,9 @@ inline Float3 toOdis(const pgl_vec3f& v) {
 inline pgl_vec3f fromOdis(const Float3& v) {
   return {v.x, v.y, v.z};
 }
+inline uint32_t flagsOf(const PathVertex& vertex) {
+  return isInMedium(vertex) ? PGLSampleData::EInsideVolume : 0;
+}
 inline float meanOf(const Float3& v) {
   return (v.x + v.y + v.z) / 3;
 }

@@ -41,6 +41,9 @@ Pilot trace(const render::Scene& scene, const render::LightSampler& lights, uint
                      ArrayView<const PathVertex> vertices) {
     for (const FrameSample& s : samples) pilot.image[s.pixel] = render::Rgb(s.value.x, s.value.y, s.value.z);
     tiles[tile].assign(vertices.begin(), vertices.end());
+    // Data sets are of surfaces: they have no normal of zero.
+    for (PathVertex& v : tiles[tile])
+      if (isInMedium(v)) v.normal = {0, 0, 1}, v.discrete = true, v.guidableProbability = 0;
   };
   render::Progress silent;
   render::runPass(pass, silent, [] { return false; });

@@ -19,7 +19,7 @@ void expect(bool holds, const char* what) {
   ++failures;
 }
 
-// Only samples that are inside of volumes themselves are left out.
+// Only samples that are inside of volumes themselves are those of volumes.
 void trySamples() {
   openpgl::cpp::SampleStorage samples;
   openpgl::cpp::ZeroValueSampleData zero{{1, 2, 3}, {0, 0, 1}, PGLSampleData::ENextEventVolume};
@@ -31,7 +31,8 @@ void trySamples() {
   sample.flags |= PGLSampleData::EInsideVolume;
   samples.AddZeroValueSample(zero);
   samples.AddSample(sample);
-  expect(samples.GetSizeSurface() == 2, "samples in volumes to be left out");
+  expect(samples.GetSizeSurface() == 2 && samples.GetSizeVolume() == 2,
+         "samples in volumes to be told apart");
 }
 
 void tryImage() {
