@@ -101,8 +101,8 @@ class GuidedVertex {
   // ---- directions ----
 
   // Says what the BSDF is like; until then, and where nothing is to be gained, directions are left to it.
-  // `roughness` is alpha of a microfacet distribution, 1 for diffuse; `guidableProbability` how often the
-  // BSDF draws from lobes that may be guided (odis/mixture.h), in [0, 1].
+  // `roughness` is alpha of a microfacet distribution, 1 for diffuse, 1 - |mean cosine| of a phase function;
+  // `guidableProbability` how often the BSDF draws from lobes that may be guided (odis/mixture.h), in [0, 1].
   ODIS_HOST_DEVICE void prepare(float roughness, float guidableProbability = 1) {
     m_mixture = {};
     if (!isKnown() || !(guidableProbability > 0)) return;

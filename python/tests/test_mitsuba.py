@@ -318,6 +318,8 @@ class Maps(unittest.TestCase):
         expected = self.guide.find_cells(position, normal)
         # Places on the border of two cells may be rounded to either.
         self.assertLess((np.array(found) != expected).mean(), 0.005)
+        in_media = guide_tables.find_cell(self.tables, mi.Point3f(position.T), mi.Vector3f(0), True)
+        np.testing.assert_array_equal(np.array(in_media), odis.NO_CELL)
 
     def test_what_is_no_number(self):
         """Places that are huge or no numbers lie in no cell; such directions have some place in tables."""

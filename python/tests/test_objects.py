@@ -30,7 +30,7 @@ class Printing(unittest.TestCase):
                          rf"predicted_variance_ratio=\d\.\d+, bytes={guide.bytes}>$")
         self.assertEqual(repr(builder), f"<odis.GuideBuilder: 5000 vertices, bytes={builder.bytes}>")
         self.assertRegex(repr(guide.rules), r"^odis.GuideRules\(roughness_bounds=\[.*least_survival=0\.\d{1,6}, .*cached_error=")
-        self.assertRegex(repr(builder.vertex_counts), r"^odis.VertexCounts\(accepted=5000, discrete=0, .*twice=0\)$")
+        self.assertRegex(repr(builder.vertex_counts), r"^odis.VertexCounts\(accepted=5000, discrete=0, .*in_media=0\)$")
 
     def test_options_are_what_makes_them_again(self):
         options = odis.GuideOptions(light_groups=3, light_parts=[(1, 2)], settings="cells=64")

@@ -196,6 +196,24 @@ TEST(CellsOfMedia, StayWhenTheyAreCarriedOverAndSaved) {
   EXPECT_TRUE(all());
 }
 
+// Maps at pixels are for first vertices on surfaces; a host may ask for a pixel's without telling a place.
+TEST(CellsOfMedia, MapsAtPixelsAreForSurfaces) {
+  const uint32_t cells[] = {kNoCell, 7};
+  GuideView view;
+  view.cellCount = 8;
+  view.pixels = {cells, 2};
+  Place place{{0, 0, 0}, {0, 0, 1}, 1, 0, true};
+  EXPECT_EQ(findCell(view, place), 7u);
+  uint32_t found = 0;
+  findCells(view, &place, 1, &found);
+  EXPECT_EQ(found, 7u);
+  place.normal = {};
+  EXPECT_EQ(pixelCell(view, place), 7u);
+  EXPECT_EQ(findCell(view, place), kNoCell);
+  findCells(view, &place, 1, &found);
+  EXPECT_EQ(found, kNoCell);
+}
+
 TEST(CellsOfMedia, GuideAVertexWithoutANormal) {
   const Float3 bright{0, 0.6f, -0.8f};
   GuideBuilder builder(ofFormulas());
