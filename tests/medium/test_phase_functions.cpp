@@ -157,7 +157,7 @@ TEST_F(PhaseFunctions, MeanCosinesAreG) {
 }
 
 TEST_F(PhaseFunctions, HgIsExactNearItsPeak) {
-  // Against double precision, at angles from the peak that are far narrower than it is, to some that are wider.
+  // Against double precision, at angles from the peak that are far narrower than it is, and at wider ones.
   Random random(17);
   for (const float g : {-0.99f, 0.99f, 0.999f, 0.9f, 1e-6f}) {
     const PhaseFunctionPtr phase = m_parts.phase(hgText(fmt::format("{}", g)));
