@@ -42,6 +42,10 @@ class Blend final : public Bsdf {
     return {lerp(w, a.value, b.value), lerp(w, a.pdf, b.pdf), lerp(w, a.guidablePdf, b.guidablePdf)};
   }
 
+  Rgb nullTransmission(const SurfacePoint& at, const Vec3& wo) const override {
+    return lerp(m_weight(at), m_nested[0]->nullTransmission(at, wo), m_nested[1]->nullTransmission(at, wo));
+  }
+
   float guidableProbability(const SurfacePoint& at, const Vec3& wo) const override {
     return lerp(m_weight(at), m_nested[0]->guidableProbability(at, wo),
                 m_nested[1]->guidableProbability(at, wo));

@@ -96,6 +96,9 @@ class Bsdf {
   // That of features() alone, for those that know it without looking at textures.
   virtual float roughness(const SurfacePoint& at, const Vec3& wo) const { return features(at, wo).roughness; }
 
+  // The share of the light that passes straight through (Lobe::null): the mean of the weights of such
+  // samples.
+  virtual Rgb nullTransmission(const SurfacePoint& /*at*/, const Vec3& /*wo*/) const { return Rgb(0.0f); }
   // What the side that a direction is on is, so that callers may work out by themselves what the functions
   // above say there.
   const BsdfSide& side(const Vec3& wo) const { return m_sides[!(wo.z >= 0)]; }

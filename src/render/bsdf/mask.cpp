@@ -32,6 +32,11 @@ class Mask final : public Bsdf {
     return {result.value * opacity, result.pdf * opacity, result.guidablePdf * opacity};
   }
 
+  Rgb nullTransmission(const SurfacePoint& at, const Vec3& wo) const override {
+    const float opacity = m_opacity(at);
+    return Rgb(1 - opacity) + m_nested->nullTransmission(at, wo) * opacity;
+  }
+
   float guidableProbability(const SurfacePoint& at, const Vec3& wo) const override {
     return m_nested->guidableProbability(at, wo) * m_opacity(at);
   }

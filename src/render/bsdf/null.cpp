@@ -13,6 +13,7 @@ class Null final : public Bsdf {
     return discreteSample(-wo, Rgb(1.0f), 1, Lobe::null);
   }
   BsdfValue evaluate(const SurfacePoint&, const Vec3&, const Vec3&) const override { return {}; }
+  Rgb nullTransmission(const SurfacePoint&, const Vec3&) const override { return Rgb(1.0f); }
   float guidableProbability(const SurfacePoint&, const Vec3&) const override { return 0; }
   BsdfFeatures features(const SurfacePoint&, const Vec3&) const override { return {Rgb(1.0f), 0}; }
 };

@@ -55,6 +55,14 @@ BsdfValue Perturbed::evaluate(const SurfacePoint& at, const Vec3& wo, const Vec3
   return result;
 }
 
+Rgb Perturbed::nullTransmission(const SurfacePoint& at, const Vec3& wo) const {
+  if (!m_nested->traits().transmissive) return Rgb(0.0f);
+  const Turned turned = turn(at, wo);
+  const Vec3 turnedWo = turned.frame.toLocal(wo);
+  if (!(wo.z * turnedWo.z > 0)) return Rgb(0.0f);
+  return m_nested->nullTransmission(turned.at, turnedWo) * shadowing(turned, -wo);
+}
+
 float Perturbed::guidableProbability(const SurfacePoint& at, const Vec3& wo) const {
   const Turned turned = turn(at, wo);
   return m_nested->guidableProbability(turned.at, turned.frame.toLocal(wo));

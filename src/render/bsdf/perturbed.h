@@ -19,6 +19,7 @@ class Perturbed : public Bsdf {
 
   BsdfSample sample(const SurfacePoint& at, const Vec3& wo, float uLobe, const Vec2& u) const final;
   BsdfValue evaluate(const SurfacePoint& at, const Vec3& wo, const Vec3& wi) const final;
+  Rgb nullTransmission(const SurfacePoint& at, const Vec3& wo) const override;
   float guidableProbability(const SurfacePoint& at, const Vec3& wo) const final;
   BsdfFeatures features(const SurfacePoint& at, const Vec3& wo) const final;
 

@@ -23,6 +23,9 @@ class OpticalElement final : public Bsdf {
     return discreteSample(-wo, m_transmittance(at) * m_share, 1, Lobe::null);
   }
   BsdfValue evaluate(const SurfacePoint&, const Vec3&, const Vec3&) const override { return {}; }
+  Rgb nullTransmission(const SurfacePoint& at, const Vec3&) const override {
+    return m_transmittance(at) * m_share;
+  }
   float guidableProbability(const SurfacePoint&, const Vec3&) const override { return 0; }
   BsdfFeatures features(const SurfacePoint& at, const Vec3&) const override {
     return {m_transmittance(at) * m_share, 0};

@@ -26,6 +26,9 @@ class ThinDielectric final : public Bsdf {
     return discreteSample(-wo, m_transmittance(at), 1 - r, Lobe::null);
   }
   BsdfValue evaluate(const SurfacePoint&, const Vec3&, const Vec3&) const override { return {}; }
+  Rgb nullTransmission(const SurfacePoint& at, const Vec3& wo) const override {
+    return m_transmittance(at) * (1 - reflectance(wo));
+  }
   float guidableProbability(const SurfacePoint&, const Vec3&) const override { return 0; }
   BsdfFeatures features(const SurfacePoint& at, const Vec3& wo) const override {
     const float r = reflectance(wo);

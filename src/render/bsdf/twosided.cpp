@@ -29,6 +29,11 @@ class TwoSided final : public Bsdf {
     return of(side).evaluate(at, side.flip(wo), side.flip(wi));
   }
 
+  Rgb nullTransmission(const SurfacePoint& at, const Vec3& wo) const override {
+    const Side side(wo);
+    return of(side).nullTransmission(at, side.flip(wo));
+  }
+
   float guidableProbability(const SurfacePoint& at, const Vec3& wo) const override {
     const Side side(wo);
     return of(side).guidableProbability(at, side.flip(wo));

@@ -41,7 +41,7 @@ ODIS_WIDE void LightDescents::findProbabilities(LightDescents& of) {
                          axis,
                          {child.sinNormals[i], child.cosNormals[i]},
                          child.cosReach[i]},
-                        of.m_p[i], of.m_n[i], of.m_both[i] != 0);
+                        of.m_p[i], of.m_n[i], of.m_sides[i]);
     };
     of.m_first[i] = firstProbability(ofChild(of.m_children[0]), ofChild(of.m_children[1]));
   }

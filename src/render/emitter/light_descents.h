@@ -16,7 +16,7 @@ class LightDescents {
     assert(m_count < kLanes);
     m_p.set(m_count, ref.p);
     m_n.set(m_count, ref.n);
-    m_both[m_count] = ref.both;
+    m_sides[m_count] = ref.sides();
     m_descents[m_count] = from;
     ++m_count;
   }
@@ -45,7 +45,7 @@ class LightDescents {
 
   size_t m_count = 0;
   Columns3 m_p, m_n;
-  Bits m_both;
+  Bits m_sides;
   std::array<LightTree::Descent, kLanes> m_descents;
   Children m_children[2];
   Column m_first;  // the probability of the first child

@@ -39,9 +39,13 @@ inline Angle angleOf(float cosine) {
   return {safeSqrt(1 - cosine * cosine), cosine};
 }
 
-// What the lights may give a surface at p, with the normal n, that scatters the light of one side or of both,
-// in W/m^2; zero only if nothing.
-inline float importance(const SubtreeBounds& lights, const Vec3& p, const Vec3& n, bool both) {
+// The light that a place scatters: that of one side of a surface, of both, or of all directions alike, which
+// is so in media. A number, so that lanes can hold it.
+inline constexpr int32_t kOneSide = 0, kBothSides = 1, kAllAlike = 2;
+
+// What the lights may give a place at p, in W/m^2, with the normal n if it lies on a surface; zero only if
+// nothing.
+inline float importance(const SubtreeBounds& lights, const Vec3& p, const Vec3& n, int32_t sides) {
   const Vec3 toLight = lights.center - p;
   const float squared = lengthSquared(toLight),
               nearest = std::max(lights.radiusSquared, kLeastSquaredDistance);
@@ -54,8 +58,8 @@ inline float importance(const SubtreeBounds& lights, const Vec3& p, const Vec3& 
   const float cosAxis = limited(dot(lights.axis, wi) * (-1 / kAxisScale), -1.0f, 1.0f);
   const Angle emission = difference(difference(angleOf(cosAxis), lights.normals), sphere);
   // The least angle between the surface's normal and a direction to the lights.
-  const float cosSurface = dot(n, wi);
-  const Angle incidence = difference(angleOf(both ? std::abs(cosSurface) : cosSurface), sphere);
+  const float cosNormal = dot(n, wi), cosSide = sides == kOneSide ? cosNormal : std::abs(cosNormal);
+  const Angle incidence = difference(angleOf(sides == kAllAlike ? 1.0f : cosSide), sphere);
 
   const float value =
       lights.intensity * std::max(emission.cos, kGrazing) * std::max(incidence.cos, kGrazing) * inverse;

@@ -54,27 +54,27 @@ SubtreeBounds LightTree::unpack(const Node& node) {
 }
 
 float LightTree::importance(const Node& node, const LightReference& ref) {
-  return render::importance(unpack(node), ref.p, ref.n, ref.both);
+  return render::importance(unpack(node), ref.p, ref.n, ref.sides());
 }
 
 // What the lights of a subtree may give several references.
 ODIS_WIDE static void findImportances(const SubtreeBounds& bounds, size_t count, const Columns3& p,
-                                      const Columns3& n, const IntColumn& both, Column& result) {
+                                      const Columns3& n, const IntColumn& sides, Column& result) {
   for (size_t i = 0, end = endOfLanes(count); i < end; ++i)
-    result[i] = importance(bounds, p[i], n[i], both[i] != 0);
+    result[i] = importance(bounds, p[i], n[i], sides[i]);
 }
 
 void LightTree::irradiances(std::span<const LightReference> refs, Column& result) const {
   result = {};
   if (empty()) return;
   Columns3 p{}, n{};
-  IntColumn both{};
+  IntColumn sides{};
   for (size_t i = 0; i < refs.size(); ++i) {
     p.set(i, refs[i].p);
     n.set(i, refs[i].n);
-    both[i] = refs[i].both;
+    sides[i] = refs[i].sides();
   }
-  findImportances(unpack(m_rootNode), refs.size(), p, n, both, result);
+  findImportances(unpack(m_rootNode), refs.size(), p, n, sides, result);
 }
 
 float LightTree::firstProbability(const Pair& pair, const LightReference& ref) {

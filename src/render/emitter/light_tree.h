@@ -18,10 +18,17 @@ namespace odis::render {
 // The point that light is sampled for, as far as the choice among lights depends on it.
 struct LightReference {
   Vec3 p;
-  Vec3 n;                      // unit shading normal on the side that light is scattered to
+  // Unit shading normal on the side that light is scattered to; zero in a medium.
+  Vec3 n;
   bool both = false;           // whether light of the other side is scattered too
   LearnedLights learned{};     // what is known of the groups of lights there; LightSampler only
   float treeProbability = -1;  // LightSampler::prepare() only: negative before
+
+  // As importance() has them.
+  int32_t sides() const {
+    if (n == Vec3(0, 0, 0)) return kAllAlike;
+    return both ? kBothSides : kOneSide;
+  }
 };
 
 class LightTree {
