@@ -1,10 +1,16 @@
-// The volumes and phase functions that scenes may name.
+// The media, volumes and phase functions that scenes may name.
+#include "render/medium/factories.h"
 #include "render/medium/volume_factories.h"
 #include "render/scene/factory_table.h"
 
 namespace odis::render {
 
 namespace {
+
+constexpr std::pair<const char*, MediumFactory> kMedia[] = {
+    {"heterogeneous", makeHeterogeneous},
+    {"homogeneous", makeHomogeneous},
+};
 
 constexpr std::pair<const char*, VolumeFactory> kVolumes[] = {
     {"constvolume", makeConstantVolume},
@@ -18,11 +24,17 @@ constexpr std::pair<const char*, PhaseFunctionFactory> kPhaseFunctions[] = {
 
 }  // namespace
 
+MediumFactory findMediumFactory(const std::string& type) {
+  return findFactory(kMedia, type);
+}
 VolumeFactory findVolumeFactory(const std::string& type) {
   return findFactory(kVolumes, type);
 }
 PhaseFunctionFactory findPhaseFunctionFactory(const std::string& type) {
   return findFactory(kPhaseFunctions, type);
+}
+std::vector<std::string> mediumTypes() {
+  return typesIn(kMedia);
 }
 std::vector<std::string> volumeTypes() {
   return typesIn(kVolumes);
