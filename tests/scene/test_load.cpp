@@ -107,7 +107,7 @@ TEST(Load, DrawsWhatItDoesNotKnowAsWellAsItCan) {
       "<sensor type='perspective'><sampler type='halton'><integer name='sampleCount' value='9'/></sampler>"
       "<film type='specfilm'><rfilter type='lanczoz'/></film></sensor>"
       "<shape type='sphere'><bsdf type='difuse'><float name='alpha' value='1'/></bsdf>"
-      "<medium name='interior' type='homogeneous'/></shape>"
+      "<medium name='interior' type='homogeneos'/></shape>"
       "<shape type='hair'/><emitter type='projektor'/>"
       "<shape type='sphere'><bsdf type='diffuse'><texture name='reflectance' type='wood'/></bsdf></shape>"
       "<shape type='sphere'><float name='radios' value='2'/></shape>");
@@ -117,8 +117,9 @@ TEST(Load, DrawsWhatItDoesNotKnowAsWellAsItCan) {
   EXPECT_EQ(loaded.scene->integrator().samplesPerPixel, 9);
   for (const char* text :
        {"film 'specfilm'", "filter 'lanczoz' is unknown (did you mean 'lanczos'?)",
-        "bsdf 'difuse' is unknown (did you mean 'diffuse'", "media are not supported", "shape 'hair'",
-        "emitter 'projektor'", "texture 'wood'", "unknown parameter 'radios' of the shape 'sphere'"})
+        "bsdf 'difuse' is unknown (did you mean 'diffuse'",
+        "medium 'homogeneos' is unknown (did you mean 'homogeneous'?)", "shape 'hair'", "emitter 'projektor'",
+        "texture 'wood'", "unknown parameter 'radios' of the shape 'sphere'"})
     EXPECT_TRUE(loaded.warnsOf(text)) << text;
   EXPECT_EQ(loaded.warnings.texts().size(), 8u);
   for (const char* text : {"integrator 'volpath'", "sampler 'halton'"})

@@ -5,9 +5,8 @@
 
 namespace odis::render {
 
-namespace {
-
-void addEmission(const PathSettings& settings, Batch& batch, Path& path, int depth, const Emission& met) {
+void addEmission(const PathSettings& settings, PathRecorder* recorder, Path& path, int depth,
+                 const Emission& met) {
   path.visible |= !settings.scene->integrator().hideEmitters;
   if (isBlack(met.radiance)) return;
   const float pdf = path.bySampling ? lightPdf(*settings.lights, path.previous, met) : 0;
@@ -18,13 +17,19 @@ void addEmission(const PathSettings& settings, Batch& batch, Path& path, int dep
     path.emittedPdf = pdf;
     ++path.emissions;
   }
-  if (!batch.recording) return;
+  if (!recorder) return;
   EmissionEvent event;
   event.radiance = toOdis(met.radiance);
   event.misWeight = weight;
   event.lightPdf = pdf;
-  batch.recorder.emission(path.handle, event);
+  recorder->emission(path.handle, event);
 }
+
+const LightReference* competitor(const Path& path) {
+  return path.bySampling ? &path.previous : nullptr;
+}
+
+namespace {
 
 // Follows the ray to the surface that it met.
 void arriveAt(Batch& batch, const Arrival& arrival) {
@@ -41,11 +46,6 @@ void arriveAt(Batch& batch, const Arrival& arrival) {
   batch.recorder.surface(path.handle, event);
 }
 
-// Where the path's ray started, if next-event estimation competes with its direction.
-const LightReference* competitor(const Path& path) {
-  return path.bySampling ? &path.previous : nullptr;
-}
-
 }  // namespace
 
 void meetEmission(const PathSettings& settings, Batch& batch, Bounces& bounces) {
@@ -59,7 +59,9 @@ void meetEmission(const PathSettings& settings, Batch& batch, Bounces& bounces) 
     leaving.addIf(!met, i);
   }
   const auto add = [&](Path& path) {
-    return [&](const Emission& met) { addEmission(settings, batch, path, bounces.depth, met); };
+    return [&](const Emission& met) {
+      addEmission(settings, batch.recording ? &batch.recorder : nullptr, path, bounces.depth, met);
+    };
   };
   for (const size_t i : arriving) {
     Arrival& arrival = bounces.arrivals[i];
@@ -84,22 +86,14 @@ void meetEmission(const PathSettings& settings, Batch& batch, Bounces& bounces) 
   });
 }
 
-namespace {
-
-// Smoother surfaces end no paths: what they scatter depends too much on the direction. The same is true of
-// those that scatter mostly by lobes that may not be guided.
-constexpr float kLeastCachedRoughness = 0.3f, kLeastCachedGuidable = 0.5f;
-
-bool scattersEvenly(const Arrival& arrival) {
-  const auto& [at, wo] = *arrival.vertex;
+bool scattersEvenly(const Vertex& vertex) {
+  const auto& [at, wo] = vertex;
   const Bsdf& bsdf = at.shape->bsdf();
   // What is refracted spreads over a quarter of the angle of a reflection of the same roughness, or less: of
   // surfaces that let light pass only diffuse ones scatter evenly.
   const float leastRoughness = bsdf.traits().transmissive ? 1 : kLeastCachedRoughness;
   return bsdf.guidableProbability(at, wo) >= kLeastCachedGuidable && bsdf.roughness(at, wo) >= leastRoughness;
 }
-
-}  // namespace
 
 void endInCache(const PathSettings& settings, Batch& batch, Bounces& bounces) {
   if (!settings.guide || !settings.guide->cached) return;
@@ -115,7 +109,7 @@ void endInCache(const PathSettings& settings, Batch& batch, Bounces& bounces) {
     Float3 radiance;
     if (!cachedRadiance(*settings.guide, place, arrival.cell, luminance(path.throughput) / path.pixelValue,
                         path.footprint, radiance) ||
-        !scattersEvenly(arrival))
+        !scattersEvenly(vertex))
       continue;
     path.radiance += path.throughput * Rgb(radiance.x, radiance.y, radiance.z);
     arrival.scatters = false;

@@ -52,4 +52,18 @@ inline float lightPdf(const LightSampler& lights, const LightReference& from, co
   return met.emitterPdf > 0 ? met.emitterPdf * lights.probability(from, met.emitter, met.part, met.u) : 0;
 }
 
+// Where the path's ray started, if next-event estimation competes with its direction; else null.
+const LightReference* competitor(const Path& path);
+// Adds emission that the path's ray met, weighted against next-event estimation where that could have found
+// it too; the ray leads to a vertex of this depth. `recorder` may be null.
+void addEmission(const PathSettings& settings, PathRecorder* recorder, Path& path, int depth,
+                 const Emission& met);
+
+// Smoother surfaces and phase functions of narrower peaks end no paths with cached radiance: what they
+// scatter depends too much on the direction. The same is true of surfaces that scatter mostly by lobes that
+// may not be guided.
+inline constexpr float kLeastCachedRoughness = 0.3f, kLeastCachedGuidable = 0.5f;
+// Whether paths may end on a surface.
+bool scattersEvenly(const Vertex& vertex);
+
 }  // namespace odis::render

@@ -22,6 +22,36 @@ FirstHit firstHitAt(const Vertex& vertex, float distance) {
   return first;
 }
 
+namespace {
+
+// Whether what the camera sees at a vertex is what a sampled direction leads to, as in a mirror. A coat that
+// reflects less than what it covers is no mirror.
+bool leadsOn(const Bsdf& bsdf, const Vertex& vertex, Lobe lobe) {
+  return lobe == Lobe::null || (isDiscrete(lobe) && bsdf.guidableProbability(vertex.at, vertex.wo) < 0.5f);
+}
+
+}  // namespace
+
+bool passesMirror(Path& path, const Vertex& vertex, int depth) {
+  const auto& [at, wo] = vertex;
+  if (!at.shape) return false;
+  path.distance += length(at.p - path.ray.origin);
+  const Bsdf& bsdf = at.shape->bsdf();
+  const BsdfTraits& traits = bsdf.traits();
+  BsdfSample next;
+  if (!traits.evaluable || traits.choosesLobes) {  // others have no discrete lobe
+    path.sampler.startVertex(depth);
+    const float uLobe = path.sampler.get1D();
+    next = bsdf.sample(at, wo, uLobe, path.sampler.get2D());
+  }
+  if (!leadsOn(bsdf, vertex, next.lobe)) {
+    path.first = firstHitAt(vertex, path.distance);
+    return false;
+  }
+  path.ray = Scene::spawn(at, at.shading.toWorld(next.wi));
+  return !isBlack(next.weight);
+}
+
 // docs/figures.md names them.
 static_assert(sizeof(FeatureSums) == 68 && sizeof(GuideFeatureSums) == 20);
 

@@ -26,10 +26,14 @@ struct FirstHit {
   float survival = 1;      // that learned roulette would give a path with this throughput
 };
 
+struct Path;
 struct Vertex;
 
 // The features of a vertex, `distance` from the camera along the path.
 FirstHit firstHitAt(const Vertex& vertex, float distance);
+// Takes a path that has met a vertex on through a mirror or glass to its next ray; elsewhere notes the
+// features of the vertex and returns false. `depth` counts the vertices, from 1.
+bool passesMirror(Path& path, const Vertex& vertex, int depth);
 
 // Sums of features over the samples that met a surface, and of alpha over all. 68 bytes a pixel.
 struct FeatureSums {

@@ -2,17 +2,6 @@
 
 namespace odis::render {
 
-namespace {
-
-// A rival's density as the mixture asks for it.
-struct RivalMap {
-  const DirectionSampler& rival;
-  SamplingMap<float>::Sample sample(float u, float v) const { return rival.sample(Vec2(u, v)); }
-  float pdf(const Float3& wi) const { return rival.pdf(fromOdis(wi)); }
-};
-
-}  // namespace
-
 void GuidedBsdfs::clear() {
   std::fill_n(bsdfFraction.of, kLanes, 1.0f);
   guidable = {};

@@ -58,6 +58,13 @@ struct BsdfHost {
   }
 };
 
+// A rival's density as the mixture asks for it.
+struct RivalMap {
+  const DirectionSampler& rival;
+  SamplingMap<float>::Sample sample(float u, float v) const { return rival.sample(Vec2(u, v)); }
+  float pdf(const Float3& wi) const { return rival.pdf(fromOdis(wi)); }
+};
+
 // Samples a direction where no map guides: from the BSDF, or from its mixture with a rival's density.
 BsdfSample sampleWithoutMap(const GuidedBsdfs& bsdfs, size_t lane, const BsdfHost& host, const Vec2& u);
 

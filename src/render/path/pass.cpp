@@ -197,9 +197,9 @@ void findCameraRays(const Scene& scene, FilmKind film, std::span<const Vec2i> pi
   sensor.rays(pixels.size(), places, samples.rays);
 }
 
-// The same ray, behind the lights if the integrator hides them.
+// The same ray, behind the lights if the integrator hides them. Paths through media pass them by themselves.
 Ray seen(const Scene& scene, const Ray& ray) {
-  return scene.integrator().hideEmitters ? beyondEmitters(scene, ray) : ray;
+  return scene.integrator().hideEmitters && !scene.volumetric() ? beyondEmitters(scene, ray) : ray;
 }
 
 // Gives paths, whose pixels lie there on the film, their camera rays, several at once.

@@ -5,6 +5,7 @@
 #include <numeric>
 
 #include "render/path/bounce.h"
+#include "render/path/volume_paths.h"
 #include "render/shape/mesh_points.h"
 
 namespace odis::render {
@@ -191,33 +192,6 @@ void activateAll(std::span<const Path> paths, Batch& batch) {
   }
 }
 
-// Whether what the camera sees at a vertex is what a sampled direction leads to, as in a mirror. A coat that
-// reflects less than what it covers is no mirror.
-bool leadsOn(const Bsdf& bsdf, const Vertex& vertex, Lobe lobe) {
-  return lobe == Lobe::null || (isDiscrete(lobe) && bsdf.guidableProbability(vertex.at, vertex.wo) < 0.5f);
-}
-
-// Takes a path from a vertex to its next ray, or notes its features there and returns false.
-bool passesMirror(Path& path, const Vertex& vertex, int depth) {
-  const auto& [at, wo] = vertex;
-  if (!at.shape) return false;
-  path.distance += length(at.p - path.ray.origin);
-  const Bsdf& bsdf = at.shape->bsdf();
-  const BsdfTraits& traits = bsdf.traits();
-  BsdfSample next;
-  if (!traits.evaluable || traits.choosesLobes) {  // others have no discrete lobe
-    path.sampler.startVertex(depth);
-    const float uLobe = path.sampler.get1D();
-    next = bsdf.sample(at, wo, uLobe, path.sampler.get2D());
-  }
-  if (!leadsOn(bsdf, vertex, next.lobe)) {
-    path.first = firstHitAt(vertex, path.distance);
-    return false;
-  }
-  path.ray = Scene::spawn(at, at.shading.toWorld(next.wi));
-  return !isBlack(next.weight);
-}
-
 }  // namespace
 
 void tracePaths(const PathSettings& settings, std::span<Path> paths, std::vector<PathVertex>* vertices) {
@@ -225,13 +199,17 @@ void tracePaths(const PathSettings& settings, std::span<Path> paths, std::vector
   batch.recording = vertices != nullptr;
   if (batch.recording)
     for (Path& path : paths) path.handle = batch.recorder.begin(path.identity);
-  traceBatch(settings, paths, batch);
+  if (settings.scene->volumetric())
+    traceVolumePaths(settings, paths, batch.recording ? &batch.recorder : nullptr);
+  else
+    traceBatch(settings, paths, batch);
   if (!vertices) return;
   const ArrayView<const PathVertex> met = batch.recorder.finish();
   vertices->insert(vertices->end(), met.begin(), met.end());
 }
 
 void traceFirstHits(const PathSettings& settings, std::span<Path> paths) {
+  if (settings.scene->volumetric()) return traceFirstVolumeHits(settings, paths);
   Batch& batch = batchOfThread();
   activateAll(paths, batch);
   for (int depth = 1; !batch.active.empty(); ++depth) {

@@ -141,6 +141,19 @@ BsdfPtr Builder::bsdf(const Properties& node) {
   return m_bsdfs[&node] = made;
 }
 
+MediumPtr Builder::medium(const Properties& node) {
+  const auto known = m_media.find(&node);
+  if (known != m_media.end()) return known->second;
+  MediumPtr made;
+  if (const MediumFactory factory = findMediumFactory(node.type)) {
+    made = factory(node, *this);
+    warnUnqueried(node);
+  } else {
+    warn(node.location, unknownType(node, mediumTypes()) + ", it is left out");
+  }
+  return m_media[&node] = made;
+}
+
 BsdfPtr Builder::nestedBsdf(const Properties& parent, int index) {
   int count = 0;
   for (const Properties::Child& child : parent.children) {

@@ -14,6 +14,7 @@
 #include "render/bsdf/bsdf.h"
 #include "render/bsdf/rough_transmittance.h"
 #include "render/emitter/emitter.h"
+#include "render/medium/medium.h"
 #include "render/medium/phase_function.h"
 #include "render/medium/volume.h"
 #include "render/shape/shape.h"
@@ -58,6 +59,8 @@ class Builder {
                              const Declaration& declaration);
   TexturePtr texture(const Properties& node);
   BsdfPtr bsdf(const Properties& node);
+  // Null if the type is unknown, with a warning.
+  MediumPtr medium(const Properties& node);
   // The nested BSDF number `index` (0 first) of `parent`; throws SceneError if it is not there.
   BsdfPtr nestedBsdf(const Properties& parent, int index);
   // A parameter that is a volume: a nested <volume>, a colour or a number as a constant, or the fallback as a
@@ -102,6 +105,7 @@ class Builder {
   std::unordered_map<const Properties*, BsdfPtr> m_bsdfs;
   std::unordered_map<const Properties*, VolumePtr> m_volumes;
   std::unordered_map<const Properties*, PhaseFunctionPtr> m_phaseFunctions;
+  std::unordered_map<const Properties*, MediumPtr> m_media;
   std::unordered_map<std::string, std::shared_ptr<const Image>> m_images;
   std::unique_ptr<FilesAhead> m_filesAhead;
   std::map<std::tuple<Microfacet::Type, float, float>, std::shared_ptr<const RoughTransmittance>>
@@ -111,6 +115,7 @@ class Builder {
 // The factories: one function a model, defined in the model's own file, listed in the room's registry.cpp.
 using TextureFactory = TexturePtr (*)(const Properties&, Builder&);
 using BsdfFactory = BsdfPtr (*)(const Properties&, Builder&);
+using MediumFactory = MediumPtr (*)(const Properties&, Builder&);
 using EmitterFactory = std::vector<EmitterPtr> (*)(const Properties&, Builder&);
 using VolumeFactory = VolumePtr (*)(const Properties&, Builder&);
 using PhaseFunctionFactory = PhaseFunctionPtr (*)(const Properties&, Builder&);
@@ -120,8 +125,10 @@ BsdfFactory findBsdfFactory(const std::string& type);                    // src/
 EmitterFactory findEmitterFactory(const std::string& type);              // src/render/emitter/registry.cpp
 VolumeFactory findVolumeFactory(const std::string& type);                // src/render/medium/registry.cpp
 PhaseFunctionFactory findPhaseFunctionFactory(const std::string& type);  // likewise
+MediumFactory findMediumFactory(const std::string& type);                // src/render/medium/registry.cpp
 std::vector<std::string> textureTypes();
 std::vector<std::string> bsdfTypes();
+std::vector<std::string> mediumTypes();
 std::vector<std::string> emitterTypes();
 std::vector<std::string> volumeTypes();
 std::vector<std::string> phaseFunctionTypes();

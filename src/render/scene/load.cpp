@@ -42,8 +42,6 @@ Singles loadObjectsOf(const Properties& root, Scene& scene, ShapeLoader& shapes,
       if (node.id.empty()) warnings.add(node.location, "an area light outside of a shape lights nothing");
     } else if (node.tag == "emitter") {
       for (EmitterPtr& emitter : builder.emitters(node)) scene.addEmitter(std::move(emitter));
-    } else if (node.tag == "medium") {
-      shapes.warnOfMedia(node);
     } else if (node.tag == "integrator" || node.tag == "sensor") {
       const Properties*& first = node.tag == "sensor" ? result.sensor : result.integrator;
       if (first)
@@ -115,10 +113,11 @@ std::unique_ptr<Scene> Scene::load(const std::string& path, const LoadOptions& o
   scene->setIntegrator(loadIntegrator(singles.integrator, part("sampler"), warnings));
   const Vec2i resolution(film.width, film.height);
   if (sensor) {
-    if (sensor->child("medium")) shapes.warnOfMedia(*sensor);
+    const Properties* medium = sensor->child("medium");
     const std::shared_ptr<Sensor> made = meter.shape ? makeMeter(*sensor, resolution, meter.shape, builder)
                                                      : makeSensor(*sensor, resolution, builder);
     if (meter.shape) made->setMotion(meter.motion);
+    if (medium) made->setMedium(builder.medium(*medium));
     scene->setSensor(made);
   } else {
     warnings.add({path}, "the scene has no sensor, all of it is shown from its +z side", Effect::same);

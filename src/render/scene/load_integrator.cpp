@@ -19,6 +19,8 @@ const std::vector<std::string> kPathIntegrators = {
     "path",           "photonmapper",     "ppm",        "prb",     "prb_basic",
     "prb_projective", "prbvolpath",       "pssmlt",     "ptracer", "sppm",
     "volpath",        "volpath_simple",   "volpathmis", "vpl"};
+// Those among them that know of media.
+const std::vector<std::string> kVolumetricIntegrators = {"prbvolpath", "volpath", "volpathmis"};
 // Those that show something else.
 const std::vector<std::string> kOtherIntegrators = {"ao", "depth", "field"};
 // Those that show direct light, and those that measure another integrator's picture and hold it.
@@ -60,6 +62,7 @@ void readIntegrator(const Properties* node, IntegratorSettings& settings, Warnin
     warnOfMisspelt(*node, warnings);
     node = nested;
   }
+  settings.volumetric = isIn(kVolumetricIntegrators, node->type);
   settings.maxDepth = int(node->integer("max_depth", between(-1, kMost), -1));
   if (isIn(kDirectIntegrators, node->type)) settings.maxDepth = kDirectLightDepth;
   // 0.6 counts it from one, too, but allows a zero.

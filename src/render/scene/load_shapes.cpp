@@ -66,6 +66,9 @@ ShapePtr ShapeLoader::makeStill(const Properties& node, bool grouped) {
     m_builder.warn(bsdfs[1]->location, "a shape has one BSDF only, this second one is ignored");
   if (!bsdfs.empty()) {
     shape->setBsdf(m_builder.bsdf(*bsdfs[0]));
+  } else if (node.before2 && node.child("medium")) {
+    // As in Mitsuba 0.6 a boundary without a BSDF bends no light.
+    shape->setBsdf(findBsdfFactory("null")(Properties(), m_builder));
   } else {
     // As in Mitsuba 3: grey, but a light reflects nothing.
     BsdfPtr& bsdf = emitters.empty() ? m_defaultBsdf : m_black;
@@ -80,7 +83,7 @@ ShapePtr ShapeLoader::makeStill(const Properties& node, bool grouped) {
   checkAttributes(*shape, node, node, {});
   for (const Properties* sensor : childrenOf(node, "sensor"))
     if (!m_meter.node) m_meter = {sensor, shape, nullptr};
-  if (!childrenOf(node, "medium").empty()) warnOfMedia(node);
+  setMedia(*shape, node);
   for (const Properties* subsurface : childrenOf(node, "subsurface"))
     m_builder.warn(subsurface->location,
                    "subsurface scattering is not supported, only the BSDF of the shape is drawn");
@@ -151,6 +154,20 @@ void ShapeLoader::setEmitter(Shape& shape, const Properties& node, bool grouped)
   }
 }
 
+void ShapeLoader::setMedia(Shape& shape, const Properties& node) {
+  MediumPtr sides[2];
+  for (const Properties::Child& child : node.children) {
+    if (child.node->tag != "medium") continue;
+    child.queried = true;
+    if (child.name == "interior" || child.name == "exterior")
+      sides[child.name == "exterior"] = m_builder.medium(*child.node);
+    else
+      m_builder.warn(child.node->location, "found a medium of a shape by the name '" + child.name +
+                                               "', expected 'interior' or 'exterior'; it is left out");
+  }
+  shape.setMedia(sides[0], sides[1]);
+}
+
 ShapeLoader::Group ShapeLoader::group(const Properties& node) {
   Group& known = m_groups[&node];
   if (known) return known;
@@ -190,13 +207,6 @@ void ShapeLoader::loadInstance(const Properties& node) {
     return;
   }
   m_scene.addInstance({shapes, toWorld, placed ? placed->motion : nullptr});
-}
-
-void ShapeLoader::warnOfMedia(const Properties& node) {
-  if (m_warnedOfMedia) return;
-  m_warnedOfMedia = true;
-  m_builder.warn(node.location,
-                 "participating media are not supported, all of them are left out (this is the first)");
 }
 
 }  // namespace odis::render

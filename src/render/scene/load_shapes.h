@@ -22,8 +22,6 @@ class ShapeLoader {
     std::shared_ptr<const Motion> motion;  // of the shape; null if it is still
   };
   const Meter& meter() const { return m_meter; }
-  // Media are not drawn: one warning for all of them.
-  void warnOfMedia(const Properties& node);
 
  private:
   using Group = std::shared_ptr<const std::vector<ShapePtr>>;
@@ -49,6 +47,8 @@ class ShapeLoader {
   void checkAttribute(const Shape& shape, const Properties& shapeNode, const Properties& texture,
                       const TextureUse& use);
   void setEmitter(Shape& shape, const Properties& node, bool grouped);
+  // The media that an element names for both sides.
+  void setMedia(Shape& shape, const Properties& node);
   Group group(const Properties& node);
   void collect(const Properties& node, std::vector<ShapePtr>& shapes);
   void loadInstance(const Properties& node);
@@ -58,7 +58,6 @@ class ShapeLoader {
   std::map<const Properties*, Group> m_groups;
   Meter m_meter;
   BsdfPtr m_defaultBsdf, m_black;
-  bool m_warnedOfMedia = false;
 };
 
 }  // namespace odis::render

@@ -12,10 +12,12 @@ Scene::~Scene() = default;
 
 void Scene::addShape(ShapePtr shape) {
   if (shape->emitter()) enlist(*shape->emitter());
+  m_volumetric |= shape->boundsMedia();
   m_shapes.push_back(std::move(shape));
 }
 
 void Scene::addInstance(Instance instance) {
+  for (const ShapePtr& shape : *instance.group) m_volumetric |= shape->boundsMedia();
   if (instance.motion) {
     m_moves = true;
     for (const ShapePtr& shape : *instance.group) {
@@ -36,6 +38,7 @@ void Scene::enlist(Emitter& emitter) {
 void Scene::setSensor(std::shared_ptr<const Sensor> sensor) {
   m_sensor = std::move(sensor);
   if (m_sensor->motion()) m_moves = true;
+  m_volumetric |= m_sensor->medium() != nullptr;
 }
 
 void Scene::addEmitter(EmitterPtr emitter) {

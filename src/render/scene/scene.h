@@ -35,6 +35,7 @@ struct IntegratorSettings {
   int rrDepth = 5;
   int samplesPerPixel = 0;    // 0: the file names none
   bool hideEmitters = false;  // whether the camera doesn't see lights, the surroundings neither
+  bool volumetric = false;    // whether the file asks for one that knows of media
 };
 
 struct LoadOptions {
@@ -73,6 +74,10 @@ class Scene {
 
   // Whether anything moves while the shutter is open, so that rays need a time.
   bool moves() const { return m_moves; }
+  // Whether paths follow the rules of Mitsuba's `volpath`: what they pass straight through counts neither as
+  // depth nor for `hideEmitters`, and shadow rays pass it, too. So it is where there are media, or where the
+  // file names an integrator for media.
+  bool volumetric() const { return m_volumetric; }
   // Of all that is there while the shutter is open.
   const SceneBounds& bounds() const { return m_bounds; }
   const Sensor& sensor() const { return *m_sensor; }
@@ -93,7 +98,10 @@ class Scene {
   void addEmitter(EmitterPtr emitter);
   void setSensor(std::shared_ptr<const Sensor> sensor);
   void setFilm(const FilmSettings& film) { m_film = film; }
-  void setIntegrator(const IntegratorSettings& settings) { m_integrator = settings; }
+  void setIntegrator(const IntegratorSettings& settings) {
+    m_integrator = settings;
+    m_volumetric |= settings.volumetric;
+  }
   // Whether no ray passes between triangles that share an edge, which takes longer.
   void setWatertight(bool watertight) { m_watertight = watertight; }
   void finish();
@@ -111,7 +119,7 @@ class Scene {
   FilmSettings m_film;
   IntegratorSettings m_integrator;
   SceneBounds m_bounds;
-  bool m_moves = false, m_watertight = false;
+  bool m_moves = false, m_watertight = false, m_volumetric = false;
   std::vector<std::string> m_files;
   std::unique_ptr<Intersector> m_intersector;
 };

@@ -5,6 +5,7 @@
 
 #include "render/math/columns.h"
 #include "render/math/motion.h"
+#include "render/medium/medium.h"
 
 namespace odis::render {
 
@@ -44,6 +45,9 @@ class Sensor {
   // How the sensor moves, null if it doesn't: ray() without a time is then in the sensor's own space.
   const Motion* motion() const { return m_motion.get(); }
   void setMotion(std::shared_ptr<const Motion> motion) { m_motion = std::move(motion); }
+  // The medium that its rays start in; null for none.
+  const Medium* medium() const { return m_medium.get(); }
+  void setMedium(MediumPtr medium) { m_medium = std::move(medium); }
   // What the radiance that the rays of a place on the film bring is multiplied by: 1 for cameras.
   virtual float weight(const Vec2& /*film*/) const { return 1; }
 
@@ -52,6 +56,7 @@ class Sensor {
   virtual void raysAtRest(size_t count, const CameraPlaces& places, CameraRays& rays) const;
 
   std::shared_ptr<const Motion> m_motion;
+  MediumPtr m_medium;
 };
 
 inline Ray Sensor::ray(const Vec2& film, const Vec2& lens, float time) const {

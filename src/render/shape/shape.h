@@ -7,6 +7,7 @@
 
 #include "render/bsdf/bsdf.h"
 #include "render/emitter/emitter.h"
+#include "render/medium/medium.h"
 
 struct RTCGeometryTy;
 struct RTCDeviceTy;
@@ -121,6 +122,18 @@ class Shape {
   SurfaceEmitter* emitter() { return m_emitter.get(); }
   void setBsdf(BsdfPtr bsdf) { m_bsdf = std::move(bsdf); }
   void setEmitter(std::shared_ptr<SurfaceEmitter> emitter) { m_emitter = std::move(emitter); }
+  // The media on both sides of the surface, null for none. As in Mitsuba a surface with a medium on either
+  // side bounds both; others lie within whatever medium there is.
+  bool boundsMedia() const { return m_interior || m_exterior; }
+  void setMedia(MediumPtr interior, MediumPtr exterior) {
+    m_interior = std::move(interior);
+    m_exterior = std::move(exterior);
+  }
+  // The medium that a ray gets into that leaves the point in this direction out of the medium `current`.
+  const Medium* mediumBeyond(const SurfacePoint& at, const Vec3& direction, const Medium* current) const {
+    if (!boundsMedia()) return current;
+    return dot(direction, at.ng) > 0 ? m_exterior.get() : m_interior.get();
+  }
 
  protected:
   const Mesh* m_mesh = nullptr;
@@ -128,6 +141,7 @@ class Shape {
  private:
   BsdfPtr m_bsdf;
   std::shared_ptr<SurfaceEmitter> m_emitter;
+  MediumPtr m_interior, m_exterior;
 };
 
 inline float Shape::detail() const {
