@@ -157,12 +157,7 @@ TEST_F(PhaseFunctions, MeanCosinesAreG) {
 }
 
 TEST_F(PhaseFunctions, HgIsExactNearItsPeak) {
-<<<<<<< HEAD
   // Against double precision, at angles from the peak that are far narrower than it is, and at wider ones.
-=======
-  // Against double precision, at angles from the peak that are far narrower than it is, to some that are
-  // wider.
->>>>>>> a4013142 (wip4)
   Random random(17);
   for (const float g : {-0.99f, 0.99f, 0.999f, 0.9f, 1e-6f}) {
     const PhaseFunctionPtr phase = m_parts.phase(hgText(fmt::format("{}", g)));
