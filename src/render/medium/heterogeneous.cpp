@@ -45,7 +45,7 @@ class Heterogeneous final : public Medium {
     while (collisions.next(random, distance, majorant)) {
       const Rgb extinction = extinctionAt(segment, distance), real = extinction * (1 / majorant);
       const float scatters = m_isGrey ? real.x : mixed(channelShares(throughput * flight.weight), real);
-      if (random.next() < scatters) {
+      if (random.get1D() < scatters) {
         flight.scattered = true;
         flight.distance = distance;
         if (!m_isGrey) flight.weight *= real / scatters;
@@ -59,14 +59,14 @@ class Heterogeneous final : public Medium {
 
   Rgb transmittance(const MediumSegment& segment, RandomStream& random) const override {
     Rgb result(1.0f);
-    Collisions collisions(*this, segment, random.next());
+    Collisions collisions(*this, segment, random.get1D());
     float distance, majorant;
     while (collisions.next(random, distance, majorant)) {
       result *= Rgb(1.0f) - extinctionAt(segment, distance) * (1 / majorant);
       const float left = maxComponent(result);
       if (left >= kFullTransmittance) continue;
       const float survival = std::max(left / kFullTransmittance, kLeastSurvival);
-      if (!(left > 0) || random.next() >= survival) return Rgb(0.0f);
+      if (!(left > 0) || random.get1D() >= survival) return Rgb(0.0f);
       result = result / survival;
     }
     return result;
@@ -82,7 +82,7 @@ class Heterogeneous final : public Medium {
   class Collisions {
    public:
     Collisions(const Heterogeneous& medium, const MediumSegment& segment, float u)
-        : m_medium(medium), m_depth(-std::log1p(-u)) {
+        : m_medium(medium), m_depth(-std::log(1 - u)) {
       Vec3 origin = transformPoint(medium.m_toCube, segment.origin),
            direction = transformVector(medium.m_toCube, segment.direction);
       m_at = 0;
@@ -109,7 +109,7 @@ class Heterogeneous final : public Medium {
           m_at += m_depth / m_majorant;
           distance = m_at;
           majorant = m_majorant;
-          m_depth = -std::log1p(-random.next());
+          m_depth = -std::log(1 - random.get1D());
           return true;
         }
         m_depth -= inBrick;

@@ -13,29 +13,100 @@
 namespace odis::render {
 namespace {
 
+// Distances along a segment in proportion to the angle that they span as seen from a place.
+class EquiAngular {
+ public:
+  EquiAngular(const Vec3& from, const MediumSegment& segment) {
+    m_foot = dot(from - segment.origin, segment.direction);
+    m_nearest = std::max(length(from - segment.at(m_foot)), 1e-6f * std::abs(m_foot));
+    m_begin = std::atan(-m_foot / m_nearest);
+    m_end = segment.length < kInfinity ? std::atan((segment.length - m_foot) / m_nearest) : 0.5f * kPi;
+  }
+  // The distance of the place from the line.
+  float nearest() const { return m_nearest; }
+  float sample(float u) const {
+    return std::max(m_foot + m_nearest * std::tan(lerp(u, m_begin, m_end)), 0.0f);
+  }
+  // Per unit of length.
+  float pdf(float distance) const {
+    return m_nearest / ((m_end - m_begin) * (sqr(m_nearest) + sqr(distance - m_foot)));
+  }
+
+ private:
+  float m_foot, m_nearest;  // distances: of the nearest point of the line, of the place from it
+  float m_begin, m_end;     // angles, in radians
+};
+
 class Homogeneous final : public Medium {
  public:
   Homogeneous(const MediumSettings& settings, const Rgb& extinction)
       : Medium(settings.phase, settings.samplesEmitters),
         m_albedo(settings.albedo),
-        m_extinction(extinction) {}
+        m_extinction(extinction),
+        m_isGrey(isGrey(extinction)),
+        m_hasFlakes(settings.phase->greatestProjectedArea() != 1) {}
 
   Flight fly(const MediumSegment& segment, const Rgb& throughput, float u, RandomStream&) const override {
+    const Rgb extinction = extinctionOn(segment);
+    return m_isGrey ? flyThroughGrey(segment, extinction.x, u)
+                    : flyThrough(segment, extinction, throughput, u);
+  }
+
+  float meanFreePath() const override {
+    const float least = std::min({m_extinction.x, m_extinction.y, m_extinction.z});
+    return least > 0 ? 1 / least : 0;
+  }
+
+  Flight flyPast(const Vec3& lamp, const MediumSegment& segment, const Rgb& throughput,
+                 float u) const override {
     const Rgb extinction = extinctionOn(segment), shares = channelShares(throughput);
+    const Rgb passing = transmittanceOf(extinction, segment.length);
+    const float scatters = 1 - mixed(shares, passing);
+    if (!(u < scatters)) return {false, 0, passing / (1 - scatters)};
+    u = std::min(u / scatters, kOneMinusEpsilon);
+    const EquiAngular angles(lamp, segment);
+    const float byAngle = 0.5f * std::exp(-angles.nearest() / meanFreePath());
+    float distance;
+    if (u < byAngle) {
+      distance = angles.sample(u / byAngle);
+    } else {
+      // By the extinction of a channel, among distances within the segment.
+      const ChannelDraw draw(shares * (Rgb(1.0f) - passing), (u - byAngle) / (1 - byAngle) * scatters);
+      distance = -std::log(1 - draw.u * (1 - draw.of(passing))) / draw.of(extinction);
+    }
+    const Rgb density = extinction * exponential(extinction * -distance);
+    const float pdf = (1 - byAngle) * mixed(shares, density) + byAngle * scatters * angles.pdf(distance);
+    Flight flight{true, distance, albedo(segment.at(distance)) * density / pdf};
+    if (!isFinite(flight.weight)) flight.weight = Rgb(0.0f);
+    return flight;
+  }
+
+  Rgb transmittance(const MediumSegment& segment, RandomStream&) const override {
+    const Rgb extinction = extinctionOn(segment);
+    return m_isGrey ? Rgb(transmittanceOf(extinction.x, segment.length))
+                    : transmittanceOf(extinction, segment.length);
+  }
+
+  Rgb albedo(const Vec3& p) const override { return clampUnit(m_albedo->rgb(p)); }
+
+ private:
+  Flight flyThroughGrey(const MediumSegment& segment, float extinction, float u) const {
+    const float distance = -std::log(1 - u) / extinction;
+    if (!(distance < segment.length)) return {};
+    return {true, distance, albedo(segment.at(distance))};
+  }
+
+  Flight flyThrough(const MediumSegment& segment, const Rgb& extinction, const Rgb& throughput,
+                    float u) const {
+    const Rgb shares = channelShares(throughput);
     // One number chooses the channel that draws the distance and, stretched again, draws it.
-    float end = shares.x, begin = 0, drawing = extinction.x;
-    if (u >= end) begin = end, end += shares.y, drawing = extinction.y;
-    if (u >= end) begin = end, end = 1, drawing = extinction.z;
-    const float within = std::min((u - begin) / (end - begin), kOneMinusEpsilon);
-    const float distance =
-        isGrey(extinction) ? -std::log1p(-u) / extinction.x : -std::log1p(-within) / drawing;
+    const ChannelDraw draw(shares, u);
+    const float distance = -std::log(1 - draw.u) / draw.of(extinction);
     Flight flight;
     if (distance < segment.length) {
       const Rgb density = extinction * exponential(extinction * -distance);
-      flight.scattered = true;
-      flight.distance = distance;
-      flight.weight = albedo(segment.at(distance)) * density / mixed(shares, density);
-    } else if (!isGrey(extinction)) {
+      flight = {true, distance, albedo(segment.at(distance)) * density / mixed(shares, density)};
+    } else {
       const Rgb transmittance = transmittanceOf(extinction, segment.length);
       flight.weight = transmittance / mixed(shares, transmittance);
     }
@@ -43,26 +114,24 @@ class Homogeneous final : public Medium {
     return flight;
   }
 
-  Rgb transmittance(const MediumSegment& segment, RandomStream&) const override {
-    return transmittanceOf(extinctionOn(segment), segment.length);
-  }
-
-  Rgb albedo(const Vec3& p) const override { return clampUnit(m_albedo->rgb(p)); }
-
- private:
   // Along a ray on which the phase function, whose flakes may lie alike everywhere, is what it is at its
   // start.
   Rgb extinctionOn(const MediumSegment& segment) const {
+    if (!m_hasFlakes) return m_extinction;
     return m_extinction * phase().projectedArea({segment.origin, -segment.direction});
   }
   // A channel that nothing absorbs passes, however far it is.
+  static float transmittanceOf(float extinction, float length) {
+    return extinction > 0 ? std::exp(-extinction * length) : 1.0f;
+  }
   static Rgb transmittanceOf(const Rgb& extinction, float length) {
-    const auto of = [&](float x) { return x > 0 ? std::exp(-x * length) : 1.0f; };
-    return {of(extinction.x), of(extinction.y), of(extinction.z)};
+    return {transmittanceOf(extinction.x, length), transmittanceOf(extinction.y, length),
+            transmittanceOf(extinction.z, length)};
   }
 
   VolumePtr m_albedo;
   Rgb m_extinction;
+  bool m_isGrey, m_hasFlakes;
 };
 
 }  // namespace

@@ -38,6 +38,15 @@ class Medium {
   // needed; others come from the stream.
   virtual Flight fly(const MediumSegment& segment, const Rgb& throughput, float u,
                      RandomStream& random) const = 0;
+  // How far a path gets on average, where that is the same everywhere; 0 elsewhere.
+  virtual float meanFreePath() const { return 0; }
+  // The same as fly(), with distances drawn so that light of a lamp at that place is found as well (Kulla and
+  // Fajardo 2012, "Importance Sampling Techniques for Path Tracing in Participating Media"), where there is a
+  // mean free path.
+  virtual Flight flyPast(const Vec3& /*lamp*/, const MediumSegment& /*segment*/, const Rgb& /*throughput*/,
+                         float /*u*/) const {
+    return {};
+  }
   // An unbiased estimate of the segment's transmittance.
   virtual Rgb transmittance(const MediumSegment& segment, RandomStream& random) const = 0;
   // The albedo of single scattering at a point, in [0, 1].

@@ -2,6 +2,8 @@
 
 #include <odis/guided_vertex.h>
 
+#include <optional>
+
 #include "render/emitter/moving_light.h"
 #include "render/path/emission.h"
 #include "render/path/guided_bsdf.h"
@@ -9,11 +11,66 @@
 
 namespace odis::render {
 
-Flight fly(Walker& walker, float length) {
+// Places up to this one draw from the path's sampler, whose points are stratified over the samples of a
+// pixel. Paths that go on in media are longer than what that is good for, and independent numbers are
+// cheaper.
+constexpr int kStratifiedPlaces = 6;
+
+VertexDraws::VertexDraws(Walker& walker) {
+  const auto drawAll = [this](auto& numbers) {
+    lightChoice = numbers.get1D();
+    lightPoint = numbers.get2D();
+    lobe = numbers.get1D();
+    direction = numbers.get2D();
+    survival = numbers.get1D();
+    shadowRay = numbers.get1D();
+  };
+  if (walker.place > kStratifiedPlaces) {
+    drawAll(walker.random);
+  } else {
+    walker.path->sampler.startVertex(walker.place);
+    drawAll(walker.path->sampler);
+  }
+}
+
+namespace {
+
+// Rays that lead to vertices of this depth at most draw distances towards lamps, too. What later ones would
+// gain by it is less than what it costs.
+constexpr int kDeepestPastLamps = 2;
+
+// Draws a lamp that may light a segment of a ray, and a point of it. Nothing if a light infinitely far away
+// is drawn. The choice depends on the ray alone.
+std::optional<Vec3> drawLamp(const LightSampler& lights, const MediumSegment& segment, float time,
+                             float reach, RandomStream& random) {
+  LightReference middle{segment.at(std::min(0.5f * segment.length, reach)), Vec3(0, 0, 0), true};
+  lights.prepare({&middle, 1});
+  const float uChoice = random.get1D();
+  const LightSampler::Choice choice = lights.sample(middle, uChoice, random.get2D());
+  if (!choice.emitter || choice.emitter->partCount() == 0) return {};
+  const EmitterSample light = sampleLightAt(time, *choice.emitter, choice.part, middle.p, choice.u);
+  if (!(light.pdf > 0) || !(light.distance < kInfinity)) return {};
+  return middle.p + light.wi * light.distance;
+}
+
+}  // namespace
+
+Flight fly(const PathSettings& settings, Walker& walker, float length) {
   Path& path = *walker.path;
-  path.sampler.startFlight(walker.place);
   const MediumSegment segment{path.ray.origin, path.ray.direction, length};
-  return walker.medium->fly(segment, path.throughput, path.sampler.get1D(), walker.random);
+  float u;
+  if (walker.place > kStratifiedPlaces) {
+    u = walker.random.get1D();
+  } else {
+    path.sampler.startFlight(walker.place);
+    u = path.sampler.get1D();
+  }
+  const Medium& medium = *walker.medium;
+  const float reach = medium.meanFreePath();
+  if (walker.depth <= kDeepestPastLamps && reach > 0 && medium.samplesEmitters())
+    if (const auto lamp = drawLamp(*settings.lights, segment, path.ray.time, reach, walker.random))
+      return medium.flyPast(*lamp, segment, path.throughput, u);
+  return medium.fly(segment, path.throughput, u, walker.random);
 }
 
 bool passesStraight(const Vertex& vertex, Lobe lobe) {
@@ -28,12 +85,18 @@ Rgb transmittanceTo(const Scene& scene, const ScatteringPoint& from, const Vec3&
   float left = distance;
   while (true) {
     ++walker.path->counts.shadowRays;
-    SurfacePoint at;
-    const bool met = scene.intersect(ray, at);
-    const float length = met ? render::length(at.p - ray.origin) : left;
+    Hit hit;
+    const bool met = scene.intersect(ray, hit);
     // Where something hides the light nothing else matters.
-    if (met) result *= at.shape->bsdf().nullTransmission(at, at.shading.toLocal(-ray.direction));
-    if (isBlack(result)) return result;
+    if (met && !hit.shape->bsdf().traits().transmissive) return Rgb(0.0f);
+    SurfacePoint at;
+    float length = left;
+    if (met) {
+      at = hit.surfacePoint(ray);
+      length = render::length(at.p - ray.origin);
+      result *= at.shape->bsdf().nullTransmission(at, at.shading.toLocal(-ray.direction));
+      if (isBlack(result)) return result;
+    }
     if (medium) result *= medium->transmittance({ray.origin, ray.direction, length}, walker.random);
     if (!met || isBlack(result)) return result;
     medium = at.shape->mediumBeyond(at, ray.direction, medium);
@@ -85,7 +148,7 @@ class Scattering {
   bool take() {
     lookUp();
     if (endsInCache() || !survivesArrival()) return false;
-    m_draws = VertexDraws(m_path.sampler, m_walker.place);
+    m_draws = VertexDraws(m_walker);
     prepareDirections();
     addDirectLight();
     sampleDirection();

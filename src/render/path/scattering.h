@@ -28,21 +28,13 @@ struct Walker {
 // The random numbers of a vertex: VertexNumber.
 struct VertexDraws {
   VertexDraws() = default;
-  VertexDraws(Sampler& sampler, int place) {
-    sampler.startVertex(place);
-    lightChoice = sampler.get1D();
-    lightPoint = sampler.get2D();
-    lobe = sampler.get1D();
-    direction = sampler.get2D();
-    survival = sampler.get1D();
-    shadowRay = sampler.get1D();
-  }
+  explicit VertexDraws(Walker& walker);
   float lightChoice = 0, lobe = 0, survival = 0, shadowRay = 0;
   Vec2 lightPoint{0, 0}, direction{0, 0};
 };
 
 // What becomes of the path on its ray, which is so long until it meets a surface, in its medium.
-Flight fly(Walker& walker, float length);
+Flight fly(const PathSettings& settings, Walker& walker, float length);
 
 // Whether a sample of this lobe passes straight through a surface, so that the path has no vertex there.
 bool passesStraight(const Vertex& vertex, Lobe lobe);

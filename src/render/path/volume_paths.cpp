@@ -19,17 +19,16 @@ class Step {
   bool take(const Hit& hit) {
     ++m_path.counts.rays;
     const Ray& ray = m_path.ray;
-    Vertex vertex;
-    vertex.at.shape = nullptr;
-    if (hit.shape) vertex.at = hit.surfacePoint(ray);
-    const float length = hit.shape ? render::length(vertex.at.p - ray.origin) : kInfinity;
+    const float length = hit.shape ? hit.raw.t : kInfinity;
     if (m_walker.medium) {
-      const Flight flight = fly(m_walker, length);
+      const Flight flight = fly(m_settings, m_walker, length);
       attenuate(flight.weight);
       if (isBlack(m_path.throughput)) return false;
       if (flight.scattered) return meetMedium(flight.distance);
     }
     if (!hit.shape) return leaveScene();
+    Vertex vertex;
+    vertex.at = hit.surfacePoint(ray);
     vertex.wo = vertex.at.shading.toLocal(-ray.direction);
     return meetSurface(vertex, length);
   }
@@ -84,7 +83,7 @@ class Step {
     ifShining(m_path.ray, at, competitor(m_path), [&](const Emission& met) { addEmission(met); });
     // A boundary, or a vertex that depth ends the path at: it may still pass straight through.
     if (isDeepest() || !at.shape->bsdf().traits().evaluable) {
-      const VertexDraws draws(m_path.sampler, m_walker.place);
+      const VertexDraws draws(m_walker);
       const BsdfSample drawn = at.shape->bsdf().sample(at, vertex.wo, draws.lobe, draws.direction);
       if (passesStraight(vertex, drawn.lobe)) return pass(vertex, drawn.weight);
       if (isDeepest()) {
@@ -167,11 +166,8 @@ void traceFirstVolumeHits(const PathSettings& settings, std::span<Path> paths) {
   walk(*settings.scene, paths, [&](Walker& walker, const Hit& hit) {
     Path& path = *walker.path;
     const Ray ray = path.ray;
-    Vertex vertex;
-    if (hit.shape) vertex.at = hit.surfacePoint(ray);
-    const float length = hit.shape ? render::length(vertex.at.p - ray.origin) : kInfinity;
     if (walker.medium) {
-      const Flight flight = fly(walker, length);
+      const Flight flight = fly(settings, walker, hit.shape ? hit.raw.t : kInfinity);
       if (flight.scattered) {
         const MediumPoint point{ray.origin + ray.direction * flight.distance, -ray.direction};
         path.first =
@@ -180,6 +176,8 @@ void traceFirstVolumeHits(const PathSettings& settings, std::span<Path> paths) {
       }
     }
     if (!hit.shape) return false;
+    Vertex vertex;
+    vertex.at = hit.surfacePoint(ray);
     vertex.wo = vertex.at.shading.toLocal(-ray.direction);
     if (!passesMirror(path, vertex, walker.place)) return false;
     walker.medium = vertex.at.shape->mediumBeyond(vertex.at, path.ray.direction, walker.medium);

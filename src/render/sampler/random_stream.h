@@ -11,13 +11,16 @@ class RandomStream {
   explicit RandomStream(uint64_t seed) : m_state(seed) {}
 
   // Uniform in [0, 1).
-  float next() {
-    // SplitMix64: the state counts, and its hash is the number.
-    m_state += 0x9e3779b97f4a7c15ull;
-    return toUnit(uint32_t(mixBits(m_state) >> 32));
+  float get1D() { return toUnit(uint32_t(next() >> 32)); }
+  Vec2 get2D() {
+    const uint64_t bits = next();
+    return {toUnit(uint32_t(bits >> 32)), toUnit(uint32_t(bits))};
   }
 
  private:
+  // SplitMix64: the state counts, and its hash is the number.
+  uint64_t next() { return mixBits(m_state += 0x9e3779b97f4a7c15ull); }
+
   uint64_t m_state;
 };
 

@@ -253,18 +253,14 @@ RTCSceneTy* Intersector::makeScene(const std::vector<ShapePtr>& shapes, float la
   return scene;
 }
 
-bool Intersector::intersect(const Ray& ray, SurfacePoint& at) const {
+Hit Intersector::intersect(const Ray& ray) const {
   RTCRayHit rayHit;
   rayHit.ray = embreeRay(ray);
-  if (!isTraceable(rayHit.ray)) return false;
+  if (!isTraceable(rayHit.ray)) return {};
   rayHit.hit.geomID = rayHit.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
   embreeIntersect(m_scene, rayHit);
   const RTCHit& found = rayHit.hit;
-  const Hit hit =
-      resolve(found.geomID, found.instID[0], {rayHit.ray.tfar, found.u, found.v, found.primID, nullptr});
-  if (!hit.shape) return false;
-  at = hit.surfacePoint(ray);
-  return true;
+  return resolve(found.geomID, found.instID[0], {rayHit.ray.tfar, found.u, found.v, found.primID, nullptr});
 }
 
 Hit Intersector::resolve(unsigned geometry, unsigned instance, const RawHit& raw) const {

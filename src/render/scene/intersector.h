@@ -20,7 +20,7 @@ class Intersector {
   ~Intersector();
   Intersector(const Intersector&) = delete;
 
-  bool intersect(const Ray& ray, SurfacePoint& at) const;
+  Hit intersect(const Ray& ray) const;
   bool occluded(const Ray& ray) const;
   // Many rays at once, in packets: faster the more neighbours resemble each other, and never slower by much.
   void intersect(std::span<const Ray> rays, std::span<Hit> hits) const;

@@ -58,7 +58,14 @@ void Scene::finish() {
 }
 
 bool Scene::intersect(const Ray& ray, SurfacePoint& at) const {
-  return m_intersector->intersect(ray, at);
+  const Hit hit = m_intersector->intersect(ray);
+  if (hit.shape) at = hit.surfacePoint(ray);
+  return hit.shape != nullptr;
+}
+
+bool Scene::intersect(const Ray& ray, Hit& hit) const {
+  hit = m_intersector->intersect(ray);
+  return hit.shape != nullptr;
 }
 
 bool Scene::occluded(const Ray& ray) const {

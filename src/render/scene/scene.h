@@ -62,6 +62,8 @@ class Scene {
 
   // The nearest surface along the ray, if any. Thread-safe.
   bool intersect(const Ray& ray, SurfacePoint& at) const;
+  // The same, for those who may not need the place: hit.surfacePoint(ray).
+  bool intersect(const Ray& ray, Hit& hit) const;
   // Whether anything lies within (0, ray.tMax). Thread-safe.
   bool occluded(const Ray& ray) const;
   // The same for many rays at once; shape null where a ray met nothing. hit.surfacePoint(ray) gives the
