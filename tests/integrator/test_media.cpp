@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "integrator/adversarial_model.h"
+#include "integrator/foggy_room.h"
 #include "integrator/media_scenes.h"
 #include "integrator/same_expectation.h"
 
@@ -151,20 +152,7 @@ INSTANTIATE_TEST_SUITE_P(Scenes, MediaOfMitsuba,
                            return name;
                          });
 
-// A lamp behind a screen in dense, chromatic fog of which a box is full: most light comes by the fog.
-struct FoggyRoom {
-  static std::string text() {
-    std::string room = test::indirectRoom(16);
-    const std::string fog =
-        "<medium type=\"homogeneous\" id=\"fog\"><rgb name=\"sigma_t\" value=\"0.5, 0.4, 0.3\"/>"
-        "<rgb name=\"albedo\" value=\"0.9\"/><phase type=\"hg\"><float name=\"g\" "
-        "value=\"0.5\"/></phase></medium>";
-    room.insert(room.find("</sensor>"), "<ref id=\"fog\"/>");
-    return fog + room;
-  }
-  static constexpr int kMaxDepth = 6;
-};
-class GuidedInFog : public test::AgainstPath<FoggyRoom> {};
+class GuidedInFog : public test::AgainstPath<test::FoggyRoom> {};
 constexpr int kGuidedTests = 5;
 
 TEST_F(GuidedInFog, Histogram) {

@@ -26,6 +26,7 @@ class HenyeyGreenstein final : public PhaseFunction {
   }
 
   float roughness() const override { return 1 - m_asymmetry; }
+  float meanCosine() const override { return m_backwards ? -m_asymmetry : m_asymmetry; }
 
  private:
   Vec3 axis(const MediumPoint& at) const { return m_backwards ? at.wo : -at.wo; }

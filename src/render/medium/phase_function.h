@@ -32,6 +32,8 @@ class PhaseFunction {
   // scatters about evenly to all sides, less the sharper its peaks are; 1 - |mean cosine| of
   // Henyey-Greenstein's.
   virtual float roughness() const { return 1; }
+  // The mean cosine of the deflection, in (-1, 1), of Henyey-Greenstein's; 0 of all others.
+  virtual float meanCosine() const { return 0; }
   // The factor that the density of a medium has for rays along `at.wo`: the projected area of microflakes.
   virtual float projectedArea(const MediumPoint& /*at*/) const { return 1; }
   // An upper bound of it over all places and directions.

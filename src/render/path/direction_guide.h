@@ -31,6 +31,9 @@ class DirectionGuide {
   // none. It lasts until the same thread has asked kVerticesAtOnce more times. Thread-safe.
   virtual const DirectionSampler* at(const Vec3& position, const Vec3& normal,
                                      bool scattersBothSides) const = 0;
+  // The same at a vertex in a medium whose phase function has this mean cosine. `wo` is the unit vector to
+  // where the path came from.
+  virtual const DirectionSampler* inMedium(const Vec3& position, const Vec3& wo, float meanCosine) const = 0;
 };
 
 }  // namespace odis::render

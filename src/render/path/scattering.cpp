@@ -138,6 +138,11 @@ struct PointHost {
   }
 };
 
+const DirectionSampler* askRival(const DirectionGuide& rival, const ScatteringPoint& point) {
+  if (point.surface()) return rival.at(point.position(), point.normal(), point.scattersBothSides());
+  return rival.inMedium(point.position(), point.wo(), point.medium()->phase().meanCosine());
+}
+
 // What a scattering needs to know on its way.
 class Scattering {
  public:
@@ -214,7 +219,7 @@ class Scattering {
     if (!m_settings.guide && !m_settings.rival && !m_recorder) return;
     m_guidable = m_point.guidableProbability();
     if (m_settings.rival && m_guidable > 0 && guidesAt(m_settings, m_path)) {
-      m_rival = m_settings.rival->at(m_point.position(), m_point.normal(), m_point.scattersBothSides());
+      m_rival = askRival(*m_settings.rival, m_point);
       if (m_rival) m_mixture = Mixture<float>(m_rival->bsdfFraction(), m_guidable);
     } else if (m_guided.isKnown()) {
       m_guided.prepare(m_point.roughness(), m_guidable);

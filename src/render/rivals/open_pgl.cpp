@@ -33,19 +33,29 @@ PGL_DEVICE_TYPE deviceType() {
   return __builtin_cpu_supports("avx2") ? PGL_DEVICE_TYPE_CPU_8 : PGL_DEVICE_TYPE_CPU_4;
 }
 
-// A place for the distribution at a vertex.
+// The library chooses among neighbouring mixtures by a random number: one that the place determines.
+float randomOf(const Vec3& position) {
+  uint64_t hash = 0;
+  for (int a = 0; a < 3; ++a) {
+    uint32_t bits;
+    std::memcpy(&bits, &position[a], sizeof(bits));
+    hash = mixBits(hash ^ bits);
+  }
+  return float(hash >> 40) * 0x1p-24f;
+}
+
+// A place for the distribution at a vertex, of the surfaces' field or of the media's.
+template <class Distribution>
 class PglVertex final : public DirectionSampler {
  public:
   explicit PglVertex(const pgl::Field* field) : m_distribution(field) {}
 
   // Says whether there is a distribution.
-  bool prepare(const pgl::Field& field, const Vec3& position, const Vec3& normal, bool scattersBothSides) {
+  bool prepare(const pgl::Field& field, const Vec3& position) {
     float random = randomOf(position);
-    if (!m_distribution.Init(&field, toPgl(position), random)) return false;
-    // What transmits receives light from both sides.
-    if (!scattersBothSides) m_distribution.ApplyCosineProduct(toPgl(normal));
-    return true;
+    return m_distribution.Init(&field, toPgl(position), random);
   }
+  Distribution& distribution() { return m_distribution; }
 
   SamplingMap<float>::Sample sample(const Vec2& u) const override {
     pgl_vec3f wi;
@@ -56,24 +66,24 @@ class PglVertex final : public DirectionSampler {
   float bsdfFraction() const override { return kBsdfFraction; }
 
  private:
-  // The library chooses among neighbouring mixtures by a random number: one that the place determines.
-  static float randomOf(const Vec3& position) {
-    uint64_t hash = 0;
-    for (int a = 0; a < 3; ++a) {
-      uint32_t bits;
-      std::memcpy(&bits, &position[a], sizeof(bits));
-      hash = mixBits(hash ^ bits);
-    }
-    return float(hash >> 40) * 0x1p-24f;
-  }
-
-  pgl::SurfaceSamplingDistribution m_distribution;
+  Distribution m_distribution;
 };
+using PglSurfaceVertex = PglVertex<pgl::SurfaceSamplingDistribution>;
+using PglVolumeVertex = PglVertex<pgl::VolumeSamplingDistribution>;
 
 // A thread's places, which vertices take in turns.
-struct PglVertices {
-  std::array<std::unique_ptr<PglVertex>, DirectionGuide::kVerticesAtOnce> of;
-  size_t next = 0;
+template <class Vertex>
+class PglVertices {
+ public:
+  Vertex& next(const pgl::Field* field) {
+    std::unique_ptr<Vertex>& vertex = m_of[m_next++ % DirectionGuide::kVerticesAtOnce];
+    if (!vertex) vertex = std::make_unique<Vertex>(field);
+    return *vertex;
+  }
+
+ private:
+  std::array<std::unique_ptr<Vertex>, DirectionGuide::kVerticesAtOnce> m_of;
+  size_t m_next = 0;
 };
 
 class OpenPgl final : public Rival {
@@ -87,10 +97,19 @@ class OpenPgl final : public Rival {
   const DirectionSampler* at(const Vec3& position, const Vec3& normal,
                              bool scattersBothSides) const override {
     if (!m_trained) return nullptr;
-    PglVertices& vertices = m_vertices.local();
-    std::unique_ptr<PglVertex>& vertex = vertices.of[vertices.next++ % kVerticesAtOnce];
-    if (!vertex) vertex = std::make_unique<PglVertex>(m_field.get());
-    return vertex->prepare(*m_field, position, normal, scattersBothSides) ? vertex.get() : nullptr;
+    PglSurfaceVertex& vertex = m_onSurfaces.local().next(m_field.get());
+    if (!vertex.prepare(*m_field, position)) return nullptr;
+    // What transmits receives light from both sides.
+    if (!scattersBothSides) vertex.distribution().ApplyCosineProduct(toPgl(normal));
+    return &vertex;
+  }
+
+  const DirectionSampler* inMedium(const Vec3& position, const Vec3& wo, float meanCosine) const override {
+    if (!m_trained) return nullptr;
+    PglVolumeVertex& vertex = m_inMedia.local().next(m_field.get());
+    if (!vertex.prepare(*m_field, position)) return nullptr;
+    if (meanCosine != 0) vertex.distribution().ApplySingleLobeHenyeyGreensteinProduct(toPgl(-wo), meanCosine);
+    return &vertex;
   }
 
   Combination combination() const override { return Combination::all; }
@@ -112,14 +131,14 @@ class OpenPgl final : public Rival {
         sample.pdf = std::max(survivingPdf(v), kLeastPdf);
         sample.weight = radiance / sample.pdf;
         sample.distance = std::min(v.distance, kFarthest);
-        sample.flags = 0;
+        sample.flags = isInMedium(v) ? pgl::SampleData::EInsideVolume : 0;
       }
     if (!samples.empty()) m_samples.AddSamples(samples.data(), samples.size());
-    m_peak = std::max(m_peak, m_samples.GetSizeSurface());
+    m_peak = std::max(m_peak, sampleCount());
   }
 
   void endIteration() override {
-    if (m_samples.GetSizeSurface() < kFewestSamples) return;
+    if (sampleCount() < kFewestSamples) return;
     m_field->Update(m_samples);
     m_samples.Clear();
     m_trained = true;
@@ -129,10 +148,13 @@ class OpenPgl final : public Rival {
   uint64_t bytes() const override { return m_peak * sizeof(pgl::SampleData); }
 
  private:
+  size_t sampleCount() const { return m_samples.GetSizeSurface() + m_samples.GetSizeVolume(); }
+
   pgl::Device m_device;
   std::unique_ptr<pgl::Field> m_field;
   pgl::SampleStorage m_samples;
-  mutable tbb::enumerable_thread_specific<PglVertices> m_vertices;
+  mutable tbb::enumerable_thread_specific<PglVertices<PglSurfaceVertex>> m_onSurfaces;
+  mutable tbb::enumerable_thread_specific<PglVertices<PglVolumeVertex>> m_inMedia;
   bool m_trained = false;
   size_t m_peak = 0;
 };

@@ -22,6 +22,11 @@ const DirectionSampler* PracticalPathGuiding::at(const Vec3& position, const Vec
   return leaf.known.total() > 0 ? &leaf : nullptr;
 }
 
+// Trees hold radiance alone, on surfaces and in media alike.
+const DirectionSampler* PracticalPathGuiding::inMedium(const Vec3& position, const Vec3&, float) const {
+  return at(position, {}, true);
+}
+
 Rival::Combination PracticalPathGuiding::combination() const {
   return m_options.combine == PpgOptions::Combine::last ? Combination::last : Combination::inverseVariance;
 }

@@ -17,6 +17,7 @@ class PracticalPathGuiding final : public Rival {
   explicit PracticalPathGuiding(const PpgOptions& options) : m_options(options) {}
 
   const DirectionSampler* at(const Vec3& position, const Vec3& normal, bool scattersBothSides) const override;
+  const DirectionSampler* inMedium(const Vec3& position, const Vec3& wo, float meanCosine) const override;
 
   Combination combination() const override;
   uint32_t iterationEnd(uint32_t done, uint32_t spp) const override;
