@@ -55,7 +55,7 @@ std::optional<Vec3> drawLamp(const LightSampler& lights, const MediumSegment& se
 
 }  // namespace
 
-Flight fly(const PathSettings& settings, Walker& walker, float length) {
+Flight fly(const LightSampler* lights, Walker& walker, float length) {
   Path& path = *walker.path;
   const MediumSegment segment{path.ray.origin, path.ray.direction, length};
   float u;
@@ -67,8 +67,8 @@ Flight fly(const PathSettings& settings, Walker& walker, float length) {
   }
   const Medium& medium = *walker.medium;
   const float reach = medium.meanFreePath();
-  if (walker.depth <= kDeepestPastLamps && reach > 0 && medium.samplesEmitters())
-    if (const auto lamp = drawLamp(*settings.lights, segment, path.ray.time, reach, walker.random))
+  if (lights && walker.depth <= kDeepestPastLamps && reach > 0 && medium.samplesEmitters())
+    if (const auto lamp = drawLamp(*lights, segment, path.ray.time, reach, walker.random))
       return medium.flyPast(*lamp, segment, path.throughput, u);
   return medium.fly(segment, path.throughput, u, walker.random);
 }

@@ -21,8 +21,9 @@ class Step {
     const Ray& ray = m_path.ray;
     const float length = hit.shape ? hit.raw.t : kInfinity;
     if (m_walker.medium) {
-      const Flight flight = fly(m_settings, m_walker, length);
+      const Flight flight = fly(m_settings.lights, m_walker, length);
       attenuate(flight.weight);
+      m_path.visible |= flight.scattered;
       if (isBlack(m_path.throughput)) return false;
       if (flight.scattered) return meetMedium(flight.distance);
     }
@@ -59,7 +60,6 @@ class Step {
 
   bool meetMedium(float distance) {
     const float travelled = travel(distance);
-    m_path.visible = true;
     if (isDeepest()) return false;
     const Ray& ray = m_path.ray;
     const MediumPoint point{ray.origin + ray.direction * distance, -ray.direction};
@@ -167,7 +167,7 @@ void traceFirstVolumeHits(const PathSettings& settings, std::span<Path> paths) {
     Path& path = *walker.path;
     const Ray ray = path.ray;
     if (walker.medium) {
-      const Flight flight = fly(settings, walker, hit.shape ? hit.raw.t : kInfinity);
+      const Flight flight = fly(nullptr, walker, hit.shape ? hit.raw.t : kInfinity);
       if (flight.scattered) {
         const MediumPoint point{ray.origin + ray.direction * flight.distance, -ray.direction};
         path.first =
