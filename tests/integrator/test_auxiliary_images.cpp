@@ -5,6 +5,7 @@
 
 #include <cmath>
 
+#include "integrator/media_scenes.h"
 #include "integrator/test_scenes.h"
 
 namespace odis::render {
@@ -48,6 +49,19 @@ TEST(AuxiliaryImages, ShowWhatIsSeenInMirrors) {
   const AuxiliaryImages images = auxiliaries(*scene);
   expectAlbedo(images, {0.5f, 0.2f, 0.1f});
   for (const Vec3& normal : images.normal) ASSERT_NEAR(normal.z, -1, 1e-5f);
+}
+
+TEST(AuxiliaryImages, ShowMediaAndWhatIsSeenThroughThem) {
+  // The fog has the albedo .9, the walls have .6; the lamp reflects nothing.
+  const auto scene = test::loadMediaScene("fog-room");
+  const AuxiliaryImages images = auxiliaries(*scene);
+  float sum = 0;
+  for (const Rgb& albedo : images.albedo) {
+    ASSERT_GT(albedo.x, 0.2f);
+    ASSERT_LE(albedo.x, 0.91f);
+    sum += albedo.x;
+  }
+  EXPECT_NEAR(sum / float(images.albedo.size()), 0.75f, 0.1f);
 }
 
 TEST(AuxiliaryImages, ShowWhatCoatsCover) {

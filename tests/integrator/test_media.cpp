@@ -104,17 +104,6 @@ TEST(Media, SameBitsForAnyNumberOfThreads) {
   }
 }
 
-TEST(Media, FeaturesAreFoundWithoutLights) {
-  // In fog without end the first vertex lies in the fog, whose albedo is .9, or on the walls.
-  const auto scene = test::loadMediaScene("fog-room");
-  RenderOptions options = pathOptions(4);
-  options.features = true;
-  const RenderedImage image = renderScene(*scene, options).image;
-  ASSERT_EQ(image.albedo.size(), image.color.size());
-  EXPECT_GT(meanOf(image.albedo).x, 0.6);
-  EXPECT_LT(meanOf(image.albedo).x, 0.9);
-}
-
 // Means of blocks of 8 x 8 pixels as Mitsuba 3.9.1's volpathmis has them, and their standard errors, by
 // bench/media_references.py.
 class MediaOfMitsuba : public ::testing::TestWithParam<std::string> {};

@@ -33,8 +33,8 @@ struct VertexDraws {
   Vec2 lightPoint{0, 0}, direction{0, 0};
 };
 
-// What becomes of the path on its ray, which is so long until it meets a surface, in its medium. Distances are
-// drawn towards the lights as well if there are any (null: none).
+// What becomes of the path on its ray, which is so long until it meets a surface, in its medium. Distances
+// are drawn towards the lights as well if there are any (null: none).
 Flight fly(const LightSampler* lights, Walker& walker, float length);
 
 // Whether a sample of this lobe passes straight through a surface, so that the path has no vertex there.
