@@ -24,10 +24,10 @@ struct ElementType {
 
   std::string heading() const {
     static const std::map<std::string, std::string> headings = {
-        {"bsdf", "BSDFs"},      {"texture", "Textures"},     {"emitter", "Emitters"},
-        {"shape", "Shapes"},    {"sensor", "Sensors"},       {"film", "Film"},
-        {"rfilter", "Filters"}, {"sampler", "Samplers"},     {"integrator", "Integrators"},
-        {"volume", "Volumes"},  {"phase", "Phase functions"}};
+        {"bsdf", "BSDFs"},      {"texture", "Textures"},      {"emitter", "Emitters"},
+        {"shape", "Shapes"},    {"sensor", "Sensors"},        {"film", "Film"},
+        {"rfilter", "Filters"}, {"sampler", "Samplers"},      {"integrator", "Integrators"},
+        {"volume", "Volumes"},  {"phase", "Phase functions"}, {"medium", "Media"}};
     return headings.at(tag);
   }
 };
@@ -42,6 +42,7 @@ inline std::vector<ElementType> allElementTypes() {
   for (const std::string& type : render::sensorTypes()) all.push_back({"sensor", type});
   for (const std::string& type : render::volumeTypes()) all.push_back({"volume", type});
   for (const std::string& type : render::phaseFunctionTypes()) all.push_back({"phase", type});
+  for (const std::string& type : render::mediumTypes()) all.push_back({"medium", type});
   all.push_back({"film", "hdrfilm"});
   for (const char* type : {"box", "catmullrom", "gaussian", "lanczos", "mitchell", "tent"})
     all.push_back({"rfilter", type});
@@ -152,6 +153,7 @@ class ElementMaker {
     if (node.tag == "texture") builder.texture(node);
     if (node.tag == "volume") builder.volume(node);
     if (node.tag == "phase") builder.phaseFunction(node);
+    if (node.tag == "medium") builder.medium(node);
     if (node.tag == "shape") makeShape(node, builder);
     if (node.tag == "sensor") {
       readShutter(node);

@@ -198,6 +198,50 @@ class RandomScene {
     return body;
   }
 
+  Text grid(const Text& name, const Text& file) {
+    return object("volume", "gridvolume", name,
+                  string("filename", m_files.path(file)) + flag("use_grid_bbox") +
+                      string("wrap_mode", m_draws.pick<Text>({"clamp", "repeat", "mirror"})) +
+                      string("filter_type", m_draws.pick<Text>({"trilinear", "nearest"})) +
+                      maybe("<transform name='to_world'>" + placement(false) + "</transform>"));
+  }
+  Text phase(int depth = 0) {
+    static const Text kTypes[] = {"isotropic", "hg", "rayleigh", "tabphase", "sggx", "blendphase"};
+    const Text& type = kTypes[m_draws.below(depth < 2 ? 6 : 5)];
+    Text body;
+    if (type == "hg") body = floating("g", m_draws.pick({-0.999, -0.5, 0.0, 0.7, 0.999}));
+    if (type == "tabphase") body = string("values", m_draws.pick<Text>({"1, 0", "0.1, 0, 2, 3"}));
+    if (type == "sggx") body = grid("S", "flakes.vol");
+    if (type == "blendphase")
+      body = phase(depth + 1) + phase(depth + 1) +
+             (m_draws.chance(0.5) ? floating("weight", share()) : grid("weight", "density.vol"));
+    return object("phase", type, "", body);
+  }
+  Text medium(const Text& name) {
+    const double thickness = m_draws.pick({0.0, 1e-3, 0.3, 3.0, 50.0}) / m_scale;
+    Text body = maybe(flag("sample_emitters")) + maybe(phase());
+    if (m_draws.chance(0.5))
+      return object("medium", "homogeneous", name,
+                    body + (m_draws.chance(0.7) ? color("sigma_t", thickness) +
+                                                      (m_draws.chance(0.7) ? color("albedo", 0.99)
+                                                                           : grid("albedo", "albedo.vol"))
+                                                : color("sigma_s", thickness) + color("sigma_a", thickness)));
+    const Text density = m_draws.pick<Text>({"density.vol", "albedo.vol"});
+    return object("medium", "heterogeneous", name,
+                  body + floating("scale", thickness) +
+                      (m_draws.chance(0.8) ? grid("sigma_t", density) : color("sigma_t")) +
+                      (m_draws.chance(0.5) ? grid("albedo", "albedo.vol") : color("albedo", 0.99)));
+  }
+  Text plainBoundary() {
+    const Text type = m_draws.pick<Text>({"null", "null", "dielectric", "roughdielectric", "thindielectric"});
+    return m_draws.chance(0.8) ? object("bsdf", type, "", "") : bsdf();
+  }
+  // What makes a shape the boundary of media.
+  Text media() {
+    const Text inside = m_draws.chance(0.8) ? medium("interior") : "";
+    return inside + (inside.empty() || m_draws.chance(0.2) ? medium("exterior") : "");
+  }
+
   // From the unit of a shape or a lamp to the world.
   Text placement(bool mirrored) {
     const double size = m_draws.pick({1.0, 1.0, 1.0, 1.0, 0.3, 0.01, 20.0, 1e3}) * m_scale;
@@ -220,13 +264,14 @@ class RandomScene {
         "emitter", "area", "",
         m_draws.chance(0.7) ? color("radiance", m_draws.pick({1.0, 1e3, 1e-3})) : lightTexture("radiance"));
   }
-  Text plainShape(Text body, bool mayShine, bool mayMeasure = false) {
+  Text plainShape(Text body, bool mayShine, bool mayMeasure = false, bool mayBound = true) {
     static const Text kTypes[] = {"sphere", "rectangle",  "cube",        "disk",         "cylinder", "obj",
                                   "ply",    "serialized", "linearcurve", "bsplinecurve", "sdfgrid"};
     // Neither lamps nor meters lie on the last three.
     const uint32_t kind = m_draws.below(mayMeasure ? 8 : std::size(kTypes));
     const Text& type = kTypes[kind];
-    body += bsdf();
+    const bool bounds = mayBound && m_draws.chance(0.15) && body.find("<animation") == Text::npos;
+    body += bounds ? media() + plainBoundary() : bsdf();
     if (kind < 8) body += maybe(flag("flip_normals"));
     if (kind < 8 && mayShine && m_draws.chance(0.3)) body += emission();
     if (kind >= 5) body += string("filename", m_files.shape(type));
@@ -235,11 +280,13 @@ class RandomScene {
   }
   Text shape(const Text& nested) {
     if (!nested.empty() || m_draws.chance(0.85)) return plainShape(nested + toWorld(), true, !nested.empty());
-    const Text id = "group" + std::to_string(m_groups++);
-    const Text group = "<shape type='shapegroup' id='" + id + "'>" +
-                       plainShape("<transform name='to_world'><scale value='0.5'/></transform>", false) +
-                       "</shape>";
-    return group + object("shape", "instance", "", "<ref id='" + id + "'/>" + toWorld());
+    const Text id = "group" + std::to_string(m_groups++), place = toWorld();
+    const bool isStill = place.find("<animation") == Text::npos;
+    const Text group =
+        "<shape type='shapegroup' id='" + id + "'>" +
+        plainShape("<transform name='to_world'><scale value='0.5'/></transform>", false, false, isStill) +
+        "</shape>";
+    return group + object("shape", "instance", "", "<ref id='" + id + "'/>" + place);
   }
 
   Text light() {
@@ -302,10 +349,11 @@ class RandomScene {
       body += floating("fov", m_draws.pick({1.0, 40.0, 90.0, 160.0}));
     if (type == "thinlens")
       body += floating("aperture_radius", 0.1 * m_scale) + floating("focus_distance", 2 * m_scale);
+    if (m_draws.chance(0.05)) body += medium("");
     return object("sensor", type, "", body);
   }
   Text integrator() {
-    return object("integrator", "path", "",
+    return object("integrator", m_draws.chance(0.1) ? "volpath" : "path", "",
                   element("integer", "max_depth", m_draws.pick<Text>({"-1", "2", "8", "12"})) +
                       element("integer", "rr_depth", m_draws.pick<Text>({"1", "5"})) +
                       flag("hide_emitters", 0.2));

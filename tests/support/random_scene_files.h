@@ -28,6 +28,10 @@ class SceneFiles {
     constexpr float kInf = std::numeric_limits<float>::infinity();
     writeImage("bad.exr", 3, {NAN, -NAN, kInf, -kInf, -1e30f, 1e30f, 1e-40f, 0.5f, 2.0f});
     writeImage("one.exr", 1, {0.7f});
+    writeGrid("density.vol", 1, {0, 0, 1, 0.25f, 0, 0, 2, 0});
+    writeGrid("albedo.vol", 3, {1, 0, 0.5f, 0.9f, 1,    1, 0, 0, 0, 0.3f, 0.7f, 0.9f,
+                                1, 1, 1,    0.9f, 0.9f, 0, 0, 1, 0, 0.5f, 0.5f, 0.5f});
+    writeGrid("flakes.vol", 6, flakes());
   }
 
   std::string path(const std::string& name) const { return m_folder.path(name); }
@@ -50,6 +54,22 @@ class SceneFiles {
   void writeImage(const std::string& name, int side, const std::vector<float>& grey) const {
     render::writeExr(path(name), {side, side, 0, 0, side, side},
                      {{"R", grey.data()}, {"G", grey.data()}, {"B", grey.data()}}, {});
+  }
+
+  // A volume of 2 x 2 x 2 voxels.
+  void writeGrid(const std::string& name, int32_t channels, const std::vector<float>& values) const {
+    std::ofstream file = write(name);
+    const auto append = [&](const auto& x) { file.write(reinterpret_cast<const char*>(&x), sizeof(x)); };
+    file << "VOL\3";
+    for (const int32_t n : {1, 2, 2, 2, channels}) append(n);
+    for (const float x : {-1.0f, -1.0f, -1.0f, 1.0f, 1.0f, 1.0f}) append(x);
+    for (const float x : values) append(x);
+  }
+  static std::vector<float> flakes() {
+    std::vector<float> values;
+    for (int voxel = 0; voxel < 8; ++voxel)
+      for (const double x : {1.0, 0.1 + voxel, 1e-3, 0.0, voxel % 2 * 0.01, 0.0}) values.push_back(float(x));
+    return values;
   }
 
   TemporaryFolder m_folder;

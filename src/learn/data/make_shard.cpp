@@ -104,6 +104,8 @@ nlohmann::ordered_json addView(ShardWriter& writer, const std::string& file, siz
   render::LoadOptions load;
   load.pixels = pixelsOf(settings, random);
   const auto scene = render::Scene::load(file, load, warnings);
+  if (!scene->media().empty())
+    throw render::SceneError({file}, "found participating media, expected none: data sets are of surfaces");
   const render::LightSampler lights(scene->emitters());
   if (settings.windows.count > 0) {
     const WindowView content =

@@ -74,6 +74,9 @@ class Inspector {
         m_store(m_guide.clamp) {}
 
   std::optional<Inspection> run() {
+    // The truth at a place is traced from there, and nothing says which medium it lies in.
+    if (!m_scene.media().empty())
+      throw render::OptionError("odis inspect: does not know participating media, which the scene has");
     // What is wrong with the pixel is found out before time is spent.
     if (m_settings.pixel) m_place = placeOfPixel(m_scene, m_lights, m_options, *m_settings.pixel);
     m_pilot = renderPilot(m_scene, m_options, m_progress);

@@ -13,6 +13,8 @@ class RestirIntegrator : public Integrator {
       : m_job(job), m_image(job.pixelCount()), m_film(job.newColorFilm()) {
     if (job.options().features)
       throw OptionError("--integrator restir: renders the image alone, no features (--aov)");
+    if (!job.scene().media().empty())
+      throw OptionError("--integrator restir: does not know participating media, which the scene has");
   }
 
   // Frames know nothing of each other.

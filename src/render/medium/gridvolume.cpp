@@ -230,7 +230,7 @@ VolumePtr makeGridVolume(const Properties& node, Builder& builder) {
 
   const SourceLocation& at = node.placeOf("filename");
   const std::string path = builder.resolvePath(node.string("filename"), at);
-  VolumeFile file = readVolumeFile(path, at);
+  VolumeFile file = builder.volumeFile(node, path, at);
   if (useBox) options.toUnitCube = options.toUnitCube * fromBox(file, {path, 0, 0});
   VolumePtr made = makeGrid(std::move(file), options);
   const float greatest = maxComponent(made->greatest());

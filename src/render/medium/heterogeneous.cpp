@@ -6,7 +6,9 @@
 //   (nested phase)   phase function; isotropic
 //   sample_emitters  whether light is sampled by next-event estimation from within; true
 //
-// It ends at the borders of sigma_t's unit cube. Scenes of Mitsuba 0.6 call sigma_t `density`.
+// It ends at the borders of sigma_t's unit cube. Scenes of Mitsuba 0.6 call sigma_t `density`, and can't do
+// without it and albedo. In place of both there may be sigma_s and sigma_a, or a material, as in
+// homogeneous.cpp.
 //
 // Distances are drawn by delta tracking, shadow rays by ratio tracking (Novak et al. 2014, "Residual Ratio
 // Tracking for Estimating Attenuation in Participating Media"), against the greatest density of each brick of
@@ -73,6 +75,7 @@ class Heterogeneous final : public Medium {
   }
 
   Rgb albedo(const Vec3& p) const override { return clampUnit(m_albedo->rgb(p)); }
+  bool varies() const override { return !m_extinction->isConstant() || !m_albedo->isConstant(); }
   uint64_t bytes() const override {
     return m_extinction->bytes() + m_albedo->bytes() + m_maxima.values.size() * sizeof(float);
   }

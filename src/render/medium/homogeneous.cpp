@@ -6,7 +6,13 @@
 //   (nested phase)   phase function; isotropic
 //   sample_emitters  whether light is sampled by next-event estimation from within; true
 //
-// Scenes of Mitsuba 0.6 give two of sigma_s, sigma_a, sigma_t and albedo, or a `material` by its name.
+// In place of sigma_t and albedo there may be those of Mitsuba 0.6:
+//
+//   sigma_s, sigma_a  scattering and absorption coefficient, numbers or colours, 1 / length from 0; 0
+//   material          name of a measured medium, see materials.cpp, for a scene in decimetres as in 0.6
+//
+// In a scene of that version what is not given is that of the material skin1, and `g` is the mean cosine by
+// which the scattering is reduced.
 #include "render/medium/channels.h"
 #include "render/medium/factories.h"
 
@@ -88,6 +94,8 @@ class Homogeneous final : public Medium {
   }
 
   Rgb albedo(const Vec3& p) const override { return clampUnit(m_albedo->rgb(p)); }
+  bool varies() const override { return !m_albedo->isConstant(); }
+  uint64_t bytes() const override { return m_albedo->bytes(); }
 
  private:
   Flight flyThroughGrey(const MediumSegment& segment, float extinction, float u) const {

@@ -55,6 +55,8 @@ class Medium {
   const PhaseFunction& phase() const { return *m_phase; }
   // Whether light is sampled by next-event estimation from within.
   bool samplesEmitters() const { return m_samplesEmitters; }
+  // Whether its density or its albedo vary from place to place in world space.
+  virtual bool varies() const = 0;
   virtual uint64_t bytes() const { return 0; }
 
  protected:

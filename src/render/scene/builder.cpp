@@ -29,6 +29,9 @@ bool isWithoutEffect(const Properties& node, const std::string& name) {
   static const std::map<std::string, std::vector<std::string>> known = {
       // The distance of focus is one of all of Mitsuba's cameras; only thinlens has a lens to focus.
       {"sensor", {"focus_distance", "sampling_weight"}},
+      // How Mitsuba 0.6 draws distances, and the steps by which it marches.
+      {"medium",
+       {"channel", "g", "medium_sampling_weight", "method", "sampling_density", "step_size", "strategy"}},
       {"emitter", {"mis_compensation", "sampling_weight"}},
       // Hints for hierarchies of boxes and the order of triangles.
       {"shape",
@@ -230,6 +233,9 @@ std::vector<EmitterPtr> Builder::emitters(const Properties& node) {
     const std::optional<Placed> moving = placed(node, Scale::leftOut);
     const Properties& element = moving ? moving->node : node;
     std::vector<EmitterPtr> made = factory(element, *this);
+    if (const Properties* medium = element.child("medium"))
+      warn(medium->location, "the medium of an emitter has no effect: boundaries say where there is one",
+           Effect::none);
     warnUnqueried(element);
     if (moving)
       for (const EmitterPtr& emitter : made) emitter->setMotion(moving->motion);
@@ -277,6 +283,11 @@ std::shared_ptr<const Image> Builder::image(const std::string& path, bool srgb, 
 MeshData Builder::mesh(const Properties& shape, const std::string& path, const SourceLocation& at) {
   if (std::optional<MeshData> read = m_filesAhead->takeMesh(shape, m_warnings)) return std::move(*read);
   return meshReader(shape)(path, at, m_warnings);
+}
+
+VolumeFile Builder::volumeFile(const Properties& volume, const std::string& path, const SourceLocation& at) {
+  if (std::optional<VolumeFile> read = m_filesAhead->takeVolume(volume)) return std::move(*read);
+  return readVolumeFile(path, at);
 }
 
 std::shared_ptr<const RoughTransmittance> Builder::roughTransmittance(Microfacet::Type type, float alpha,

@@ -26,6 +26,7 @@ namespace odis::render {
 class FilesAhead;
 class Image;
 struct MeshData;
+struct VolumeFile;
 
 // An element that has an animation for its place, with a place that stands.
 struct Placed {
@@ -91,6 +92,8 @@ class Builder {
   void readAhead(const Properties& root);
   // The mesh in the file that a shape names.
   MeshData mesh(const Properties& shape, const std::string& path, const SourceLocation& at);
+  // The grid in the file that a volume names.
+  VolumeFile volumeFile(const Properties& volume, const std::string& path, const SourceLocation& at);
   // Image files, read once for all who use them. `srgb`: decode the sRGB curve of 8-bit files.
   std::shared_ptr<const Image> image(const std::string& path, bool srgb, const SourceLocation& at);
   // Tables of what rough interfaces let pass, computed once for all that are alike: some 10 ms each.

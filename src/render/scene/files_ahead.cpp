@@ -39,6 +39,7 @@ void FilesAhead::find(const Properties& node, const std::vector<std::string>& fo
     if (node.tag == "shape") findMesh(node, folders);
     if ((node.tag == "texture" && node.type == "bitmap") || (node.tag == "emitter" && node.type == "envmap"))
       findImage(node, folders);
+    if (node.tag == "volume" && node.type == "gridvolume") findVolume(node, folders);
   } catch (const SceneError&) {  // is thrown again when the element is made, if it is
   }
   for (const Properties::Child& child : node.children) find(*child.node, folders);
@@ -73,6 +74,14 @@ void FilesAhead::findImage(const Properties& node, const std::vector<std::string
   m_tasks.run([picture = known] { picture->begin(); });
 }
 
+void FilesAhead::findVolume(const Properties& node, const std::vector<std::string>& folders) {
+  const std::string path = fileOf(node, folders);
+  if (path.empty()) return;
+  std::shared_ptr<Grid>& grid = m_volumes[&node];
+  grid = std::make_shared<Grid>([path, at = node.placeOf("filename")] { return readVolumeFile(path, at); });
+  m_tasks.run([grid] { grid->begin(); });
+}
+
 void FilesAhead::readOn() {
   for (; m_next < m_queue.size() && m_bytesWaiting < m_mostBytesWaiting; ++m_next) {
     const std::shared_ptr<Mesh>& mesh = m_queue[m_next];
@@ -93,6 +102,12 @@ std::optional<MeshData> FilesAhead::takeMesh(const Properties& shape, Warnings& 
   ReadMesh read = mesh.work.take();
   warnings.add(read.warnings);
   return std::move(read.data);
+}
+
+std::optional<VolumeFile> FilesAhead::takeVolume(const Properties& volume) {
+  const auto found = m_volumes.extract(&volume);
+  if (!found) return std::nullopt;
+  return found.mapped()->take();
 }
 
 std::shared_ptr<const Image> FilesAhead::takeImage(const std::string& path, bool srgb) {

@@ -1,4 +1,5 @@
-// The meshes and images that a scene names, read by all threads ahead of those who ask for them.
+// The meshes, images and grids of volumes that a scene names, read by all threads ahead of those who ask for
+// them.
 #pragma once
 
 #include <tbb/task_group.h>
@@ -14,6 +15,7 @@
 #include <vector>
 
 #include "render/image/image.h"
+#include "render/medium/volume_file.h"
 #include "render/shape/mesh.h"
 #include "render/xml/properties.h"
 
@@ -59,6 +61,7 @@ class FilesAhead {
   // What a file holds, each once; nothing if it was taken before, or if begin() has not found it.
   std::optional<MeshData> takeMesh(const Properties& shape, Warnings& warnings);
   std::shared_ptr<const Image> takeImage(const std::string& path, bool srgb);
+  std::optional<VolumeFile> takeVolume(const Properties& volume);
 
  private:
   struct ReadMesh {
@@ -72,11 +75,13 @@ class FilesAhead {
     uint64_t bytes;  // of the file
     bool begun = false, taken = false;
   };
+  using Grid = EarlyWork<VolumeFile>;
   using Picture = EarlyWork<std::shared_ptr<const Image>>;
 
   void find(const Properties& node, const std::vector<std::string>& folders);
   void findMesh(const Properties& shape, const std::vector<std::string>& folders);
   void findImage(const Properties& node, const std::vector<std::string>& folders);
+  void findVolume(const Properties& node, const std::vector<std::string>& folders);
   // Lets more meshes be read, unless there are many that nobody has taken yet.
   void readOn();
 
@@ -86,6 +91,7 @@ class FilesAhead {
   uint64_t m_mostBytesWaiting, m_bytesWaiting = 0;
   std::unordered_map<const Properties*, std::shared_ptr<Mesh>> m_meshes;
   std::unordered_map<std::string, std::shared_ptr<Picture>> m_images;
+  std::unordered_map<const Properties*, std::shared_ptr<Grid>> m_volumes;
   tbb::task_group m_tasks;
 };
 

@@ -57,6 +57,13 @@ std::string describe(const Scene& scene, const Warnings& warnings) {
   text += fmt::format("bsdfs        {}\n", bsdfs.size());
   text += fmt::format("emitters     {}: {} of shapes, {} environments, {} others\n", scene.emitters().size(),
                       lights, environments, scene.emitters().size() - lights - environments);
+  if (const auto& media = scene.media(); !media.empty()) {
+    const auto varying =
+        std::count_if(media.begin(), media.end(), [](const Medium* m) { return m->varies(); });
+    text += fmt::format("media        {}: {} homogeneous, {} heterogeneous{}\n", media.size(),
+                        media.size() - size_t(varying), varying,
+                        scene.sensor().medium() ? "; the sensor lies in one" : "");
+  }
   text += fmt::format("bounds       ({}, {}, {}) to ({}, {}, {})\n", bounds.min.x, bounds.min.y, bounds.min.z,
                       bounds.max.x, bounds.max.y, bounds.max.z);
   text += fmt::format("film         {} x {}", film.width, film.height);

@@ -66,7 +66,10 @@ Singles loadObjectsOf(const Properties& root, Scene& scene, ShapeLoader& shapes,
 // The same. If a file is missing, the error tells of all that are.
 Singles loadObjects(const ParsedScene& parsed, Scene& scene, ShapeLoader& shapes, Builder& builder) {
   try {
-    return loadObjectsOf(*parsed.root, scene, shapes, builder);
+    const Singles singles = loadObjectsOf(*parsed.root, scene, shapes, builder);
+    const Properties* sensor = singles.sensor ? singles.sensor : shapes.meter().node;
+    if (const Properties* medium = sensor ? sensor->child("medium") : nullptr) builder.medium(*medium);
+    return singles;
   } catch (const MissingFiles&) {
     std::vector<SceneError> all = missingFiles(parsed, builder.warnings());
     if (all.empty()) throw;
@@ -98,6 +101,7 @@ std::unique_ptr<Scene> Scene::load(const std::string& path, const LoadOptions& o
   ShapeLoader shapes(*scene, builder);
 
   const Singles singles = loadObjects(parsed, *scene, shapes, builder);
+  shapes.warnOfOpenBoundaries();
   const Properties* sensor = singles.sensor;
   scene->finish();
 

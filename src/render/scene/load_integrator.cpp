@@ -20,7 +20,8 @@ const std::vector<std::string> kPathIntegrators = {
     "prb_projective", "prbvolpath",       "pssmlt",     "ptracer", "sppm",
     "volpath",        "volpath_simple",   "volpathmis", "vpl"};
 // Those among them that know of media.
-const std::vector<std::string> kVolumetricIntegrators = {"prbvolpath", "volpath", "volpathmis"};
+const std::vector<std::string> kVolumetricIntegrators = {"emission_volpath", "prbvolpath", "volpath",
+                                                         "volpath_simple", "volpathmis"};
 // Those that show something else.
 const std::vector<std::string> kOtherIntegrators = {"ao", "depth", "field"};
 // Those that show direct light, and those that measure another integrator's picture and hold it.

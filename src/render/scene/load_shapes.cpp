@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <set>
 
 #include "render/xml/names.h"
 
@@ -18,6 +19,17 @@ std::vector<const Properties*> childrenOf(const Properties& node, const std::str
     result.push_back(child.node.get());
   }
   return result;
+}
+
+// Grids lie in world space: they would stay behind.
+void refuseMotion(const std::vector<ShapePtr>& shapes, const Motion* motion, const SourceLocation& at) {
+  if (!motion) return;
+  for (const ShapePtr& shape : shapes)
+    for (const Medium* medium : {shape->interior(), shape->exterior()})
+      if (medium && medium->varies())
+        throw SceneError(at,
+                         "found an animation for the boundary of a medium that varies from place to place, "
+                         "expected one that stands still, or a homogeneous medium");
 }
 
 }  // namespace
@@ -37,7 +49,11 @@ void ShapeLoader::load(const Properties& node) {
 
 ShapeLoader::Made ShapeLoader::make(const Properties& node, bool grouped) {
   std::optional<Placed> placed = m_builder.placed(node, Scale::kept);
-  if (!placed) return {makeStill(node, grouped), nullptr};
+  if (!placed) {
+    Made still{makeStill(node, grouped), nullptr};
+    checkBoundary(still, node);
+    return still;
+  }
   if (grouped && placed->motion) {
     m_builder.warn(node.placeOf("to_world"),
                    "a shape can't move within its shape group, it stays where it is when the shutter opens");
@@ -46,8 +62,16 @@ ShapeLoader::Made ShapeLoader::make(const Properties& node, bool grouped) {
   }
   Made made{makeStill(placed->node, grouped), placed->motion};
   if (!made.shape) return {};
+  checkBoundary(made, node);
   if (m_meter.shape == made.shape) m_meter.motion = made.motion;
   return made;
+}
+
+void ShapeLoader::checkBoundary(const Made& made, const Properties& node) {
+  if (!made.shape || !made.shape->boundsMedia()) return;
+  const void* const frame = made.motion ? static_cast<const void*>(made.shape.get()) : m_currentGroup;
+  m_boundaries.add(*made.shape, node.location, frame);
+  refuseMotion({made.shape}, made.motion.get(), node.placeOf("to_world"));
 }
 
 ShapePtr ShapeLoader::makeStill(const Properties& node, bool grouped) {
@@ -156,14 +180,21 @@ void ShapeLoader::setEmitter(Shape& shape, const Properties& node, bool grouped)
 
 void ShapeLoader::setMedia(Shape& shape, const Properties& node) {
   MediumPtr sides[2];
+  std::set<std::string> given;
   for (const Properties::Child& child : node.children) {
     if (child.node->tag != "medium") continue;
     child.queried = true;
-    if (child.name == "interior" || child.name == "exterior")
-      sides[child.name == "exterior"] = m_builder.medium(*child.node);
-    else
+    if (child.name == "interior" || child.name == "exterior") {
+      MediumPtr& side = sides[child.name == "exterior"];
+      if (!given.insert(child.name).second)
+        m_builder.warn(child.node->location,
+                       "a shape has one " + child.name + " medium only, this second one is ignored");
+      else
+        side = m_builder.medium(*child.node);
+    } else {
       m_builder.warn(child.node->location, "found a medium of a shape by the name '" + child.name +
                                                "', expected 'interior' or 'exterior'; it is left out");
+    }
   }
   shape.setMedia(sides[0], sides[1]);
 }
@@ -172,7 +203,9 @@ ShapeLoader::Group ShapeLoader::group(const Properties& node) {
   Group& known = m_groups[&node];
   if (known) return known;
   std::vector<ShapePtr> shapes;
+  m_currentGroup = &node;
   collect(node, shapes);
+  m_currentGroup = nullptr;
   m_builder.warnUnqueried(node);
   return known = std::make_shared<const std::vector<ShapePtr>>(std::move(shapes));
 }
@@ -206,6 +239,7 @@ void ShapeLoader::loadInstance(const Properties& node) {
                    Effect::same);
     return;
   }
+  if (placed) refuseMotion(*shapes, placed->motion.get(), node.placeOf("to_world"));
   m_scene.addInstance({shapes, toWorld, placed ? placed->motion : nullptr});
 }
 

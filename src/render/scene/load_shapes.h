@@ -5,6 +5,7 @@
 #include <memory>
 #include <vector>
 
+#include "render/scene/boundaries.h"
 #include "render/scene/builder.h"
 #include "render/scene/scene.h"
 
@@ -22,6 +23,8 @@ class ShapeLoader {
     std::shared_ptr<const Motion> motion;  // of the shape; null if it is still
   };
   const Meter& meter() const { return m_meter; }
+  // Tells of boundaries of media that all shapes together leave open.
+  void warnOfOpenBoundaries() { m_boundaries.warn(m_builder.warnings()); }
 
  private:
   using Group = std::shared_ptr<const std::vector<ShapePtr>>;
@@ -32,6 +35,8 @@ class ShapeLoader {
     std::shared_ptr<const Motion> motion;
   };
   Made make(const Properties& node, bool grouped);
+  // Looks at a shape that bounds media. Throws SceneError.
+  void checkBoundary(const Made& made, const Properties& node);
   ShapePtr makeStill(const Properties& node, bool grouped);
   // What the value of a texture is used for: a parameter of `owner`, which clamps it to `range`.
   struct TextureUse {
@@ -57,6 +62,8 @@ class ShapeLoader {
   Builder& m_builder;
   std::map<const Properties*, Group> m_groups;
   Meter m_meter;
+  const Properties* m_currentGroup = nullptr;  // whose shapes are made
+  Boundaries m_boundaries;
   BsdfPtr m_defaultBsdf, m_black;
 };
 

@@ -12,6 +12,10 @@ namespace {
 // Whether something is made of an element, its file and what it holds.
 bool isMade(const Properties& node) {
   if (node.tag == "texture") return findTextureFactory(node.type) != nullptr;
+  if (node.tag == "medium") return findMediumFactory(node.type) != nullptr;
+  if (node.tag == "volume") return findVolumeFactory(node.type) != nullptr;
+  if (node.tag == "phase") return findPhaseFunctionFactory(node.type) != nullptr;
+  if (node.tag == "sensor") return true;
   if (node.tag == "bsdf") return findBsdfFactory(node.type) != nullptr;
   if (node.tag == "emitter") return node.type == "area" || findEmitterFactory(node.type) != nullptr;
   const std::vector<std::string> shapes = shapeTypes();
@@ -25,10 +29,13 @@ class Search {
   explicit Search(const ParsedScene& scene) : m_folders(scene.folders) {
     for (const SceneError& error : scene.missing) add(error);
     // Materials are looked into where they are used, shape groups where they are instanced.
+    bool isFirstSensor = true;
     for (const Properties::Child& child : scene.root->children) {
       const Properties& node = *child.node;
       const bool isDrawn = (node.tag == "shape" && node.type != "shapegroup") ||
-                           (node.tag == "emitter" && node.type != "area");
+                           (node.tag == "emitter" && node.type != "area") ||
+                           (node.tag == "sensor" && isFirstSensor);
+      if (node.tag == "sensor") isFirstSensor = false;
       if (isDrawn) visit(node);
     }
   }

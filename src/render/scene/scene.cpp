@@ -1,5 +1,6 @@
 #include "render/scene/scene.h"
 
+#include <algorithm>
 #include <unordered_set>
 
 #include "render/scene/intersector.h"
@@ -12,12 +13,12 @@ Scene::~Scene() = default;
 
 void Scene::addShape(ShapePtr shape) {
   if (shape->emitter()) enlist(*shape->emitter());
-  m_volumetric |= shape->boundsMedia();
+  enlistMedia(*shape);
   m_shapes.push_back(std::move(shape));
 }
 
 void Scene::addInstance(Instance instance) {
-  for (const ShapePtr& shape : *instance.group) m_volumetric |= shape->boundsMedia();
+  for (const ShapePtr& shape : *instance.group) enlistMedia(*shape);
   if (instance.motion) {
     m_moves = true;
     for (const ShapePtr& shape : *instance.group) {
@@ -29,6 +30,17 @@ void Scene::addInstance(Instance instance) {
   m_instances.push_back(std::move(instance));
 }
 
+void Scene::enlist(const Medium* medium) {
+  if (!medium) return;
+  m_volumetric = true;
+  if (std::find(m_media.begin(), m_media.end(), medium) == m_media.end()) m_media.push_back(medium);
+}
+
+void Scene::enlistMedia(const Shape& shape) {
+  enlist(shape.interior());
+  enlist(shape.exterior());
+}
+
 void Scene::enlist(Emitter& emitter) {
   emitter.setIndex(uint32_t(m_emitters.size()));
   m_emitters.push_back(&emitter);
@@ -38,7 +50,7 @@ void Scene::enlist(Emitter& emitter) {
 void Scene::setSensor(std::shared_ptr<const Sensor> sensor) {
   m_sensor = std::move(sensor);
   if (m_sensor->motion()) m_moves = true;
-  m_volumetric |= m_sensor->medium() != nullptr;
+  enlist(m_sensor->medium());
 }
 
 void Scene::addEmitter(EmitterPtr emitter) {
@@ -87,6 +99,7 @@ Ray Scene::spawn(const SurfacePoint& at, const Vec3& direction, float distance) 
 uint64_t Scene::bytes() const {
   uint64_t bytes = m_intersector ? m_intersector->bytes() : 0;
   for (const ShapePtr& shape : m_shapes) bytes += shape->bytes();
+  for (const Medium* medium : m_media) bytes += medium->bytes();
   std::unordered_set<const void*> counted;
   for (const Instance& instance : m_instances) {
     if (!counted.insert(instance.group.get()).second) continue;

@@ -80,6 +80,8 @@ class Scene {
   // depth nor for `hideEmitters`, and shadow rays pass it, too. So it is where there are media, or where the
   // file names an integrator for media.
   bool volumetric() const { return m_volumetric; }
+  // Each once: those that shapes bound, and the sensor's.
+  const std::vector<const Medium*>& media() const { return m_media; }
   // Of all that is there while the shutter is open.
   const SceneBounds& bounds() const { return m_bounds; }
   const Sensor& sensor() const { return *m_sensor; }
@@ -109,6 +111,9 @@ class Scene {
   void finish();
 
  private:
+  // Counts a medium, if it is one.
+  void enlist(const Medium* medium);
+  void enlistMedia(const Shape& shape);
   // Gives an emitter its index.
   void enlist(Emitter& emitter);
 
@@ -117,6 +122,7 @@ class Scene {
   std::vector<EmitterPtr> m_ownedEmitters;
   std::vector<const Emitter*> m_emitters;
   std::vector<const EnvironmentEmitter*> m_environments;
+  std::vector<const Medium*> m_media;
   std::shared_ptr<const Sensor> m_sensor;
   FilmSettings m_film;
   IntegratorSettings m_integrator;

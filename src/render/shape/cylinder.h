@@ -22,6 +22,7 @@ class Cylinder final : public Shape {
   SurfacePoint pointAtUv(const Vec2& uv) const override;
   float areaElement(const Vec2&) const override { return area(); }
   PrimitiveExtent extent(uint32_t primitive) const override;
+  std::vector<Vec3> openings() const override { return {Vec3(m_start), Vec3(m_start + m_axis)}; }
   uint64_t bytes() const override { return sizeof(*this); }
 
   Imath::Box3d bounds() const;

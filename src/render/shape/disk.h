@@ -20,6 +20,7 @@ class Disk final : public Shape {
   SurfacePoint pointAtUv(const Vec2& uv) const override;
   float areaElement(const Vec2& uv) const override { return 2 * m_area * uv.x; }
   PrimitiveExtent extent(uint32_t primitive) const override;
+  std::vector<Vec3> openings() const override { return {Vec3(m_center)}; }
   uint64_t bytes() const override { return sizeof(*this); }
 
   Imath::Box3d bounds() const;

@@ -67,6 +67,7 @@ class Mesh final : public Shape {
   float primitivePdf(const Vec3& ref, const SurfacePoint& at) const override;
   std::optional<Rgb> attribute(const std::string& name, const SurfacePoint& at) const override;
   std::optional<Vec2> attributeRange(const std::string& name) const override;
+  std::vector<Vec3> openings() const override;
   uint64_t bytes() const override;
 
   // Draws a triangle by area, of a mesh that has any; u.x is stretched to [0, 1) again.

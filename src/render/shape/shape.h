@@ -4,6 +4,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "render/bsdf/bsdf.h"
 #include "render/emitter/emitter.h"
@@ -115,6 +116,9 @@ class Shape {
   const Mesh* mesh() const { return m_mesh; }
   const Bsdf& bsdf() const { return *m_bsdf; }
   const SurfaceEmitter* emitter() const { return m_emitter.get(); }
+  // Where the surface ends: midpoints of edges, centres of circles, in the space of the shape; none if it is
+  // closed. Takes a while for large meshes.
+  virtual std::vector<Vec3> openings() const { return {}; }
   // Whether an area light may lie on it.
   virtual bool canEmit() const { return true; }
   // Whether surface points need dpdu, dpdv and a shading frame along them.
@@ -125,6 +129,8 @@ class Shape {
   // The media on both sides of the surface, null for none. As in Mitsuba a surface with a medium on either
   // side bounds both; others lie within whatever medium there is.
   bool boundsMedia() const { return m_interior || m_exterior; }
+  const Medium* interior() const { return m_interior.get(); }
+  const Medium* exterior() const { return m_exterior.get(); }
   void setMedia(MediumPtr interior, MediumPtr exterior) {
     m_interior = std::move(interior);
     m_exterior = std::move(exterior);
