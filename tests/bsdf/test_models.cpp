@@ -63,6 +63,26 @@ TEST_P(Models, LobesAreChosenOnlyBySomeThatSaySo) {
     }
 }
 
+TEST_P(Models, NullTransmissionIsTheMeanOfWhatPassesStraight) {
+  for (const Vec3& wo : outgoing(GetParam())) {
+    const Rgb expected = bsdf().nullTransmission(m_at, wo);
+    if (!bsdf().traits().passesStraight) {
+      EXPECT_EQ(expected, Rgb(0.0f));
+      continue;
+    }
+    Uniform uniform(13);
+    constexpr int kCount = 20000;
+    Rgbd sum(0, 0, 0);
+    for (int i = 0; i < kCount; ++i) {
+      const float u = uniform.next();
+      const BsdfSample s = bsdf().sample(m_at, wo, u, uniform.next2());
+      if (s.lobe == Lobe::null) sum += Rgbd(s.weight.x, s.weight.y, s.weight.z);
+    }
+    // Weights are at most 1, so that a mean has a standard error of .5 / sqrt(count) at most: five of these.
+    for (int c = 0; c < 3; ++c) EXPECT_NEAR(sum[c] / kCount, expected[c], 2.5 / std::sqrt(kCount));
+  }
+}
+
 TEST_P(Models, WeightIsValueOverDensity) {
   Uniform uniform(7);
   for (const Vec3& wo : outgoing(GetParam()))

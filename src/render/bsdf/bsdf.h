@@ -73,12 +73,13 @@ struct BsdfTraits {
   bool transmissive = false;  // may scatter to the other side (null included)
   bool tangents = false;      // needs dpdu, dpdv and a shading frame along them; others take any frame
   bool choosesLobes = true;   // whether sample() reads uLobe
+  bool passesStraight = false;  // may let light pass straight through: nullTransmission() is not always 0
 };
 
 // Of a BSDF that passes its directions on to either of two.
 inline BsdfTraits operator|(const BsdfTraits& a, const BsdfTraits& b) {
   return {a.evaluable || b.evaluable, a.transmissive || b.transmissive, a.tangents || b.tangents,
-          a.choosesLobes || b.choosesLobes};
+          a.choosesLobes || b.choosesLobes, a.passesStraight || b.passesStraight};
 }
 
 class Bsdf {

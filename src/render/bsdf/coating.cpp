@@ -20,6 +20,7 @@ class Coating final : public Bsdf {
   explicit Coating(CoatingBase base) : m_base(std::move(base)) {
     m_traits = m_base.nested->traits();
     m_traits.choosesLobes = true;
+    m_traits.passesStraight = false;  // the layer refracts
   }
 
   BsdfSample sample(const SurfacePoint& at, const Vec3& wo, float uLobe, const Vec2& u) const override {

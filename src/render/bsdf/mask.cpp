@@ -13,7 +13,7 @@ class Mask final : public Bsdf {
   Mask(BsdfPtr nested, ScalarParameter opacity) : m_nested(std::move(nested)), m_opacity(std::move(opacity)) {
     m_traits = m_nested->traits();
     m_traits.choosesLobes = true;
-    m_traits.transmissive = true;
+    m_traits.transmissive = m_traits.passesStraight = true;
   }
 
   BsdfSample sample(const SurfacePoint& at, const Vec3& wo, float uLobe, const Vec2& u) const override {

@@ -7,7 +7,10 @@ namespace {
 
 class Null final : public Bsdf {
  public:
-  Null() { m_traits = {false, true}; }
+  Null() {
+    m_traits = {false, true};
+    m_traits.passesStraight = true;
+  }
 
   BsdfSample sample(const SurfacePoint&, const Vec3& wo, float, const Vec2&) const override {
     return discreteSample(-wo, Rgb(1.0f), 1, Lobe::null);

@@ -56,7 +56,7 @@ BsdfValue Perturbed::evaluate(const SurfacePoint& at, const Vec3& wo, const Vec3
 }
 
 Rgb Perturbed::nullTransmission(const SurfacePoint& at, const Vec3& wo) const {
-  if (!m_nested->traits().transmissive) return Rgb(0.0f);
+  if (!m_traits.passesStraight) return Rgb(0.0f);
   const Turned turned = turn(at, wo);
   const Vec3 turnedWo = turned.frame.toLocal(wo);
   if (!(wo.z * turnedWo.z > 0)) return Rgb(0.0f);

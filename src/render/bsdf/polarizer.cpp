@@ -17,6 +17,7 @@ class OpticalElement final : public Bsdf {
   OpticalElement(RgbParameter transmittance, float share)
       : m_transmittance(std::move(transmittance)), m_share(share) {
     m_traits = {false, true};
+    m_traits.passesStraight = true;
   }
 
   BsdfSample sample(const SurfacePoint& at, const Vec3& wo, float, const Vec2&) const override {

@@ -20,6 +20,7 @@ class RoughCoating final : public Bsdf {
       : m_base(std::move(base)), m_facets(facets), m_transmittance(std::move(transmittance)) {
     m_traits = m_base.nested->traits();
     m_traits.evaluable = m_traits.choosesLobes = true;
+    m_traits.passesStraight = false;  // the layer refracts
   }
 
   BsdfSample sample(const SurfacePoint& at, const Vec3& wo, float uLobe, const Vec2& u) const override {

@@ -18,6 +18,7 @@ class ThinDielectric final : public Bsdf {
   ThinDielectric(float eta, RgbParameter reflectance, RgbParameter transmittance)
       : m_reflectance(std::move(reflectance)), m_transmittance(std::move(transmittance)), m_eta(eta) {
     m_traits = {false, true};
+    m_traits.passesStraight = true;
   }
 
   BsdfSample sample(const SurfacePoint& at, const Vec3& wo, float uLobe, const Vec2&) const override {

@@ -88,7 +88,7 @@ Rgb transmittanceTo(const Scene& scene, const ScatteringPoint& from, const Vec3&
     Hit hit;
     const bool met = scene.intersect(ray, hit);
     // Where something hides the light nothing else matters.
-    if (met && !hit.shape->bsdf().traits().transmissive) return Rgb(0.0f);
+    if (met && !hit.shape->bsdf().traits().passesStraight) return Rgb(0.0f);
     SurfacePoint at;
     float length = left;
     if (met) {

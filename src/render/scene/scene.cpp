@@ -13,12 +13,12 @@ Scene::~Scene() = default;
 
 void Scene::addShape(ShapePtr shape) {
   if (shape->emitter()) enlist(*shape->emitter());
-  enlistMedia(*shape);
+  lookAt(*shape);
   m_shapes.push_back(std::move(shape));
 }
 
 void Scene::addInstance(Instance instance) {
-  for (const ShapePtr& shape : *instance.group) enlistMedia(*shape);
+  for (const ShapePtr& shape : *instance.group) lookAt(*shape);
   if (instance.motion) {
     m_moves = true;
     for (const ShapePtr& shape : *instance.group) {
@@ -32,11 +32,11 @@ void Scene::addInstance(Instance instance) {
 
 void Scene::enlist(const Medium* medium) {
   if (!medium) return;
-  m_volumetric = true;
   if (std::find(m_media.begin(), m_media.end(), medium) == m_media.end()) m_media.push_back(medium);
 }
 
-void Scene::enlistMedia(const Shape& shape) {
+void Scene::lookAt(const Shape& shape) {
+  m_passesStraight |= shape.passesStraight();
   enlist(shape.interior());
   enlist(shape.exterior());
 }

@@ -78,8 +78,8 @@ class Scene {
   bool moves() const { return m_moves; }
   // Whether paths follow the rules of Mitsuba's `volpath`: what they pass straight through counts neither as
   // depth nor for `hideEmitters`, and shadow rays pass it, too. So it is where there are media, or where the
-  // file names an integrator for media.
-  bool volumetric() const { return m_volumetric; }
+  // file names an integrator for media and there is something to pass.
+  bool volumetric() const { return !m_media.empty() || (m_integrator.volumetric && m_passesStraight); }
   // Each once: those that shapes bound, and the sensor's.
   const std::vector<const Medium*>& media() const { return m_media; }
   // Of all that is there while the shutter is open.
@@ -102,10 +102,7 @@ class Scene {
   void addEmitter(EmitterPtr emitter);
   void setSensor(std::shared_ptr<const Sensor> sensor);
   void setFilm(const FilmSettings& film) { m_film = film; }
-  void setIntegrator(const IntegratorSettings& settings) {
-    m_integrator = settings;
-    m_volumetric |= settings.volumetric;
-  }
+  void setIntegrator(const IntegratorSettings& settings) { m_integrator = settings; }
   // Whether no ray passes between triangles that share an edge, which takes longer.
   void setWatertight(bool watertight) { m_watertight = watertight; }
   void finish();
@@ -113,7 +110,7 @@ class Scene {
  private:
   // Counts a medium, if it is one.
   void enlist(const Medium* medium);
-  void enlistMedia(const Shape& shape);
+  void lookAt(const Shape& shape);
   // Gives an emitter its index.
   void enlist(Emitter& emitter);
 
@@ -127,7 +124,7 @@ class Scene {
   FilmSettings m_film;
   IntegratorSettings m_integrator;
   SceneBounds m_bounds;
-  bool m_moves = false, m_watertight = false, m_volumetric = false;
+  bool m_moves = false, m_watertight = false, m_passesStraight = false;
   std::vector<std::string> m_files;
   std::unique_ptr<Intersector> m_intersector;
 };

@@ -126,6 +126,8 @@ class Shape {
   SurfaceEmitter* emitter() { return m_emitter.get(); }
   void setBsdf(BsdfPtr bsdf) { m_bsdf = std::move(bsdf); }
   void setEmitter(std::shared_ptr<SurfaceEmitter> emitter) { m_emitter = std::move(emitter); }
+  // Whether light may pass it straight through.
+  bool passesStraight() const { return m_bsdf && m_bsdf->traits().passesStraight; }
   // The media on both sides of the surface, null for none. As in Mitsuba a surface with a medium on either
   // side bounds both; others lie within whatever medium there is.
   bool boundsMedia() const { return m_interior || m_exterior; }
