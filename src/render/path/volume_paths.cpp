@@ -162,19 +162,45 @@ void traceVolumePaths(const PathSettings& settings, std::span<Path> paths, PathR
        [&](Walker& walker, const Hit& hit) { return Step(settings, recorder, walker).take(hit); });
 }
 
+namespace {
+
+// What a camera's ray sees of media before it meets a surface, in the mean over all places where it may be
+// scattered: a denoiser takes noise of its features for what is there.
+struct Veil {
+  Rgb albedo{0, 0, 0}, passing{1, 1, 1};
+
+  void add(Walker& walker, float length) {
+    const Ray& ray = walker.path->ray;
+    const Flight flight = fly(nullptr, walker, length);
+    const float place = flight.scattered ? flight.distance : length < kInfinity ? 0.5f * length : 0;
+    const Rgb behind =
+        passing * walker.medium->transmittance({ray.origin, ray.direction, length}, walker.random);
+    albedo += (passing - behind) * walker.medium->albedo(ray.origin + ray.direction * place);
+    passing = behind;
+  }
+  void cover(Path& path) const {
+    FirstHit& first = path.first;
+    if (!first.valid) {
+      if (isBlack(albedo)) return;
+      first.valid = true;
+      first.position = path.ray.origin;
+      first.normal = first.geometricNormal = Vec3(0, 0, 0);
+      first.albedo = Rgb(0.0f);
+      first.roughness = 1;
+    }
+    first.albedo = first.albedo * passing + albedo;
+    first.normal *= luminance(passing);
+  }
+};
+
+}  // namespace
+
 void traceFirstVolumeHits(const PathSettings& settings, std::span<Path> paths) {
+  std::vector<Veil> veils(paths.size());
   walk(*settings.scene, paths, [&](Walker& walker, const Hit& hit) {
     Path& path = *walker.path;
     const Ray ray = path.ray;
-    if (walker.medium) {
-      const Flight flight = fly(nullptr, walker, hit.shape ? hit.raw.t : kInfinity);
-      if (flight.scattered) {
-        const MediumPoint point{ray.origin + ray.direction * flight.distance, -ray.direction};
-        path.first =
-            ScatteringPoint(*walker.medium, point, ray.time).features(path.distance + flight.distance);
-        return false;
-      }
-    }
+    if (walker.medium) veils[size_t(&path - paths.data())].add(walker, hit.shape ? hit.raw.t : kInfinity);
     if (!hit.shape) return false;
     Vertex vertex;
     vertex.at = hit.surfacePoint(ray);
@@ -184,6 +210,7 @@ void traceFirstVolumeHits(const PathSettings& settings, std::span<Path> paths) {
     walker.nextPlace();
     return walker.place != settings.maxDepth;
   });
+  for (size_t i = 0; i < paths.size(); ++i) veils[i].cover(paths[i]);
 }
 
 }  // namespace odis::render
