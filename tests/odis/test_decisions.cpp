@@ -153,6 +153,20 @@ TEST(Lights, TablesFollowTheRootOfWhatGroupsGive) {
   EXPECT_EQ(result[1].learnedLightFraction, 0);  // has seen nothing
 }
 
+TEST(Lights, FewSamplesAreEnoughInMedia) {
+  std::vector<CellStatistics> cells(2);
+  for (CellStatistics& cell : cells) {
+    cell.level = kCellLevels - 1;
+    cell.lightCount = 2;
+    cell.lightSquares = {18, 0, 2};
+  }
+  cells[1].inMedium = true;
+  std::vector<CellDecisions> result(2);
+  tabulateLights(*libraryTasks(), result, cells, LightFormula(), 3);
+  EXPECT_LT(result[0].learnedLightFraction, 0.2f);
+  EXPECT_FLOAT_EQ(result[1].learnedLightFraction, float(kLearnedFraction));
+}
+
 TEST(Lights, PartsOfALightAreToldApartWhereThatGainsMuch) {
   std::vector<CellStatistics> cells(3);
   for (CellStatistics& cell : cells) {

@@ -54,6 +54,9 @@ LightSquares LightFormula::predict(const CellChain& chain, const LightSquares* p
 }
 
 double LightFormula::reliability(const CellStatistics& cell) const {
+  // In media light changes little from place to place, so that ancestors tell enough, and what else chooses
+  // lights knows nothing of transmittance.
+  if (cell.inMedium) return 1;
   return ownWeight(cell.lightCount, kHalfEnough);
 }
 
