@@ -27,6 +27,11 @@ def block_density(salt, size):
     return np.maximum(1 - squared, 0) * (block / 15.0)
 
 
+def flakes(size):
+    """Parameters of microflakes (Sxx, Syy, Szz, Sxy, Sxz, Syz) of fibres along x."""
+    return np.broadcast_to([0.0625, 1, 1, 0, 0, 0], (size, size, size, 6))
+
+
 def write_volume(path, values):
     """Writes a volume of the shape [z, y, x, channel]."""
     sizes = values.shape[2], values.shape[1], values.shape[0], values.shape[3]
@@ -62,9 +67,10 @@ def main():
     target = SCENES / "references.json"
     known = json.loads(target.read_text()) if target.exists() else {}
     with tempfile.TemporaryDirectory() as folder:
-        grids = {"grid": pathlib.Path(folder) / "grid.vol", "color_grid": pathlib.Path(folder) / "color_grid.vol"}
+        grids = {name: pathlib.Path(folder) / f"{name}.vol" for name in ("grid", "color_grid", "flake_grid")}
         write_volume(grids["grid"], block_density(5, 64)[..., None])
         write_volume(grids["color_grid"], np.stack([block_density(salt, 16) for salt in (5, 9, 14)], axis=-1))
+        write_volume(grids["flake_grid"], flakes(4))
         for path in args.scenes or sorted(SCENES.glob("*.xml")):
             known[path.stem] = reference(mi, path, grids, args.spp, args.seeds)
             lines = [f"{json.dumps(name)}: {json.dumps(entry)}" for name, entry in sorted(known.items())]

@@ -44,11 +44,17 @@ inline std::unique_ptr<render::Scene> loadMediaScene(const std::string& name) {
     const int salts[] = {5, 9, 14};
     return blockDensity(4 * x, 4 * y, 4 * z, salts[channel]);
   });
+  const std::string flakes = folder.path("flake_grid.vol");
+  writeVolume(flakes, 4, 6, [](int, int, int, int channel) {
+    const double fibresAlongX[] = {0.0625, 1, 1, 0, 0, 0};
+    return fibresAlongX[channel];
+  });
   render::LoadOptions options;
   std::ifstream file(ODIS_TEST_DATA "/media/" + name + ".xml");
   const std::string text((std::istreambuf_iterator<char>(file)), {});
   if (text.find("$grid") != std::string::npos) options.defines["grid"] = grid;
   if (text.find("$color_grid") != std::string::npos) options.defines["color_grid"] = colors;
+  if (text.find("$flake_grid") != std::string::npos) options.defines["flake_grid"] = flakes;
   render::Warnings warnings;
   return render::Scene::load(ODIS_TEST_DATA "/media/" + name + ".xml", options, warnings);
 }

@@ -86,6 +86,21 @@ TEST(Media, WhiteFurnace) {
     }
 }
 
+TEST(Media, WhiteFurnaceOfMicroflakes) {
+  const test::TemporaryFolder folder;
+  test::writeVolume(folder.path("S.vol"), 2, 6,
+                    [](int, int, int, int channel) { return channel < 3 ? std::pow(0.25, channel) : 0; });
+  const std::string phase =
+      "<phase type=\"sggx\"><volume name=\"S\" type=\"gridvolume\"><string "
+      "name=\"filename\" value=\"" +
+      folder.path("S.vol") + "\"/></volume></phase>";
+  const auto scene = loadScene(test::sensor("origin=\"0,0,4\" target=\"0,0,0\" up=\"0,1,0\"", 40, 8, 8) +
+                               "<shape type=\"sphere\"><bsdf type=\"null\"/>" + homogeneous("3", "1", phase) +
+                               "</shape>" + kWhiteSky);
+  const Rgbd mean = meanOf(renderScene(*scene, pathOptions(512)).image.color);
+  for (int c = 0; c < 3; ++c) EXPECT_NEAR(mean[c], 1, 0.01);
+}
+
 TEST(Media, PathsEndByDepthAsWithoutThem) {
   // Boundaries count for nothing: with depth 1 the sky is seen through them.
   const auto scene = loadScene(slab(homogeneous("0.5", "0.9"), kWhiteSky));
@@ -145,7 +160,8 @@ TEST_P(MediaOfMitsuba, BlocksAgree) {
 
 INSTANTIATE_TEST_SUITE_P(Scenes, MediaOfMitsuba,
                          ::testing::Values("fog-room", "milk-in-glass", "cloud", "colored-smoke", "phases",
-                                           "panes", "hidden-lights", "spots", "instances", "nested-media"),
+                                           "panes", "hidden-lights", "spots", "instances", "nested-media",
+                                           "microflakes", "cube-of-jelly"),
                          [](const auto& info) {
                            std::string name = info.param;
                            std::replace(name.begin(), name.end(), '-', '_');
