@@ -43,6 +43,10 @@ class EquiAngular {
   float m_begin, m_end;     // angles, in radians
 };
 
+// The share of the distances that are drawn by angle where the lamp is on the ray; less, the further it is
+// off.
+constexpr float kMostByAngle = 0.25f;
+
 class Homogeneous final : public Medium {
  public:
   Homogeneous(const MediumSettings& settings, const Rgb& extinction)
@@ -71,7 +75,7 @@ class Homogeneous final : public Medium {
     if (!(u < scatters)) return {false, 0, passing / (1 - scatters)};
     u = std::min(u / scatters, kOneMinusEpsilon);
     const EquiAngular angles(lamp, segment);
-    const float byAngle = 0.5f * std::exp(-angles.nearest() / meanFreePath());
+    const float byAngle = kMostByAngle * std::exp(-angles.nearest() / meanFreePath());
     float distance;
     if (u < byAngle) {
       distance = angles.sample(u / byAngle);

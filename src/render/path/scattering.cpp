@@ -35,9 +35,9 @@ VertexDraws::VertexDraws(Walker& walker) {
 
 namespace {
 
-// Rays that lead to vertices of this depth at most draw distances towards lamps, too. What later ones would
-// gain by it is less than what it costs.
-constexpr int kDeepestPastLamps = 2;
+// Rays that lead to vertices of this depth at most draw distances towards lamps, too: the camera's alone.
+// What later ones would gain by it is less than what it costs (docs/experiments/0064-media.md).
+constexpr int kDeepestPastLamps = 1;
 
 // Draws a lamp that may light a segment of a ray, and a point of it. Nothing if a light infinitely far away
 // is drawn. The choice depends on the ray alone.
