@@ -1,7 +1,5 @@
 #include "render/path/volume_paths.h"
 
-#include <odis/guided_vertex.h>
-
 #include "render/path/emission.h"
 #include "render/path/scattering.h"
 
