@@ -74,7 +74,7 @@ Flight fly(const LightSampler* lights, Walker& walker, float length) {
 }
 
 bool passesStraight(const Vertex& vertex, Lobe lobe) {
-  return lobe == Lobe::null && !isBlack(vertex.at.shape->bsdf().nullTransmission(vertex.at, vertex.wo));
+  return lobe == Lobe::null && vertex.at.shape->bsdf().traits().passesStraight;
 }
 
 Rgb transmittanceTo(const Scene& scene, const ScatteringPoint& from, const Vec3& wi, float distance,

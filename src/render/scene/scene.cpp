@@ -70,9 +70,10 @@ void Scene::finish() {
 }
 
 bool Scene::intersect(const Ray& ray, SurfacePoint& at) const {
-  const Hit hit = m_intersector->intersect(ray);
-  if (hit.shape) at = hit.surfacePoint(ray);
-  return hit.shape != nullptr;
+  Hit hit;
+  if (!intersect(ray, hit)) return false;
+  at = hit.surfacePoint(ray);
+  return true;
 }
 
 bool Scene::intersect(const Ray& ray, Hit& hit) const {
