@@ -21,12 +21,6 @@ class UnbiasedFrame : public ::testing::Test {
                              const std::function<ChangeVertices(uint64_t)>& makeChange = {}) {
     expectSameExpectation(estimate(options, {}, seeds, 1, makeChange), s_reference);
   }
-  static FrameOptions adversarial(WrongDirections::Kind kind) {
-    FrameOptions options = toyOptions(kSide, kSide, 4);
-    options.guide.model = makeModel(std::make_shared<WrongDirections>(kind), std::make_shared<WrongLights>());
-    options.guide.set("bsdf-fraction=0.3");
-    return options;
-  }
   static inline Estimate s_reference;
 };
 
@@ -64,7 +58,7 @@ TEST_F(UnbiasedFrame, FromAnOracle) {
 TEST_F(UnbiasedFrame, ByWrongMapsAndTables) {
   using Kind = WrongDirections::Kind;
   for (const Kind kind : {Kind::random, Kind::oneTexel, Kind::zero, Kind::notANumber})
-    expectUnbiased(adversarial(kind));
+    expectUnbiased(decidedWrongly(toyOptions(kSide, kSide, 4), kind));
 }
 
 // A host whose records are wrong in every number but the place loses quality, not the mean: what is wrong

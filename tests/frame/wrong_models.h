@@ -6,6 +6,7 @@
 
 #include "odis/models/direction_model.h"
 #include "odis/models/lights.h"
+#include "support/models.h"
 
 namespace odis::test {
 
@@ -46,5 +47,12 @@ class WrongLights : public core::LightModel {
   }
   double reliability(const core::CellStatistics&) const override { return 0.9; }
 };
+
+// The same options with such models, which most directions follow.
+inline FrameOptions decidedWrongly(FrameOptions options, WrongDirections::Kind kind) {
+  options.guide.model = makeModel(std::make_shared<WrongDirections>(kind), std::make_shared<WrongLights>());
+  options.guide.set("bsdf-fraction=0.3");
+  return options;
+}
 
 }  // namespace odis::test

@@ -66,6 +66,22 @@ TEST_F(PglFields, KnowNothingAtFirst) {
   EXPECT_EQ(field->GetIteration(), 0u);
 }
 
+// Tests the samples of a distribution against its density. Returns for how many the two state densities that
+// differ.
+template <class Distribution>
+int expectSamplesFollow(const Distribution& distribution, const Chi2Options& options) {
+  int different = 0;
+  EXPECT_TRUE(chi2Test(
+      [&](float u, float v, float) {
+        pgl_vec3f wi;
+        const float pdf = distribution.SamplePDF({u, v}, wi);
+        different += std::abs(pdf - distribution.PDF(wi)) > 1e-4f * pdf;
+        return std::optional(fromPgl(wi));
+      },
+      [&](const Float3& wi) { return distribution.PDF(toPgl(wi)); }, options));
+  return different;
+}
+
 TEST_F(PglFields, SamplesFollowTheDensity) {
   const auto field = taughtField();
   pgl::SurfaceSamplingDistribution distribution(field.get());
@@ -75,14 +91,7 @@ TEST_F(PglFields, SamplesFollowTheDensity) {
   int different = 0;
   for (const Float3& position : {Float3{0.3f, 0.4f, 1e-4f}, {0.9f, 0.1f, 1e-4f}, {50, 50, 50}}) {
     prepare(distribution, *field, position);
-    EXPECT_TRUE(chi2Test(
-        [&](float u, float v, float) {
-          pgl_vec3f wi;
-          const float pdf = distribution.SamplePDF({u, v}, wi);
-          different += std::abs(pdf - distribution.PDF(wi)) > 1e-4f * pdf;
-          return std::optional(fromPgl(wi));
-        },
-        [&](const Float3& wi) { return distribution.PDF(toPgl(wi)); }, options));
+    different += expectSamplesFollow(distribution, options);
   }
   EXPECT_LE(different, 5);  // of 600,000: directions on a border may be rounded across it
 }
@@ -319,16 +328,7 @@ TEST_F(PglFields, GuideDirectionsInVolumes) {
   EXPECT_GT(distribution.PDF({0.6f, 0, -0.8f}), 5 * distribution.PDF({-0.6f, 0, 0.8f}));
   Chi2Options options;
   options.quadrature = 48;  // the density jumps at the borders of texels
-  int different = 0;
-  EXPECT_TRUE(chi2Test(
-      [&](float u, float v, float) {
-        pgl_vec3f wi;
-        const float pdf = distribution.SamplePDF({u, v}, wi);
-        different += std::abs(pdf - distribution.PDF(wi)) > 1e-4f * pdf;
-        return std::optional(fromPgl(wi));
-      },
-      [&](const Float3& wi) { return distribution.PDF(toPgl(wi)); }, options));
-  EXPECT_LE(different, 5);
+  EXPECT_LE(expectSamplesFollow(distribution, options), 5);
   distribution.Clear();
   EXPECT_NEAR(distribution.PDF({0, 0, 1}), 1 / (4 * kPi), 1e-6f);
 }
