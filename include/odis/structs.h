@@ -255,7 +255,7 @@ typedef struct OdisVertexCounts {
   // lightGroup beyond OdisGuideOptions.lightGroups, where that is not 0.
   uint64_t unknownLights ODIS_DEFAULT(0);
   uint64_t twice ODIS_DEFAULT(0);  // pixel, sample and depth of a vertex before; counted by frames alone
-  // Of those accepted: scattered in media, which a normal of zero says.
+  // How many of the accepted ones lie in media, as their normals of zero say.
   uint64_t inMedia ODIS_DEFAULT(0);
 } OdisVertexCounts;
 

@@ -26,7 +26,7 @@ class LightModel {
   // Given the statistics of the cell and its ancestors, and its parent's result (null for the coarsest
   // level). Called for parents before their children; thread-safe. `groups` is at most kMaxLightGroups.
   virtual LightSquares predict(const CellChain& chain, const LightSquares* parent, uint32_t groups) const = 0;
-  // As DirectionModel's.
+  // Whether the model decides in cells of media, too; where it does not, the formula does.
   virtual bool knowsMedia() const { return true; }
   // How reliable the cell's result is, from 0 to 1: the learned-light fraction is in proportion to it.
   virtual double reliability(const CellStatistics& cell) const = 0;

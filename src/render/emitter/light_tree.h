@@ -24,7 +24,7 @@ struct LightReference {
   LearnedLights learned{};     // what is known of the groups of lights there; LightSampler only
   float treeProbability = -1;  // LightSampler::prepare() only: negative before
 
-  // As importance() has them.
+  // The directions that light is scattered from: what importance() takes.
   int32_t sides() const {
     if (n == Vec3(0, 0, 0)) return kAllAlike;
     return both ? kBothSides : kOneSide;

@@ -3,7 +3,7 @@
 //   weight           0 to 1, number or volume: 0 gives the first, 1 the second; required
 //   (nested phase)   two
 //
-// As in Mitsuba, microflakes in it have a projected area of one.
+// Microflakes within it have a projected area of one, as in Mitsuba.
 #include "render/bsdf/parameter.h"
 #include "render/medium/volume_factories.h"
 
@@ -30,7 +30,7 @@ class BlendedPhase final : public PhaseFunction {
   float pdf(const MediumPoint& at, const Vec3& wi) const override {
     return lerp(weight(at), m_nested[0]->pdf(at, wi), m_nested[1]->pdf(at, wi));
   }
-  // That of equal parts where the weight varies.
+  // Where the weight varies, this is the roughness of equal parts.
   float roughness() const override {
     return lerp(m_constant.value_or(0.5f), m_nested[0]->roughness(), m_nested[1]->roughness());
   }

@@ -27,7 +27,7 @@ struct ChannelDraw {
     const float begin = channel == 0 ? 0 : channel == 1 ? second : third;
     u = std::min(std::max(number - begin, 0.0f) / of(weights), kOneMinusEpsilon);
   }
-  // That channel of a colour.
+  // The value of a colour in the channel that was drawn.
   float of(const Rgb& c) const { return channel == 0 ? c.x : channel == 1 ? c.y : c.z; }
 };
 inline Rgb exponential(const Rgb& x) {

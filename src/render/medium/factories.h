@@ -1,5 +1,5 @@
 // The factories of media, and the parameters that they share; volumes and phase functions have theirs in
-// registry.cpp.
+// volume_factories.h.
 #pragma once
 
 #include "render/bsdf/parameter.h"
