@@ -24,9 +24,10 @@ MARGIN = 16
 # Learned probabilities of groups of lights are multiples of 1 / WHOLE, so that their sums fit in 16 bits.
 WHOLE = 1 << 16
 DEEP_PATH, MOST_DEEP_SURVIVAL = 32, 0.95  # as in odis/guide_view.h
-# The normals of the orientations of cells of surfaces, in the order of the grid: +x, -x, +y, -y, +z, -z. Cells of media
-# (a normal of zero, the seventh orientation of the grid) are left out: the integrator traces surfaces alone.
-ORIENTATIONS = np.array([[1, 0, 0], [-1, 0, 0], [0, 1, 0], [0, -1, 0], [0, 0, 1], [0, 0, -1]], np.float32)
+# The normals of the orientations of cells, in the order of the grid: +x, -x, +y, -y, +z, -z, and zero for cells of media.
+# Scenes without media do without the last one.
+ORIENTATIONS = np.array([[1, 0, 0], [-1, 0, 0], [0, 1, 0], [0, -1, 0], [0, 0, 1], [0, 0, -1], [0, 0, 0]], np.float32)
+OF_SURFACES, OF_MEDIUM = 6, 6  # how many are those of surfaces, and which one is that of media
 
 
 @dataclass
@@ -40,6 +41,7 @@ class GuideTables:
     origin: object  # Point3f: corner of the grid
     inverse_edge: object  # Float: 1 / edge of its cells
     size: object  # Vector3i: of the grid, in cells
+    orientations: int  # of the grid: 6, or 7 with media
     entries: object  # UInt32 [z][y][x][orientation]: numbers of cells, or odis.NO_CELL
     maps: object  # UInt32 [cell][MAP_WORDS]
     decisions: object  # Float16 [cell][8]: BSDF fractions of the roughness classes, survival factor, outgoing radiance
@@ -62,7 +64,7 @@ class GuideTables:
     last_share: object = None  # UInt32
 
 
-def grid_box(guide):
+def grid_box(guide, orientations):
     """The box of the finest cells to tabulate, in cells from the guide's origin: lowest corner and size, int64 (3,)."""
     keys = guide.cell_keys
     level = (keys >> np.uint64(60)).astype(np.int64)
@@ -78,7 +80,7 @@ def grid_box(guide):
         core_low, core_high = np.quantile(begin[finest], [0.02, 0.98])
         low[a] = max(begin.min(), int(core_low) - MARGIN)
         high[a] = min(end.max(), int(core_high) + 1 + MARGIN)
-    while np.prod(high - low) * 6 > MOST_ENTRIES:
+    while np.prod(high - low) * orientations > MOST_ENTRIES:
         widest = np.argmax(high - low)
         cut = max(1, (high - low)[widest] // 8)
         low[widest] += cut
@@ -86,16 +88,16 @@ def grid_box(guide):
     return low, high - low
 
 
-def tabulate_cells(guide):
+def tabulate_cells(guide, orientations=OF_SURFACES):
     """The grid: its corner (3,), size (3,), and the cells' numbers [z][y][x][orientation], uint32."""
-    low, size = grid_box(guide)
+    low, size = grid_box(guide, orientations)
     edge, origin = guide.finest_edge, np.asarray(guide.origin)
     z, y, x = (np.arange(size[a], dtype=np.float32) + np.float32(0.5) for a in (2, 1, 0))
-    middle = np.empty((size[2], size[1], size[0], 6, 3), np.float32)
+    middle = np.empty((size[2], size[1], size[0], orientations, 3), np.float32)
     middle[..., 0] = (origin[0] + (x + low[0]) * edge)[None, None, :, None]
     middle[..., 1] = (origin[1] + (y + low[1]) * edge)[None, :, None, None]
     middle[..., 2] = (origin[2] + (z + low[2]) * edge)[:, None, None, None]
-    normals = np.broadcast_to(ORIENTATIONS, middle.shape).reshape(-1, 3)
+    normals = np.broadcast_to(ORIENTATIONS[:orientations], middle.shape).reshape(-1, 3)
     cells = guide.find_cells(middle.reshape(-1, 3), np.ascontiguousarray(normals))
     return origin + low * edge, size, cells
 
@@ -116,9 +118,10 @@ def group_tables(cumulative):
     return padded.view(np.uint32), (np.diff(whole, axis=1) / WHOLE).astype(np.float32)
 
 
-def make_guide_tables(guide):
-    """The tables of a guide that has cells."""
-    corner, size, cells = tabulate_cells(guide)
+def make_guide_tables(guide, has_media=False):
+    """The tables of a guide that has cells. has_media: whether vertices may lie in media."""
+    orientations = OF_SURFACES + has_media
+    corner, size, cells = tabulate_cells(guide, orientations)
     rules = guide.rules
     radiance_scale = max(float(guide.outgoing_radiance.max()) / MOST_HALF, 1e-30)
     decisions = np.concatenate([guide.bsdf_fractions, guide.survival_factors[:, None],
@@ -127,7 +130,7 @@ def make_guide_tables(guide):
     sums, probabilities = group_tables(guide.light_tables if guide.light_groups else np.array([[0, 1]], np.float32))
     tables = GuideTables(
         origin=mi.Point3f(*map(float, corner)), inverse_edge=mi.Float(1 / guide.finest_edge),
-        size=mi.Vector3i(*map(int, size)), entries=array_of(mi.UInt32, cells),
+        size=mi.Vector3i(*map(int, size)), orientations=orientations, entries=array_of(mi.UInt32, cells),
         maps=array_of(mi.UInt32, guide.maps.reshape(-1).view(np.uint32)),
         decisions=array_of(mi.Float16, half_floats(decisions)), radiance_scale=mi.Float(radiance_scale),
         group_sums=array_of(mi.UInt32, sums), group_probabilities=array_of(mi.Float, probabilities),
@@ -158,12 +161,17 @@ def orientation_of(normal):
 
 
 def find_cell(tables, position, normal, active):
-    """The finest cell of a vertex, odis.NO_CELL where there is none."""
+    """The finest cell of a vertex, odis.NO_CELL where there is none. normal: zero in a medium."""
     local = (position - tables.origin) * tables.inverse_edge
     at = mi.Vector3i(dr.floor(local))
     # Before they become integers: what is huge has none.
-    inside = active & dr.all((local >= 0) & (local < mi.Vector3f(tables.size))) & dr.any(normal != 0)
-    entry = ((at.z * tables.size.y + at.y) * tables.size.x + at.x) * 6 + mi.Int32(orientation_of(normal))
+    inside, on_surface = active & dr.all((local >= 0) & (local < mi.Vector3f(tables.size))), dr.any(normal != 0)
+    orientation = orientation_of(normal)
+    if tables.orientations == OF_SURFACES:
+        inside &= on_surface
+    else:
+        orientation = dr.select(on_surface, orientation, OF_MEDIUM)
+    entry = ((at.z * tables.size.y + at.y) * tables.size.x + at.x) * tables.orientations + mi.Int32(orientation)
     return dr.select(inside, dr.gather(mi.UInt32, tables.entries, mi.UInt32(entry), inside), odis.NO_CELL)
 
 

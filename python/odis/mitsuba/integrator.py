@@ -12,7 +12,7 @@ import numpy as np
 
 import odis
 
-from . import checks, path, recording
+from . import checks, path, recording, volume_path
 from .aovs import make_aovs, nested_integrators
 from .arrays import array_of
 from .film import make_film
@@ -20,6 +20,7 @@ from .guide_tables import make_guide_tables
 from .kernel_history import compile_seconds
 from .lights import make_light_table
 from .materials import make_material_table
+from .media import make_media_table, media_of
 from .parameters import read_parameters
 from .progress import default_progress
 from .random_numbers import hash_seed, numbers_of
@@ -47,6 +48,8 @@ class Camera:
 
     def __init__(self, sensor, seed, film):
         self.sensor, self.seed, self.film = sensor, seed, film
+        medium = sensor.get_medium()
+        self.medium = dr.zeros(mi.MediumPtr) if medium is None else mi.MediumPtr(medium)
 
     def __call__(self, pixel, number):
         sensor = self.sensor
@@ -70,8 +73,9 @@ class Camera:
 
 def trace_samples(scene, camera, settings, known, tables, samples):
     """Traces samples; where some are recorded returns the recorder, with what only complete paths know filled in."""
-    recorder = recording.make_recorder(ROWS) if samples.last_row is not None else None
-    path.trace(scene, camera, settings, known, tables, recorder, samples)
+    in_media = known.media is not None
+    recorder = recording.make_recorder(ROWS, in_media) if samples.last_row is not None else None
+    (volume_path if in_media else path).trace(scene, camera, settings, known, tables, recorder, samples)
     dr.eval(samples.result, samples.last_row, samples.ended_with, recorder)
     if recorder is not None:
         recording.complete_paths(recorder, samples.last_row, samples.ended_with, path.ray_counts(samples))
@@ -238,9 +242,13 @@ def make_integrator():
         def _meet(self, scene):
             """Finds out what there is to know of a scene once."""
             materials, left_out = make_material_table(scene)
+            found, media = media_of(scene), None
+            if found or self.settings.volumetric:
+                media, of_phases = make_media_table(found)
+                left_out += of_phases
             if left_out:
                 mi.Log(mi.LogLevel.Info, "odis: traced without guidance: " + ", ".join(left_out))
-            self.scene, self.known = scene, path.SceneTables(materials, make_light_table(scene))
+            self.scene, self.known = scene, path.SceneTables(materials, make_light_table(scene), media)
 
         def _render(self, sensor, seed, spp):
             """The image as the film stores it: colours, alpha if it has it, and weights."""
@@ -259,7 +267,7 @@ def make_integrator():
                     if not len(frame_pass.guide):  # not yet, or guiding does not pay
                         tables, values = None, None
                     elif rebuilt:
-                        tables = make_guide_tables(frame_pass.guide)
+                        tables = make_guide_tables(frame_pass.guide, self.known.media is not None)
                         values = array_of(mi.Float, frame.pixel_values)
                 self.samples_per_lane = SAMPLES_PER_LANE if self.rays >= MANY_RAYS * traced else 1
                 rebuilt = frame_pass.wants_vertices

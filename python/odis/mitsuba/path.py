@@ -7,9 +7,10 @@ import mitsuba as mi
 
 import odis
 
-from . import guide_tables, recording
+from . import guide_tables, recording, vertex
 from .materials import BOTH_SIDES, GUIDABLE, HAS_DELTA, SEES_THROUGH, SMOOTH, material_at
 from .random_numbers import RandomNumbers
+from .vertex import luminance_of, power_heuristic, to_rgb
 
 VALID = 1 << 31  # marks samples in Samples.result, beside their number of rays
 RECORDED = 1 << 31  # marks samples in Samples.chosen whose vertices are recorded
@@ -30,6 +31,7 @@ class Settings:
     guide_bounces: int = -1  # how many vertices of a path are guided; -1: all
     learned_roulette: bool = True  # whether guided paths end by the light that comes back; by throughput otherwise
     shadow_roulette: bool = True  # whether guided paths' shadow rays are played for
+    volumetric: bool = False  # as of `volpath`, even without media
 
 
 @dataclass
@@ -38,6 +40,7 @@ class SceneTables:
 
     materials: object  # MaterialTable
     lights: object  # LightTable
+    media: object = None  # MediaTable; None where paths are those of `path`
 
 
 @dataclass
@@ -62,31 +65,6 @@ def ray_counts(samples):
     """The number of rays of each sample of the kernel, UInt32."""
     tags = dr.reinterpret_array(mi.UInt32, samples.result)
     return dr.gather(mi.UInt32, tags, (samples.chosen & (RECORDED - 1)) * 4 + 3) & (VALID - 1)
-
-
-def power_heuristic(pdf, other):
-    ratio = other / pdf
-    return dr.select(pdf > 0, 1 / (1 + ratio * ratio), 0)
-
-
-def weight_of_met(lights, mis, bsdf_pdf, previous, met, active):
-    """The weight of light that was met: `mis`, or as `path` has it where the light is uneven (uneven_lights.py)."""
-    plain = lights.pdf(None, None, None, previous, met, active)
-    uneven = dr.gather(mi.Bool, lights.uneven, lights.place_of(met.emitter, active), active)
-    return dr.select(uneven, power_heuristic(bsdf_pdf, plain), mis)
-
-
-def weight_toward(lights, mis, place, choice, pdf, bsdf_pdf, active):
-    """The same of light that was sampled, with the density pdf that has the choice of its place in it."""
-    plain = pdf / choice * dr.gather(mi.Float, lights.probabilities, place, active)
-    return dr.select(dr.gather(mi.Bool, lights.uneven, place, active), power_heuristic(plain, bsdf_pdf), mis)
-
-
-def to_rgb(spectrum, wavelengths):
-    """The colour, linear with the primaries of sRGB, that a sample of radiance adds."""
-    if mi.is_spectral:
-        return mi.spectrum_to_srgb(spectrum, wavelengths)
-    return mi.Color3f(spectrum)
 
 
 @dataclass
@@ -189,8 +167,7 @@ def trace(scene, camera, settings, known, tables, recorder, samples):
         weighed = lit & ~previous_delta
         light_pdf = lights.pdf(tables, previous_cell, previous_fraction, previous, met, weighed)
         mis = dr.select(weighed, power_heuristic(previous_pdf, light_pdf), 1)
-        if dr.hint(lights.uneven is not None, mode="scalar"):
-            mis = weight_of_met(lights, mis, previous_bsdf_pdf, previous, met, weighed)
+        mis = vertex.weight_of_met(lights, mis, previous_bsdf_pdf, previous, met, weighed)
         radiance += dr.select(lit, throughput * emitted * mis, 0)
         if dr.hint(recorder is not None, mode="scalar"):
             had_row = active & (row != recording.NO_ROW)
@@ -221,7 +198,7 @@ def trace(scene, camera, settings, known, tables, recorder, samples):
                 own = dr.gather(mi.UInt32, tables.pixel_cells, pixel, first)
                 cell = dr.select(first & (own != odis.NO_CELL), own, cell)
             guidable_before += dr.select((flags & GUIDABLE) != 0, mi.UInt32(1), mi.UInt32(0))
-            relative = mi.luminance(to_rgb(throughput, ray.wavelengths)) / pixel_value
+            relative = luminance_of(throughput, ray.wavelengths) / pixel_value
             if dr.hint(tables.cached is not None, mode="scalar"):
                 # What ends here adds the cached radiance in place of what it would find.
                 facing = dr.abs(dr.dot(si.sh_frame.n, ray.d))
@@ -231,23 +208,18 @@ def trace(scene, camera, settings, known, tables, recorder, samples):
                     & (((flags & HAS_DELTA) == 0) | (dr.abs(si.wi.z) >= LEAST_CACHED_COSINE)) \
                     & (roughness >= dr.select(both_sides, 1, LEAST_CACHED_ROUGHNESS))
                 may_end = active & (depth > 0) & scatters_evenly
-                # With an endless max_depth there are no shares, and the number of bounces left is not looked at.
-                share = guide_tables.cached_share(tables, mi.UInt32(max(settings.max_depth, 1)) - 1 - depth, may_end)
-                there, ends_here = guide_tables.cached_radiance(
-                    tables, cell, guide_tables.path_half(pixel, number), relative, footprint, share, may_end)
+                there, ends_here = vertex.end_in_cache(settings, tables, cell, (pixel, number), relative, footprint,
+                                                       depth, may_end)
                 radiance += dr.select(ends_here, throughput * there, 0)
                 if dr.hint(recorder is not None, mode="scalar"):
                     dr.scatter(samples.ended_with, there, index, ends_here & recorded)
                 active &= ~ends_here
             decisions = guide_tables.decisions_of(tables, cell, roughness, active)
             if dr.hint(settings.learned_roulette, mode="scalar"):
-                survival = guide_tables.survival_probability(tables, decisions.survival_factor, relative, depth + 1)
-                survival_on_arrival = dr.select(active & (depth > 0) & valid & (cell != odis.NO_CELL), survival, 1)
-                stand_in = throughput * (decisions.outgoing_radiance if not mi.is_spectral
-                                         else mi.Spectrum(mi.luminance(decisions.outgoing_radiance)))
-                goes_on = draws.next() < survival_on_arrival
-                played = active & (survival_on_arrival < 1)
-                radiance += dr.select(played, stand_in * dr.select(goes_on, 1 - 1 / survival_on_arrival, 1), 0)
+                plays = active & (depth > 0) & valid & (cell != odis.NO_CELL)
+                survival_on_arrival, goes_on, added = vertex.play_on_arrival(
+                    tables, decisions, throughput, relative, depth, draws.next(), plays)
+                radiance += added
                 active = active & goes_on
                 throughput /= survival_on_arrival
             fraction = dr.select((flags & GUIDABLE) != 0, decisions.bsdf_fraction, 1)
@@ -267,11 +239,9 @@ def trace(scene, camera, settings, known, tables, recorder, samples):
         # about that of a light where it is seen.
         guided, from_map, toward_map, u_within = active & (fraction < 1), mi.Bool(False), None, u
         if dr.hint(tables is not None, mode="scalar"):
-            cell_map = guide_tables.SamplingMap(tables, cell)
-            from_map = guided & (u >= fraction)
-            u_within = dr.select(guided, dr.select(from_map, (u - fraction) / (1 - fraction), u / fraction), u)
-            u_within = dr.minimum(u_within, guide_tables.ONE_MINUS_EPSILON)
-            map_direction = cell_map.sample(u_within, v, from_map)
+            mixture = vertex.Mixture(tables, cell, fraction, guided)
+            from_map, u_within = mixture.choose(u)
+            map_direction = mixture.map.sample(u_within, v, from_map)
             toward_map = si.to_local(map_direction)
 
         # Paths that end here are asked, too, whether they pass straight through: `valid` says so.
@@ -288,8 +258,7 @@ def trace(scene, camera, settings, known, tables, recorder, samples):
             from_map &= ~discrete
             wi, pdf = dr.select(from_map, map_direction, wi), dr.select(from_map, scattered.map_pdf, pdf)
             guidable_pdf = pdf
-            map_pdf = cell_map.pdf(wi, guided & ~discrete)
-            mixed = dr.fma(1 - fraction, map_pdf * share_of_smooth - pdf, pdf)
+            mixed = mixture.pdf(wi, pdf, share_of_smooth, ~discrete)
             reweighed = guided & ~discrete & (mixed > 0)
             weight = dr.select(from_map, scattered.map_value / mixed,
                                dr.select(reweighed, weight * (pdf / mixed), weight))
@@ -301,20 +270,18 @@ def trace(scene, camera, settings, known, tables, recorder, samples):
         if dr.hint(tables is not None and settings.shadow_roulette, mode="scalar"):
             # As if the BSDF alone drew directions: most lights are played for before the map is asked about them.
             alone = dr.select(toward.delta, 1, power_heuristic(toward_pdf, bsdf_pdf))
-            adds = mi.luminance(to_rgb(throughput * unweighted * alone, ray.wavelengths)) / pixel_value
-            shadow = dr.select(cell != odis.NO_CELL, guide_tables.shadow_ray_probability(tables, adds), 1)
+            adds = luminance_of(throughput * unweighted * alone, ray.wavelengths)
+            shadow = vertex.play_for_shadow_ray(tables, adds, cell, pixel_value)
             lightable &= draws.next() < shadow
             unweighted /= shadow
         rays += dr.select(lightable, mi.UInt32(1), mi.UInt32(0))
         seen = lightable & ~scene.ray_test(si.spawn_ray_to(toward.p), coherent=False, active=lightable)
         light_mix_pdf = mi.Float(bsdf_pdf)
         if dr.hint(tables is not None, mode="scalar"):
-            light_map_pdf = cell_map.pdf(toward.d, guided & seen & ~toward.delta)
-            light_mix_pdf = dr.fma(1 - fraction, light_map_pdf * share_of_smooth - bsdf_pdf, bsdf_pdf)
+            light_mix_pdf = mixture.pdf(toward.d, bsdf_pdf, share_of_smooth, seen & ~toward.delta)
             light_mix_pdf = dr.select(guided, light_mix_pdf, bsdf_pdf)
         mis = dr.select(toward.delta, 1, power_heuristic(toward_pdf, light_mix_pdf))
-        if dr.hint(lights.uneven is not None, mode="scalar"):
-            mis = weight_toward(lights, mis, place, choice, toward_pdf, bsdf_pdf, lightable)
+        mis = vertex.weight_toward(lights, mis, place, choice, toward_pdf, bsdf_pdf, lightable)
         direct = unweighted * mis
         radiance += dr.select(seen, throughput * direct, 0)
 
@@ -322,12 +289,7 @@ def trace(scene, camera, settings, known, tables, recorder, samples):
         weight = dr.select(active & dr.all(dr.isfinite(weight)), weight, 0)
         eta *= dr.select(from_map | passes, 1, sampled.eta)
         most = dr.max(throughput * weight)
-        plays = active & (most > 0) & (depth >= settings.rr_depth)
-        survival = dr.minimum(most * eta * eta, 0.95)
-        if dr.hint(tables is not None and settings.learned_roulette, mode="scalar"):
-            plays &= cell == odis.NO_CELL
-            survival = dr.maximum(survival, tables.least_survival)  # as on arrival
-        survival = dr.select(plays, survival, 1)
+        survival = vertex.play_on_departure(settings, tables, most, eta, depth, cell, active)
         goes_on = active & (most > 0) & (draws.next() < survival)
         weight = dr.select(goes_on, weight / survival, 0)
 
@@ -335,27 +297,20 @@ def trace(scene, camera, settings, known, tables, recorder, samples):
             previous_row = row
             row = recording.new_row(recorder, active & recorded)
             has_row = row != recording.NO_ROW
-            c, w = to_rgb(dr.select(seen, direct, 0), ray.wavelengths), to_rgb(weight, ray.wavelengths)
-            t = to_rgb(throughput, ray.wavelengths)
-            light_sum = mi.luminance(to_rgb(dr.select(seen, throughput * unweighted, 0), ray.wavelengths))
-            tag = (depth + 1) | dr.select(discrete, mi.UInt32(recording.DISCRETE), 0) \
-                | dr.select(both_sides, mi.UInt32(recording.BOTH_SIDES), 0)
-            p, n, d = si.p, normal, toward.d
-            recording.write(recorder, row, 0, [p.x, p.y, p.z, n.x, n.y, n.z, recording.bits(pixel),
-                                               recording.bits(number)], has_row)
-            recording.write(recorder, row, 1, [wi.x, wi.y, wi.z, pdf, w.x, w.y, w.z, survival], has_row)
-            recording.write(recorder, row, 2, [c.x, c.y, c.z, light_sum, d.x, d.y, d.z,
-                                               dr.select(seen & ~toward.delta, toward_pdf, 0)], has_row)
             group, group_choice = lights.group_of(place, choice * shadow, lightable)
             can_guide = (flags & GUIDABLE) != 0
-            guidable = dr.select(discrete, 1, share_of_smooth)
-            recording.write(recorder, row, 3, [bsdf_pdf, dr.select(can_guide, bsdf_pdf, 0), recording.bits(group),
-                                               group_choice,
-                                               dr.select(can_guide, guidable_pdf, 0), dr.select(can_guide, guidable, 0),
-                                               roughness, recording.bits(tag)], has_row)
-            recording.write(recorder, row, 4, [t.x, t.y, t.z, survival_on_arrival, mi.Float(rays),
-                                               recording.bits(previous_row)], has_row)
-            recording.write(recorder, row, 5, [mi.Float(0)] * 5 + [mi.Float(dr.inf)], has_row)
+            recording.write_vertex(recorder, row, recording.Vertex(
+                position=si.p, normal=normal, pixel=pixel, sample=number, wi=wi, pdf=pdf,
+                weight=to_rgb(weight, ray.wavelengths), survival=survival,
+                direct=to_rgb(dr.select(seen, direct, 0), ray.wavelengths),
+                light=luminance_of(dr.select(seen, throughput * unweighted, 0), ray.wavelengths),
+                light_direction=toward.d, light_pdf=dr.select(seen & ~toward.delta, toward_pdf, 0),
+                light_bsdf_pdf=bsdf_pdf, light_guidable_pdf=dr.select(can_guide, bsdf_pdf, 0), light_group=group,
+                light_group_probability=group_choice, guidable_pdf=dr.select(can_guide, guidable_pdf, 0),
+                guidable_probability=dr.select(can_guide, dr.select(discrete, 1, share_of_smooth), 0),
+                roughness=roughness, tag=recording.tag_of(depth, discrete, both_sides),
+                throughput=to_rgb(throughput, ray.wavelengths), arrival=[survival_on_arrival], rays=rays,
+                previous_row=previous_row), has_row)
             row = dr.select(active, row, previous_row)
 
         valid |= arrived & ~mi.has_flag(sampled.sampled_type, mi.BSDFFlags.Null)

@@ -55,6 +55,10 @@ class RandomNumbers:
         """Every vertex has dimensions of its own, whatever the vertices before it drew."""
         return Draws(self, OF_CAMERA + OF_VERTEX * depth)
 
+    def further(self, count):
+        """An independent number, uniform in [0, 1): the one after `count` others. For what draws any number of them."""
+        return to_unit(mix_bits(mix_bits(self.key ^ (count * GOLDEN_RATIO)) ^ self.index))
+
 
 class Draws:
     """Numbers of consecutive dimensions. Each number, or pair, is the one-dimensional or two-dimensional Sobol' sequence,

@@ -15,6 +15,8 @@ import odis
 #   3 light BSDF pdf, light guidable pdf, light group,        distance, -, -
 #     its probability, guidable pdf, guidable
 #     probability, roughness, depth and flags
+# In scenes with media what multiplies light on its way from the vertex to the one before, (attenuation over survival on
+# arrival) takes the place of that survival, and the two that are free in packet 4.
 # Once the path is complete a further packet is written, apart, as Dr.Jit copies arrays that a kernel reads and writes:
 # radiance (3), indirect, emission, rays after, -, -.
 PACKET = 8
@@ -32,11 +34,12 @@ class Recorder:
     completions: object  # Float, [capacity][PACKET]
     count: object  # UInt32: rows asked for, which may be more than there are
     capacity: object  # UInt32
+    attenuated: bool  # whether there are media
 
 
-def make_recorder(capacity):
+def make_recorder(capacity, attenuated=False):
     recorder = Recorder(dr.empty(mi.Float, capacity * ROW), dr.empty(mi.Float, capacity * PACKET),
-                        dr.zeros(mi.UInt32, 1), mi.UInt32(capacity))
+                        dr.zeros(mi.UInt32, 1), mi.UInt32(capacity), attenuated)
     dr.make_opaque(recorder.count, recorder.capacity)
     return recorder
 
@@ -58,10 +61,89 @@ def color_in(packet, first):
     return mi.Color3f(packet[first], packet[first + 1], packet[first + 2])
 
 
+def tag_of(depth, discrete, both_sides):
+    """Vertex.tag, of the number of vertices before."""
+    return (depth + 1) | dr.select(discrete, mi.UInt32(DISCRETE), 0) | dr.select(both_sides, mi.UInt32(BOTH_SIDES), 0)
+
+
 def new_row(recorder, active):
     """A free row for each active lane; NO_ROW where there is none left."""
     row = dr.scatter_inc(recorder.count, mi.UInt32(0), active)
     return dr.select(active & (row < recorder.capacity), row, NO_ROW)
+
+
+@dataclass
+class Vertex:
+    """What is known of a vertex once it has drawn a direction: the fields of odis.PathVertices, as Dr.Jit's arrays; colours
+    are mi.Color3f."""
+
+    position: object
+    normal: object
+    pixel: object
+    sample: object
+    wi: object
+    pdf: object
+    weight: object
+    survival: object
+    direct: object
+    light: object
+    light_direction: object
+    light_pdf: object
+    light_bsdf_pdf: object
+    light_guidable_pdf: object
+    light_group: object
+    light_group_probability: object
+    guidable_pdf: object
+    guidable_probability: object
+    roughness: object
+    tag: object  # UInt32: depth, from 1 on, and flags
+    throughput: object  # Color3f: of the path up to here
+    arrival: list  # survival on arrival; with media, attenuation over survival, of three channels
+    rays: object  # UInt32: of the path up to here
+    previous_row: object
+
+
+def write_vertex(recorder, row, v, active):
+    p, n, d, w, c, l, t = v.position, v.normal, v.wi, v.weight, v.direct, v.light_direction, v.throughput
+    write(recorder, row, 0, [p.x, p.y, p.z, n.x, n.y, n.z, bits(v.pixel), bits(v.sample)], active)
+    write(recorder, row, 1, [d.x, d.y, d.z, v.pdf, w.x, w.y, w.z, v.survival], active)
+    write(recorder, row, 2, [c.x, c.y, c.z, v.light, l.x, l.y, l.z, v.light_pdf], active)
+    write(recorder, row, 3, [v.light_bsdf_pdf, v.light_guidable_pdf, bits(v.light_group), v.light_group_probability,
+                             v.guidable_pdf, v.guidable_probability, v.roughness, bits(v.tag)], active)
+    write(recorder, row, 4, [t.x, t.y, t.z, v.arrival[0], mi.Float(v.rays), bits(v.previous_row), *v.arrival[1:]], active)
+    write(recorder, row, 5, [mi.Float(0)] * 5 + [mi.Float(dr.inf)], active)
+
+
+@dataclass
+class Met:
+    """Emission that the ray of a vertex met by now, where it may meet several lights."""
+
+    emission: object  # Color3f: as attenuated
+    weight: object  # MIS weight of that, in the mean
+    light_pdf: object  # of the brightest one
+
+
+def nothing_met():
+    return Met(mi.Color3f(0), mi.Float(0), mi.Float(0))
+
+
+def also_met(met, emission, weight, light_pdf):
+    """With a further emission (odis::PathRecorder)."""
+    before, now = mi.luminance(met.emission), mi.luminance(emission)
+    both = before + now
+    return Met(met.emission + emission, dr.select(both > 0, (before * met.weight + now * weight) / both, met.weight),
+               dr.select(now > before, light_pdf, met.light_pdf))
+
+
+def write_met(recorder, row, met, distance, active):
+    """distance: to the next vertex."""
+    color = met.emission
+    write(recorder, row, 5, [color.x, color.y, color.z, met.weight, met.light_pdf, distance], active)
+
+
+def factor_of(spectrum):
+    """A factor of radiance as one of colours."""
+    return mi.Color3f(dr.mean(spectrum)) if mi.is_spectral else mi.Color3f(spectrum)
 
 
 def complete_paths(recorder, last_row, ended_with, rays):
@@ -84,7 +166,8 @@ def complete_paths(recorder, last_row, ended_with, rays):
         completion = [radiance.x, radiance.y, radiance.z, mi.luminance(to_pixel * beyond),
                       mi.luminance(to_pixel * emission), rays - of_path[4], mi.Float(0), mi.Float(0)]
         dr.scatter(recorder.completions, mi.ArrayXf(completion), row, active)
-        beyond = (direct + weight * radiance) / of_path[3]
+        beyond = direct + weight * radiance
+        beyond = beyond * mi.Color3f(of_path[3], of_path[6], of_path[7]) if recorder.attenuated else beyond / of_path[3]
         return dr.reinterpret_array(mi.UInt32, of_path[5]), beyond
 
     dr.while_loop((row, beyond), lambda row, beyond: row != NO_ROW, body, label="odis: complete paths")
