@@ -4,9 +4,11 @@
     bench/in_mitsuba.py SCENE.xml... [--variant llvm_ad_rgb] [--pixels 230400] [--spp 4,16] [--seeds 4] [--cache DIR]
     bench/in_mitsuba.py SCENE.xml... --methods "odis=,cached=--cached,paper=--preset paper-fast --set map-cosine=on"
     bench/in_mitsuba.py SCENE.xml... --rfilter file --methods "splat=,pixels=--film pixels"
+    bench/in_mitsuba.py bench/media/*.xml --pixels 14400 --reference-spp 2048 --methods "odis=,cached=--cached"
 
 Needs `pip install ".[mitsuba]"`. All methods run in one process and take turns, with max_depth 13, rr_depth 5,
-independent samples and the filter that the scene's file names, or another (--rfilter). Times are wall clock, without
+independent samples and the filter that the scene's file names, or another (--rfilter). Scenes with media are compared
+with `volpath` in place of `path`, with the max_depth and rr_depth of their files. Times are wall clock, without
 Dr.Jit's code generation and compilation, and processor time: each kind renders once to warm up, and an image for which
 kernels were compiled is rendered again. Errors are 0.1 %-trimmed relMSE as src/eval/metrics.h has it, to
 references of `path` with other seeds and the same filter. Times are the least over seeds, as other work on the machine
@@ -24,6 +26,7 @@ import time
 import drjit as dr
 import mitsuba as mi
 import numpy as np
+from odis.mitsuba.from_scene import is_volumetric, path_tracer_of, settings_of
 from odis.mitsuba.kernel_history import compile_seconds
 from odis.mitsuba.scene_files import load_file
 from relative_error import trimmed_relative_error
@@ -53,18 +56,26 @@ def render(scene, integrator, spp, seed):
     return image, seconds - compiling, processor
 
 
+def path_tracer_beside(scene):
+    """The integrator of Mitsuba that `odis` is compared with, and the settings of both."""
+    if is_volumetric(scene):
+        return "volpath", settings_of(path_tracer_of(scene)[0])
+    return "path", SETTINGS
+
+
 def reference_of(scene, path, args):
-    """An image by `path` with many samples; kept in a file between runs."""
+    """An image by `path`, or `volpath`, with many samples; kept in a file between runs."""
     if args.reference_spp % REFERENCE_PART:
         raise SystemExit(f"--reference-spp: expected a multiple of {REFERENCE_PART}")
     size = list(scene.sensors()[0].film().crop_size())
     rfilter = "" if args.rfilter == "box" else f" {scene.sensors()[0].film().rfilter()}"
+    kind, settings = path_tracer_beside(scene)
     key = (f"{os.path.abspath(path)} {os.stat(path).st_mtime} {size} {args.variant} {args.reference_spp} "
-           f"{SETTINGS}{rfilter}")
+           f"{settings}{rfilter}")
     file = os.path.join(args.cache, f"{name_of(path)}-{hashlib.sha256(key.encode()).hexdigest()[:16]}.npz")
     if os.path.exists(file):
         return np.load(file)["image"]
-    integrator, begin = mi.load_dict({"type": "path", **SETTINGS}), time.perf_counter()
+    integrator, begin = mi.load_dict({"type": kind, **settings}), time.perf_counter()
     parts = args.reference_spp // REFERENCE_PART
     image = sum(np.array(mi.render(scene, integrator=integrator, spp=REFERENCE_PART, seed=REFERENCE_SEED + part),
                          np.float64)[..., :3] for part in range(parts)) / parts
@@ -77,7 +88,8 @@ def reference_of(scene, path, args):
 
 
 def name_of(path):
-    return os.path.basename(os.path.dirname(os.path.abspath(path)))
+    stem = os.path.splitext(os.path.basename(path))[0]
+    return os.path.basename(os.path.dirname(os.path.abspath(path))) if stem.startswith("scene") else stem
 
 
 def parse_methods(text):
@@ -101,8 +113,9 @@ def parse_methods(text):
 def measure(scene, reference, spp, seeds, methods):
     """For each method a row: seconds, ratios to `path` of time, processor time and error, rays a sample; then the mean of
     the images over the reference's, with its standard error."""
-    integrators = {"path": mi.load_dict({"type": "path", **SETTINGS})}
-    integrators |= {name: mi.load_dict({"type": "odis", **parameters, **SETTINGS})
+    kind, settings = path_tracer_beside(scene)
+    integrators = {"path": mi.load_dict({"type": kind, **settings})}
+    integrators |= {name: mi.load_dict({"type": "odis", **parameters, **settings})
                     for name, parameters in methods.items()}
     for integrator in integrators.values():
         render(scene, integrator, spp, REFERENCE_SEED - 1)

@@ -15,3 +15,8 @@ def array_of(kind, numbers):
     copy = dr.gather(kind, mapped, dr.arange(mi.UInt32, dr.width(mapped)))
     dr.eval(copy)
     return copy
+
+
+def number_of(pointer):
+    """The number of a single pointer (mi.BSDFPtr and the like) in Dr.Jit's registry."""
+    return int(dr.reinterpret_array(mi.UInt32, pointer)[0])

@@ -237,7 +237,8 @@ class Rendering:
             if kind == "odis":
                 return from_scene.guide(scene, preset=args.preset, settings=" ".join(args.settings), cached=args.cached,
                                         film=args.film, **given, **({"aovs": args.aovs} if args.aovs else {}))
-            path = {"type": "path", **from_scene.settings_of_scene(scene), **given}
+            kind = "volpath" if from_scene.is_volumetric(scene) else "path"
+            path = {"type": kind, **from_scene.settings_of_scene(scene), **given}
             return mi.load_dict({"type": "aov", "aovs": args.aovs, "image": path} if args.aovs else path)
         except (RuntimeError, TypeError, ValueError) as error:
             raise Problem(BAD_INPUT, sentence_of(error)) from None

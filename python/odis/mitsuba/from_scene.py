@@ -7,6 +7,7 @@ import mitsuba as mi
 
 from . import checks
 from .aovs import make_aovs, nested_integrators
+from .media import media_of
 from .parameters import NAMES, TEXTS
 
 PATH_TRACERS = {"PathIntegrator", "OdisIntegrator", "PRBIntegrator", "BasicPRBIntegrator", "PathProjectiveIntegrator"}
@@ -37,20 +38,21 @@ def settings_of(integrator):
     return {**settings, "hide_emitters": bool(integrator.hide_emitters)}
 
 
-def has_media(scene):
-    return any(shape.is_medium_transition() for shape in scene.shapes()) or \
-        any(sensor.get_medium() is not None for sensor in scene.sensors())
+def is_volumetric(scene):
+    """Whether a scene's image is one of `volpath`, not of `path`: it has media, or names an integrator for such."""
+    integrator, _ = path_tracer_of(scene)
+    named = integrator is not None and (_name(integrator) in VOLUMETRIC or getattr(integrator, "volumetric", False))
+    return named or bool(media_of(scene))
 
 
 def settings_of_scene(scene):
-    """The settings that a path tracer takes over from a scene's integrator. Mitsuba's log warns of what it can't do."""
+    """The settings that a path tracer takes over from a scene's integrator. Mitsuba's log warns where it is of another
+    kind."""
     integrator, _ = path_tracer_of(scene)
     if integrator is not None and _name(integrator) not in PATH_TRACERS | VOLUMETRIC:
-        mi.Log(mi.LogLevel.Warn, f"odis: {_name(integrator)} is no path tracer: the image will be that of `path` with "
-                                 "its default parameters")
-    if has_media(scene):
-        mi.Log(mi.LogLevel.Warn, "odis: the scene has participating media, which are not rendered: light passes them "
-                                 "as it does with `path`")
+        tracer = "volpath" if is_volumetric(scene) else "path"
+        mi.Log(mi.LogLevel.Warn, f"odis: {_name(integrator)} is no path tracer: the image will be that of `{tracer}` "
+                                 "with its default parameters")
     return settings_of(integrator)
 
 
@@ -77,11 +79,10 @@ def guide(scene, **parameters):
         image = mi.render(scene, integrator=odis.mitsuba.guide(scene), spp=16)
 
     The scene stays as it is. Further arguments are parameters of `odis` that take the place of the scene's.
-    Participating media are not rendered, and an integrator that traces no paths is replaced by `odis` with default
-    parameters; Mitsuba's log warns of both.
+    An integrator that traces no paths is replaced by `odis` with default parameters; Mitsuba's log warns of that.
     """
     checks.scene("guide", scene)
-    integrator = _make({**settings_of_scene(scene), **parameters})
+    integrator = _make({**settings_of_scene(scene), "volumetric": is_volumetric(scene), **parameters})
     if integrator.aovs is None:
         path_tracer, around = path_tracer_of(scene)
         if around is not None:

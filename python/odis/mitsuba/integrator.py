@@ -160,6 +160,7 @@ def make_integrator():
 
     class OdisIntegrator(mi.SamplingIntegrator):
         """Parameters: max_depth (-1), rr_depth (5) and hide_emitters (false), as of `path`; aovs (""), as of `aov`;
+        volumetric (false): as of `volpath`, which scenes with media always are;
         cached (false): paths may end with cached radiance, which biases the image (docs/cached.md);
         film ("splat"): each sample is added to all pixels that the film's filter reaches, as those of `path` are, or,
         with "pixels", drawn by the filter for one, as a denoiser wants it;
@@ -187,9 +188,7 @@ def make_integrator():
             self.scene, self.known = None, None
             self.progress, self.separate_compile = None, False
             self.aovs = make_aovs(mi.load_dict({"type": "aov", "aovs": parameters.aovs})) if parameters.aovs else None
-            self.unguided = mi.load_dict({"type": "path", "max_depth": self.settings.max_depth,
-                                          "rr_depth": self.settings.rr_depth,
-                                          "hide_emitters": self.settings.hide_emitters})
+            self.unguided = {}
             self.said_unguided = False
 
         def render(self, scene, sensor=0, seed=0, spp=0, develop=True, evaluate=True):
@@ -201,9 +200,9 @@ def make_integrator():
             spp = checks.whole_number("spp", spp, 0) or sensor.sampler().sample_count()
             self.seconds = defaultdict(float)
             with dr.suspend_grad():
-                if self.scene is not scene:
+                if self.scene is not scene or not self.known.has_medium_of(sensor):
                     with self._timed("prepare"):
-                        self._meet(scene)
+                        self._meet(scene, sensor)
                 image = self._render(sensor, seed, spp)
                 if self.aovs is not None:
                     with self._timed("aovs"):
@@ -225,11 +224,16 @@ def make_integrator():
 
         def sample(self, scene, sampler, ray, medium=None, active=True):
             """Single rays, which other integrators ask for, are traced without guidance."""
+            kind = "volpath" if self.settings.volumetric or media_of(scene) else "path"
             if not self.said_unguided:
                 self.said_unguided = True
-                mi.Log(mi.LogLevel.Warn, "odis: another integrator asks for single rays, which are traced as `path` "
+                mi.Log(mi.LogLevel.Warn, f"odis: another integrator asks for single rays, which are traced as `{kind}` "
                                          "does; for AOVs, odis has the parameter `aovs`")
-            radiance, valid, _ = self.unguided.sample(scene, sampler, ray, medium, active)
+            if kind not in self.unguided:
+                self.unguided[kind] = mi.load_dict({"type": kind, "max_depth": self.settings.max_depth,
+                                                    "rr_depth": self.settings.rr_depth,
+                                                    "hide_emitters": self.settings.hide_emitters})
+            radiance, valid, _ = self.unguided[kind].sample(scene, sampler, ray, medium, active)
             values = self.aovs.sample(scene, sampler, ray, medium, active)[2] if self.aovs is not None else []
             return radiance, valid, values
 
@@ -239,10 +243,14 @@ def make_integrator():
         def to_string(self):
             return f"OdisIntegrator[max_depth = {self.settings.max_depth}, rr_depth = {self.settings.rr_depth}]"
 
-        def _meet(self, scene):
+        @property
+        def volumetric(self):
+            return self.settings.volumetric
+
+        def _meet(self, scene, sensor):
             """Finds out what there is to know of a scene once."""
             materials, left_out = make_material_table(scene)
-            found, media = media_of(scene), None
+            found, media = media_of(scene, sensor), None
             if found or self.settings.volumetric:
                 media, of_phases = make_media_table(found)
                 left_out += of_phases

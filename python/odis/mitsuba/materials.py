@@ -6,7 +6,7 @@ import drjit as dr
 import mitsuba as mi
 import numpy as np
 
-from .arrays import array_of
+from .arrays import array_of, number_of
 
 # Lobes of a smaller roughness (alpha of a microfacet distribution) are left alone, as the library's networks expect.
 LEAST_GUIDED_ROUGHNESS = 0.05
@@ -82,8 +82,7 @@ def make_material_table(scene):
     found = {}
     for node in mi.traverse(scene).hierarchy:
         if isinstance(node, mi.BSDF):
-            number = int(dr.reinterpret_array(mi.UInt32, mi.BSDFPtr(node))[0])
-            found[number] = (node.class_name(), *describe(node))
+            found[number_of(mi.BSDFPtr(node))] = (node.class_name(), *describe(node))
     flags = np.zeros(max(found, default=0) + 1, np.uint32)
     roughness = np.ones(flags.size, np.float32)
     for number, (_, flag, alpha) in found.items():

@@ -6,16 +6,17 @@ import drjit as dr
 import mitsuba as mi
 import numpy as np
 
-from .arrays import array_of
+from .arrays import array_of, number_of
 from .materials import GUIDABLE, LEAST_GUIDED_ROUGHNESS, SEES_THROUGH, SMOOTH, material_at, mean_of
 
 # Shadow rays of which less is left are played for, so that those through dense media end.
 LEAST_TRANSMITTANCE = 0.1
 
 
-def media_of(scene):
-    """The media of a scene, those of its sensors included."""
-    return [node for node in mi.traverse(scene).hierarchy if isinstance(node, mi.Medium)]
+def media_of(scene, sensor=None):
+    """The media of a scene, those of its sensors included, and that of a further sensor."""
+    nodes = [*mi.traverse(scene).hierarchy, sensor and sensor.get_medium()]
+    return [node for node in nodes if isinstance(node, mi.Medium)]
 
 
 def nested_phases(phase):
@@ -25,9 +26,9 @@ def nested_phases(phase):
 def mean_cosine_of_table(values):
     """The mean cosine of a `tabphase`, whose values lie evenly over [-1, 1] with straight lines between."""
     cosine = np.linspace(-1, 1, len(values))
-    at = np.linspace(-1, 1, 64 * (len(values) - 1) + 1)
-    density = np.interp(at, cosine, values)
-    return (density * at).sum() / max(density.sum(), 1e-30)
+    a, b, from_a, to_b = values[:-1], values[1:], cosine[:-1], cosine[1:]
+    total = ((a + b) / 2).sum()
+    return ((from_a * a + to_b * b) / 3 + (from_a * b + to_b * a) / 6).sum() / max(total, 1e-30)
 
 
 def phase_roughness(phase):
@@ -59,6 +60,7 @@ class MediaTable:
     entries: object  # UInt32: flags and roughness, by the numbers of phase functions in Dr.Jit's registry (material_at)
     any_homogeneous: bool
     any_heterogeneous: bool
+    numbers: set  # of the media in Dr.Jit's registry
 
 
 def make_media_table(media):
@@ -66,13 +68,13 @@ def make_media_table(media):
     found = {}
     for medium in media:
         phase = medium.phase_function()
-        number = int(dr.reinterpret_array(mi.UInt32, mi.PhaseFunctionPtr(phase))[0])
-        found[number] = (phase.class_name(), *describe_phase(phase))
+        found[number_of(mi.PhaseFunctionPtr(phase))] = (phase.class_name(), *describe_phase(phase))
     entries = np.zeros(max(found, default=0) + 1, np.uint32)
     for number, (_, flags, roughness) in found.items():
         entries[number] = flags | int(round(roughness * 65535)) << 16
     homogeneous = [medium.is_homogeneous() for medium in media]
-    table = MediaTable(array_of(mi.UInt32, entries), any(homogeneous), not all(homogeneous))
+    table = MediaTable(array_of(mi.UInt32, entries), any(homogeneous), not all(homogeneous),
+                       {number_of(mi.MediumPtr(medium)) for medium in media})
     dr.make_opaque(table)
     return table, sorted({name for name, flags, _ in found.values() if not flags & GUIDABLE})
 

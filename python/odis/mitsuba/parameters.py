@@ -11,7 +11,7 @@ from .film import FILMS
 from .settings import GivenSettings
 
 TEXTS = ("aovs", "film", "preset", "settings")
-NAMES = ("max_depth", "rr_depth", "hide_emitters", "cached", *TEXTS)
+NAMES = ("max_depth", "rr_depth", "hide_emitters", "volumetric", "cached", *TEXTS)
 
 
 @dataclass
@@ -30,7 +30,8 @@ def read_parameters(props):
     flag = lambda name: of_type(name, props.get(name, False), bool, "true or false")
     settings = path.Settings(
         whole_number("max_depth", props.get("max_depth", -1), -1, expected="-1 (no limit) or a whole number from 0"),
-        whole_number("rr_depth", props.get("rr_depth", 5), 1), flag("hide_emitters"), **given.of_paths())
+        whole_number("rr_depth", props.get("rr_depth", 5), 1), flag("hide_emitters"), volumetric=flag("volumetric"),
+        **given.of_paths())
     cached = flag("cached")
     if cached and mi.is_spectral:
         raise ValueError(f"odis: cached: expected a variant in rgb, found {mi.variant()}")

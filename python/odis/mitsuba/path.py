@@ -8,6 +8,7 @@ import mitsuba as mi
 import odis
 
 from . import guide_tables, recording, vertex
+from .arrays import number_of
 from .materials import BOTH_SIDES, GUIDABLE, HAS_DELTA, SEES_THROUGH, SMOOTH, material_at
 from .random_numbers import RandomNumbers
 from .vertex import luminance_of, power_heuristic, to_rgb
@@ -41,6 +42,10 @@ class SceneTables:
     materials: object  # MaterialTable
     lights: object  # LightTable
     media: object = None  # MediaTable; None where paths are those of `path`
+
+    def has_medium_of(self, sensor):
+        medium = sensor.get_medium()
+        return medium is None or (self.media is not None and number_of(mi.MediumPtr(medium)) in self.media.numbers)
 
 
 @dataclass

@@ -57,7 +57,7 @@ class RandomNumbers:
 
     def further(self, count):
         """An independent number, uniform in [0, 1): the one after `count` others. For what draws any number of them."""
-        return to_unit(mix_bits(mix_bits(self.key ^ (count * GOLDEN_RATIO)) ^ self.index))
+        return to_unit(mix_bits(mix_bits(self.key ^ (~count * GOLDEN_RATIO)) ^ self.index))
 
 
 class Draws:

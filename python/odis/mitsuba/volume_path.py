@@ -70,7 +70,7 @@ def trace(scene, camera, settings, known, tables, recorder, samples):
     previous_p, previous_n = mi.Point3f(0), mi.Normal3f(0)
     previous_pdf, previous_bsdf_pdf, previous_delta = mi.Float(1), mi.Float(1), mi.Bool(True)
     previous_cell, previous_fraction = mi.UInt32(odis.NO_CELL), mi.Float(0)
-    row, recorded = mi.UInt32(recording.NO_ROW), mi.Bool(False)
+    row, recorded, vertices = mi.UInt32(recording.NO_ROW), mi.Bool(False), mi.UInt32(0)
     # What the ray from there met by now: what multiplied it, and emission (recording.Met).
     attenuation, met_before, travelled = mi.Spectrum(1), recording.nothing_met(), mi.Float(0)
     has_pixel_maps = tables is not None and tables.pixel_cells is not None
@@ -93,7 +93,7 @@ def trace(scene, camera, settings, known, tables, recorder, samples):
         valid = dr.select(begins, mi.Bool(sees_environment), valid)
         previous_delta = previous_delta | begins
         if dr.hint(recorder is not None, mode="scalar"):
-            row = dr.select(begins, recording.NO_ROW, row)
+            row, vertices = dr.select(begins, recording.NO_ROW, row), dr.select(begins, 0, vertices)
             recorded = dr.select(begins, chosen >= RECORDED, recorded)
             met_before = dr.select(begins, recording.nothing_met(), met_before)
         if dr.hint(tables is not None, mode="scalar"):
@@ -251,8 +251,10 @@ def trace(scene, camera, settings, known, tables, recorder, samples):
             unweighted /= shadow
         crosses = ~in_medium & si.is_medium_transition()
         medium_there = dr.select(crosses, si.target_medium(toward.d), medium)
-        left, shadow_rays, drawn = transmittance(scene, known, at.spawn_ray_to(toward.p), medium_there, numbers, drawn,
-                                                 lightable)
+        toward_ray = at.spawn_ray_to(toward.p)
+        # An environment lies beyond all media: one without an end lets nothing of it through, as rays find out, too.
+        toward_ray.maxt = dr.select(light_place < lights.regions, dr.inf, toward_ray.maxt)
+        left, shadow_rays, drawn = transmittance(scene, known, toward_ray, medium_there, numbers, drawn, lightable)
         rays += shadow_rays
         seen = lightable & dr.any(left != 0)
         unweighted *= left
@@ -289,11 +291,12 @@ def trace(scene, camera, settings, known, tables, recorder, samples):
                 light_bsdf_pdf=bsdf_pdf, light_guidable_pdf=dr.select(can_guide, bsdf_pdf, 0), light_group=group,
                 light_group_probability=group_choice, guidable_pdf=dr.select(can_guide, guidable_pdf, 0),
                 guidable_probability=dr.select(can_guide, dr.select(discrete, 1, share_of_smooth), 0),
-                roughness=roughness, tag=recording.tag_of(depth, discrete, both_sides),
+                roughness=roughness, tag=recording.tag_of(vertices, discrete, both_sides),
                 throughput=to_rgb(throughput, ray.wavelengths),
                 arrival=list(recording.factor_of(attenuation) / survival_on_arrival), rays=rays,
                 previous_row=previous_row), new_row != recording.NO_ROW)
             row = dr.select(is_vertex, new_row, row)
+            vertices += dr.select(is_vertex, mi.UInt32(1), 0)
             met_before = dr.select(is_vertex, recording.nothing_met(), met_before)
 
         valid |= in_medium | (arrived & ~passes)
