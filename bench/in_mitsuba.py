@@ -4,14 +4,14 @@
     bench/in_mitsuba.py SCENE.xml... [--variant llvm_ad_rgb] [--pixels 230400] [--spp 4,16] [--seeds 4] [--cache DIR]
     bench/in_mitsuba.py SCENE.xml... --methods "odis=,cached=--cached,paper=--preset paper-fast --set map-cosine=on"
     bench/in_mitsuba.py SCENE.xml... --rfilter file --methods "splat=,pixels=--film pixels"
-    bench/in_mitsuba.py bench/media/*.xml --pixels 14400 --reference-spp 2048 --methods "odis=,cached=--cached"
+    bench/in_mitsuba.py bench/media/*.xml --pixels 14400 --references DIR --methods "odis=,cached=--cached"
 
 Needs `pip install ".[mitsuba]"`. All methods run in one process and take turns, with max_depth 13, rr_depth 5,
 independent samples and the filter that the scene's file names, or another (--rfilter). Scenes with media are compared
 with `volpath` in place of `path`, with the max_depth and rr_depth of their files. Times are wall clock, without
 Dr.Jit's code generation and compilation, and processor time: each kind renders once to warm up, and an image for which
 kernels were compiled is rendered again. Errors are 0.1 %-trimmed relMSE as src/eval/metrics.h has it, to
-references of `path` with other seeds and the same filter. Times are the least over seeds, as other work on the machine
+references of `path` with other seeds and the same filter, or to images of a folder (--references). Times are the least over seeds, as other work on the machine
 only adds to them, errors and rays are medians; ratios are to `path`, and error × time is that of the processor. The mean
 is that of all seeds' images, over the reference's, with its standard error without the reference's own. Scenes that do not load get `-`, and the reason on stderr.
 """
@@ -63,8 +63,19 @@ def path_tracer_beside(scene):
     return "path", SETTINGS
 
 
+def image_of_file(path, size):
+    """The colours of an EXR file, averaged down to a width and height."""
+    image = np.array(mi.Bitmap(path).convert(mi.Bitmap.PixelFormat.RGB, mi.Struct.Type.Float32, srgb_gamma=False), np.float64)
+    width, height = size
+    if image.shape[0] % height or image.shape[1] % width:
+        raise ValueError(f"{path}: expected a multiple of {width}x{height}, found {image.shape[1]}x{image.shape[0]}")
+    return image.reshape(height, image.shape[0] // height, width, image.shape[1] // width, 3).mean(axis=(1, 3))
+
+
 def reference_of(scene, path, args):
-    """An image by `path`, or `volpath`, with many samples; kept in a file between runs."""
+    """An image by `path`, or `volpath`, with many samples, kept in a file between runs; or that of a folder."""
+    if args.references:
+        return image_of_file(os.path.join(args.references, f"{name_of(path)}.exr"), scene.sensors()[0].film().crop_size())
     if args.reference_spp % REFERENCE_PART:
         raise SystemExit(f"--reference-spp: expected a multiple of {REFERENCE_PART}")
     size = list(scene.sensors()[0].film().crop_size())
@@ -157,6 +168,8 @@ def main():
                         "one that each file names (file)")
     parser.add_argument("--seeds", type=int, default=4)
     parser.add_argument("--reference-spp", type=int, default=256)
+    parser.add_argument("--references", metavar="DIR", help="takes DIR/SCENE.exr for references, such as larger images by "
+                        "odis render --integrator path")
     parser.add_argument("--cache", default="out/mitsuba-references", metavar="DIR", help="keeps references there")
     args = parser.parse_args()
     mi.set_variant(args.variant)

@@ -15,11 +15,6 @@ from .vertex import luminance_of, power_heuristic, to_rgb
 
 VALID = 1 << 31  # marks samples in Samples.result, beside their number of rays
 RECORDED = 1 << 31  # marks samples in Samples.chosen whose vertices are recorded
-# Smoother surfaces end no paths: what they scatter depends too much on the direction. Nor do coats that are met at an
-# angle of a smaller cosine: half of the draws at a cosine of 0.2 are mirrored, for an index of refraction of 1.5 over a
-# diffuse reflectance of 0.5. Where light passes only diffuse surfaces do: what is refracted spreads over a quarter of
-# the angle of a reflection of the same roughness, or less.
-LEAST_CACHED_ROUGHNESS, LEAST_CACHED_COSINE = 0.3, 0.2
 
 
 @dataclass
@@ -64,6 +59,16 @@ class Samples:
     lanes: object = None  # UInt32
     last_row: object = None  # UInt32 [count]: of the path's last recorded vertex, or NO_ROW; None without a recorder
     ended_with: object = None  # Float [count][3]: cached radiance that the path ended with; None without a recorder
+
+
+def next_sample(samples, index, begins, sample, pixel, number):
+    """The entry of `chosen`, number, pixel and number in the pixel of the sample that a lane traces, where it begins
+    one; else those that are given."""
+    chosen = dr.gather(mi.UInt32, samples.chosen, index, begins)
+    sample = dr.select(begins, chosen & (RECORDED - 1), sample)
+    pixel = dr.select(begins, dr.gather(mi.UInt32, samples.pixel, sample, begins), pixel)
+    number = dr.select(begins, dr.gather(mi.UInt32, samples.number, sample, begins), number)
+    return chosen, sample, pixel, number
 
 
 def ray_counts(samples):
@@ -124,10 +129,7 @@ def trace(scene, camera, settings, known, tables, recorder, samples):
     numbers, ray = RandomNumbers(mi.UInt32(0), mi.UInt32(0)), dr.zeros(mi.Ray3f)
     radiance, throughput, eta = mi.Spectrum(0), mi.Spectrum(0), mi.Float(1)
     depth, rays, valid = mi.UInt32(0), mi.UInt32(0), mi.Bool(False)
-    # Of the vertex before.
-    previous_p, previous_n = mi.Point3f(0), mi.Normal3f(0)
-    previous_pdf, previous_bsdf_pdf, previous_delta = mi.Float(1), mi.Float(1), mi.Bool(True)
-    previous_cell, previous_fraction = mi.UInt32(odis.NO_CELL), mi.Float(0)
+    before = vertex.nothing_before()
     row, recorded = mi.UInt32(recording.NO_ROW), mi.Bool(False)
     # How many vertices before had lobes that may be guided: the first ones have maps at pixels.
     has_pixel_maps = tables is not None and tables.pixel_cells is not None
@@ -136,16 +138,13 @@ def trace(scene, camera, settings, known, tables, recorder, samples):
     while dr.hint(more, label="odis: paths", exclude=[known, tables, recorder, lights, samples, camera]):
         # The next sample, where none is under way.
         begins = more & ~under_way
-        chosen = dr.gather(mi.UInt32, samples.chosen, index, begins)
-        sample = dr.select(begins, chosen & (RECORDED - 1), sample)
-        pixel = dr.select(begins, dr.gather(mi.UInt32, samples.pixel, sample, begins), pixel)
-        number = dr.select(begins, dr.gather(mi.UInt32, samples.number, sample, begins), number)
+        chosen, sample, pixel, number = next_sample(samples, index, begins, sample, pixel, number)
         new_numbers, new_ray, ray_weight = camera(pixel, number)
         numbers, ray = dr.select(begins, new_numbers, numbers), dr.select(begins, new_ray, ray)
         throughput, radiance = dr.select(begins, ray_weight, throughput), dr.select(begins, 0, radiance)
         eta, depth, rays = dr.select(begins, 1, eta), dr.select(begins, 0, depth), dr.select(begins, 0, rays)
         valid = dr.select(begins, mi.Bool(sees_environment), valid)
-        previous_delta = previous_delta | begins
+        before.delta |= begins
         if dr.hint(recorder is not None, mode="scalar"):
             row = dr.select(begins, recording.NO_ROW, row)
             recorded = dr.select(begins, chosen >= RECORDED, recorded)
@@ -160,19 +159,14 @@ def trace(scene, camera, settings, known, tables, recorder, samples):
         bsdf = si.bsdf(ray)
 
         # Emission that the ray met.
-        previous = dr.zeros(mi.Interaction3f)
-        previous.p, previous.n, previous.time, previous.wavelengths = previous_p, previous_n, ray.time, ray.wavelengths
-        met = mi.DirectionSample3f(scene, si=si, ref=previous)
+        met = mi.DirectionSample3f(scene, si=si, ref=before.interaction(ray))
         lit = active & (met.emitter != None)
         passes = mi.Bool(False)  # through an emitter that the camera does not see
         if dr.hint(settings.hide_emitters, mode="scalar"):
             passes = lit & (depth == 0) & si.is_valid()
             lit &= depth > 0
         emitted = met.emitter.eval(si, lit)
-        weighed = lit & ~previous_delta
-        light_pdf = lights.pdf(tables, previous_cell, previous_fraction, previous, met, weighed)
-        mis = dr.select(weighed, power_heuristic(previous_pdf, light_pdf), 1)
-        mis = vertex.weight_of_met(lights, mis, previous_bsdf_pdf, previous, met, weighed)
+        mis, light_pdf = before.weigh(lights, tables, ray, met, lit)
         radiance += dr.select(lit, throughput * emitted * mis, 0)
         if dr.hint(recorder is not None, mode="scalar"):
             had_row = active & (row != recording.NO_ROW)
@@ -207,12 +201,10 @@ def trace(scene, camera, settings, known, tables, recorder, samples):
             if dr.hint(tables.cached is not None, mode="scalar"):
                 # What ends here adds the cached radiance in place of what it would find.
                 facing = dr.abs(dr.dot(si.sh_frame.n, ray.d))
-                footprint += dr.select(active & ~previous_delta,
-                                       guide_tables.segment_footprint(si.t, previous_pdf, facing), 0)
-                scatters_evenly = ((flags & (GUIDABLE | SEES_THROUGH)) == GUIDABLE) \
-                    & (((flags & HAS_DELTA) == 0) | (dr.abs(si.wi.z) >= LEAST_CACHED_COSINE)) \
-                    & (roughness >= dr.select(both_sides, 1, LEAST_CACHED_ROUGHNESS))
-                may_end = active & (depth > 0) & scatters_evenly
+                footprint += dr.select(active & ~before.delta,
+                                       guide_tables.segment_footprint(si.t, before.pdf, facing), 0)
+                may_end = active & (depth > 0) & vertex.scatters_evenly(
+                    flags, roughness, si.wi.z, dr.select(both_sides, 1, vertex.LEAST_CACHED_ROUGHNESS))
                 there, ends_here = vertex.end_in_cache(settings, tables, cell, (pixel, number), relative, footprint,
                                                        depth, may_end)
                 radiance += dr.select(ends_here, throughput * there, 0)
@@ -257,17 +249,11 @@ def trace(scene, camera, settings, known, tables, recorder, samples):
         discrete = mi.has_flag(sampled.sampled_type, mi.BSDFFlags.Delta)
         mixes = ((flags & HAS_DELTA) != 0) & ((flags & GUIDABLE) != 0)
         share_of_smooth = dr.select(mixes, scattered.share_of_smooth, 1)
-        wi, pdf = si.to_world(sampled.wo), mi.Float(sampled.pdf)
-        guidable_pdf = pdf
+        bounce = vertex.Bounce(si.to_world(sampled.wo), mi.Float(sampled.pdf), sampled.pdf, weight, from_map)
         if dr.hint(tables is not None, mode="scalar"):
-            from_map &= ~discrete
-            wi, pdf = dr.select(from_map, map_direction, wi), dr.select(from_map, scattered.map_pdf, pdf)
-            guidable_pdf = pdf
-            mixed = mixture.pdf(wi, pdf, share_of_smooth, ~discrete)
-            reweighed = guided & ~discrete & (mixed > 0)
-            weight = dr.select(from_map, scattered.map_value / mixed,
-                               dr.select(reweighed, weight * (pdf / mixed), weight))
-            pdf = dr.select(reweighed, mixed, pdf)
+            bounce = mixture.take(bounce, discrete, from_map, map_direction, scattered.map_value, scattered.map_pdf,
+                                  share_of_smooth)
+        wi, pdf, guidable_pdf, weight = bounce.wi, bounce.pdf, bounce.own_pdf, bounce.weight
 
         unweighted = scattered.light_value * light
         lightable &= dr.max(dr.abs(unweighted)) > 0
@@ -292,7 +278,7 @@ def trace(scene, camera, settings, known, tables, recorder, samples):
 
         # Roulette on departure, where nothing was learned.
         weight = dr.select(active & dr.all(dr.isfinite(weight)), weight, 0)
-        eta *= dr.select(from_map | passes, 1, sampled.eta)
+        eta *= dr.select(bounce.from_map | passes, 1, sampled.eta)
         most = dr.max(throughput * weight)
         survival = vertex.play_on_departure(settings, tables, most, eta, depth, cell, active)
         goes_on = active & (most > 0) & (draws.next() < survival)
@@ -320,12 +306,11 @@ def trace(scene, camera, settings, known, tables, recorder, samples):
 
         valid |= arrived & ~mi.has_flag(sampled.sampled_type, mi.BSDFFlags.Null)
         throughput *= dr.select(passes, 1, weight)
-        previous_p, previous_n, previous_pdf, previous_delta = mi.Point3f(si.p), mi.Normal3f(si.n), pdf, discrete
-        if dr.hint(lights.uneven is not None, mode="scalar"):
-            previous_bsdf_pdf = mi.Float(guidable_pdf)
-        previous_cell, previous_fraction = cell, learned_lights
+        before = vertex.Before(mi.Point3f(si.p), mi.Normal3f(si.n), pdf,
+                               mi.Float(guidable_pdf) if lights.uneven is not None else before.bsdf_pdf, discrete, cell,
+                               learned_lights)
         if dr.hint(settings.hide_emitters, mode="scalar"):
-            wi, previous_delta = dr.select(passes, ray.d, wi), previous_delta | passes
+            wi, before.delta = dr.select(passes, ray.d, wi), before.delta | passes
         ray = dr.select(goes_on | passes, si.spawn_ray(wi), ray)
         depth += dr.select(goes_on, mi.UInt32(1), mi.UInt32(0))
 

@@ -10,7 +10,7 @@ import odis
 from . import guide_tables, recording, vertex
 from .materials import BOTH_SIDES, GUIDABLE, HAS_DELTA, SEES_THROUGH, SMOOTH, material_at
 from .media import fly, transmittance
-from .path import LEAST_CACHED_COSINE, LEAST_CACHED_ROUGHNESS, RECORDED, VALID, scatter
+from .path import RECORDED, VALID, next_sample, scatter
 from .random_numbers import RandomNumbers
 from .vertex import luminance_of, power_heuristic, to_rgb
 
@@ -66,10 +66,7 @@ def trace(scene, camera, settings, known, tables, recorder, samples):
     radiance, throughput, eta = mi.Spectrum(0), mi.Spectrum(0), mi.Float(1)
     # place: all that the path came to, also what it passed straight; drawn: its numbers beside those of its places.
     depth, place, drawn, rays, valid = mi.UInt32(0), mi.UInt32(0), mi.UInt32(0), mi.UInt32(0), mi.Bool(False)
-    # Of the vertex before.
-    previous_p, previous_n = mi.Point3f(0), mi.Normal3f(0)
-    previous_pdf, previous_bsdf_pdf, previous_delta = mi.Float(1), mi.Float(1), mi.Bool(True)
-    previous_cell, previous_fraction = mi.UInt32(odis.NO_CELL), mi.Float(0)
+    before = vertex.nothing_before()
     row, recorded, vertices = mi.UInt32(recording.NO_ROW), mi.Bool(False), mi.UInt32(0)
     # What the ray from there met by now: what multiplied it, and emission (recording.Met).
     attenuation, met_before, travelled = mi.Spectrum(1), recording.nothing_met(), mi.Float(0)
@@ -79,10 +76,7 @@ def trace(scene, camera, settings, known, tables, recorder, samples):
     while dr.hint(more, label="odis: paths in media", exclude=[known, tables, recorder, lights, media, samples, camera]):
         # The next sample, where none is under way.
         begins = more & ~under_way
-        chosen = dr.gather(mi.UInt32, samples.chosen, index, begins)
-        sample = dr.select(begins, chosen & (RECORDED - 1), sample)
-        pixel = dr.select(begins, dr.gather(mi.UInt32, samples.pixel, sample, begins), pixel)
-        number = dr.select(begins, dr.gather(mi.UInt32, samples.number, sample, begins), number)
+        chosen, sample, pixel, number = next_sample(samples, index, begins, sample, pixel, number)
         new_numbers, new_ray, ray_weight = camera(pixel, number)
         numbers, ray = dr.select(begins, new_numbers, numbers), dr.select(begins, new_ray, ray)
         medium = dr.select(begins, camera.medium, medium)
@@ -91,7 +85,7 @@ def trace(scene, camera, settings, known, tables, recorder, samples):
         place, drawn = dr.select(begins, 0, place), dr.select(begins, 0, drawn)
         attenuation, travelled = dr.select(begins, 1, attenuation), dr.select(begins, 0, travelled)
         valid = dr.select(begins, mi.Bool(sees_environment), valid)
-        previous_delta = previous_delta | begins
+        before.delta |= begins
         if dr.hint(recorder is not None, mode="scalar"):
             row, vertices = dr.select(begins, recording.NO_ROW, row), dr.select(begins, 0, vertices)
             recorded = dr.select(begins, chosen >= RECORDED, recorded)
@@ -113,19 +107,14 @@ def trace(scene, camera, settings, known, tables, recorder, samples):
         on_surface = active & ~flight.scattered
 
         # Emission that the ray met.
-        previous = dr.zeros(mi.Interaction3f)
-        previous.p, previous.n, previous.time, previous.wavelengths = previous_p, previous_n, ray.time, ray.wavelengths
-        met = mi.DirectionSample3f(scene, si=si, ref=previous)
+        met = mi.DirectionSample3f(scene, si=si, ref=before.interaction(ray))
         lit = on_surface & (met.emitter != None)
         hidden = mi.Bool(False)  # an emitter that the camera does not see
         if dr.hint(settings.hide_emitters, mode="scalar"):
             hidden = lit & (depth == 0) & si.is_valid()
             lit &= depth > 0
         emitted = met.emitter.eval(si, lit)
-        weighed = lit & ~previous_delta
-        light_pdf = lights.pdf(tables, previous_cell, previous_fraction, previous, met, weighed)
-        mis = dr.select(weighed, power_heuristic(previous_pdf, light_pdf), 1)
-        mis = vertex.weight_of_met(lights, mis, previous_bsdf_pdf, previous, met, weighed)
+        mis, light_pdf = before.weigh(lights, tables, ray, met, lit)
         radiance += dr.select(lit, throughput * emitted * mis, 0)
         arrived = on_surface & si.is_valid() & ~hidden
         if dr.hint(recorder is not None, mode="scalar"):
@@ -168,12 +157,11 @@ def trace(scene, camera, settings, known, tables, recorder, samples):
             relative = luminance_of(throughput, ray.wavelengths) / pixel_value
             if dr.hint(tables.cached is not None, mode="scalar"):
                 facing = dr.select(in_medium, 1, dr.abs(dr.dot(si.sh_frame.n, ray.d)))
-                footprint += dr.select(active & ((flags & SMOOTH) != 0) & ~previous_delta,
-                                       guide_tables.segment_footprint(travelled, previous_pdf, facing), 0)
-                scatters_evenly = ((flags & (GUIDABLE | SEES_THROUGH)) == GUIDABLE) \
-                    & (((flags & HAS_DELTA) == 0) | (dr.abs(si.wi.z) >= LEAST_CACHED_COSINE)) \
-                    & (roughness >= dr.select(both_sides & ~in_medium, 1, LEAST_CACHED_ROUGHNESS))
-                may_end = active & (depth > 0) & scatters_evenly
+                footprint += dr.select(active & ((flags & SMOOTH) != 0) & ~before.delta,
+                                       guide_tables.segment_footprint(travelled, before.pdf, facing), 0)
+                may_end = active & (depth > 0) & vertex.scatters_evenly(
+                    flags, roughness, si.wi.z,
+                    dr.select(both_sides & ~in_medium, 1, vertex.LEAST_CACHED_ROUGHNESS))
                 there, ends_here = vertex.end_in_cache(settings, tables, cell, (pixel, number), relative, footprint,
                                                        depth, may_end)
                 radiance += dr.select(ends_here, throughput * there, 0)
@@ -224,21 +212,14 @@ def trace(scene, camera, settings, known, tables, recorder, samples):
         share_of_smooth = dr.select(mixes, scattered.share_of_smooth, 1)
         light_value = dr.select(in_medium, of_phase.light_value, scattered.light_value)
         bsdf_pdf = dr.select(in_medium, of_phase.light_pdf, scattered.light_pdf)
-        weight = dr.select(in_medium, of_phase.weight, scattered.weight)
-        wi = dr.select(in_medium, of_phase.sample, si.to_world(sampled.wo))
-        pdf = dr.select(in_medium, of_phase.pdf, sampled.pdf)
-        guidable_pdf = pdf
+        own_pdf = dr.select(in_medium, of_phase.pdf, sampled.pdf)
+        bounce = vertex.Bounce(dr.select(in_medium, of_phase.sample, si.to_world(sampled.wo)), own_pdf, own_pdf,
+                               dr.select(in_medium, of_phase.weight, scattered.weight), from_map)
         if dr.hint(tables is not None, mode="scalar"):
-            from_map &= ~discrete
-            map_value = dr.select(in_medium, of_phase.map_value, scattered.map_value)
-            own_pdf = dr.select(in_medium, of_phase.map_pdf, scattered.map_pdf)
-            wi, pdf = dr.select(from_map, map_direction, wi), dr.select(from_map, own_pdf, pdf)
-            guidable_pdf = pdf
-            mixed = mixture.pdf(wi, pdf, share_of_smooth, ~discrete)
-            reweighed = guided & ~discrete & (mixed > 0)
-            weight = dr.select(from_map, map_value / mixed,
-                               dr.select(reweighed, weight * (pdf / mixed), weight))
-            pdf = dr.select(reweighed, mixed, pdf)
+            bounce = mixture.take(bounce, discrete, from_map, map_direction,
+                                  dr.select(in_medium, of_phase.map_value, scattered.map_value),
+                                  dr.select(in_medium, of_phase.map_pdf, scattered.map_pdf), share_of_smooth)
+        wi, pdf, guidable_pdf, weight = bounce.wi, bounce.pdf, bounce.own_pdf, bounce.weight
 
         unweighted = light_value * light
         lightable &= dr.max(dr.abs(unweighted)) > 0
@@ -269,7 +250,7 @@ def trace(scene, camera, settings, known, tables, recorder, samples):
 
         # Roulette on departure, where nothing was learned; not where the path passes straight through.
         weight = dr.select((active | passes) & dr.all(dr.isfinite(weight)), weight, 0)
-        eta *= dr.select(from_map | hidden | in_medium | ~active, 1, sampled.eta)
+        eta *= dr.select(bounce.from_map | hidden | in_medium | ~active, 1, sampled.eta)
         most = dr.max(dr.abs(throughput * weight))
         survival = vertex.play_on_departure(settings, tables, most, eta, depth, cell, active & ~passes)
         goes_on = (active | passes) & (most > 0) & (draws.next() < survival)
@@ -306,13 +287,9 @@ def trace(scene, camera, settings, known, tables, recorder, samples):
         travelled = dr.select(is_vertex, 0, travelled)
         wi = dr.select(hidden | passes, ray.d, wi)
         turns = goes_on & ~passes
-        previous_p, previous_n = dr.select(turns, at.p, previous_p), dr.select(turns, at.n, previous_n)
-        previous_pdf = dr.select(turns, pdf, previous_pdf)
-        previous_delta = dr.select(turns, discrete | (in_medium & ~medium.use_emitter_sampling()), previous_delta)
-        if dr.hint(lights.uneven is not None, mode="scalar"):
-            previous_bsdf_pdf = dr.select(turns, guidable_pdf, previous_bsdf_pdf)
-        previous_cell = dr.select(turns, cell, previous_cell)
-        previous_fraction = dr.select(turns, learned_lights, previous_fraction)
+        here = vertex.Before(at.p, mi.Normal3f(at.n), pdf, guidable_pdf if lights.uneven is not None else before.bsdf_pdf,
+                             discrete | (in_medium & ~medium.use_emitter_sampling()), cell, learned_lights)
+        before = dr.select(turns, here, before)
         medium = dr.select((arrived | hidden) & si.is_medium_transition(), si.target_medium(wi), medium)
         ray = dr.select(goes_on | hidden, at.spawn_ray(wi), ray)
         depth += dr.select(turns, mi.UInt32(1), mi.UInt32(0))
