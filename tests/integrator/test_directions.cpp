@@ -84,7 +84,7 @@ class Arrivals {
   // Puts new ones into all but the last lanes, and random numbers.
   void fill(Bounces& bounces, Random& random) {
     m_paths.clear();
-    bounces.depth = 1;
+    bounces.place = 1;
     bounces.count = kCount;
     for (size_t i = 0; i < kCount; ++i) {
       const Vec3 target(2 * random() - 1, 2 * random() - 1, 0);
@@ -96,6 +96,7 @@ class Arrivals {
       Vertex& vertex = m_vertices[i];
       vertex.at = hit.surfacePoint(ray);
       vertex.wo = vertex.at.shading.toLocal(-ray.direction);
+      vertex.bsdf = &vertex.at.shape->bsdf();
       Path& path = m_paths.emplace_back(ray, Sampler(SamplerKind::independent, 1, uint32_t(i), 0));
       bounces.arrivals[i] = {&path, uint32_t(i), &vertex, kNoCell, true};
       VertexNumbers& numbers = bounces.numbers;
@@ -162,11 +163,11 @@ void expectDirectionsOfTheMixture(const std::string& bsdf, Random& random) {
     arrivals.fill(*bounces, random);
     for (Arrival& arrival : bounces->arriving())
       arrival.cell = random() < 0.2f ? kNoCell : uint32_t(random() * Maps::kCells);
-    readSurfaces(*bounces);
+    readVertices(*bounces);
     findGuidableLobes(settings, *batch, *bounces);
     for (size_t i = 0; i < kCount; ++i) {
-      const auto& [at, wo] = *bounces->arrivals[i].vertex;
-      EXPECT_EQ(bounces->at.guidable[i], at.shape->bsdf().guidableProbability(at, wo)) << bsdf;
+      const auto& [at, wo, kind, scattering] = *bounces->arrivals[i].vertex;
+      EXPECT_EQ(bounces->at.guidable[i], scattering->guidableProbability(at, wo)) << bsdf;
     }
     prepareDirections(settings, *bounces);
     chooseBlocks(*bounces);
@@ -205,7 +206,7 @@ void expectLightOfEachPath(const std::string& bsdf, const std::string& lights, R
   size_t expectedLit = 0, foundLit = 0;
   for (int round = 0; round < 100; ++round) {
     arrivals.fill(*bounces, random);
-    readSurfaces(*bounces);
+    readVertices(*bounces);
     prepareDirections(settings, *bounces);
     const LaneList lit = sampleLights(settings, *bounces);
     weighLights(*bounces, lit);
@@ -213,13 +214,13 @@ void expectLightOfEachPath(const std::string& bsdf, const std::string& lights, R
     std::array<bool, kLanes> isLit{};
     for (const size_t i : lit) isLit[i] = true;
     for (size_t i = 0; i < kCount; ++i) {
-      const auto& [at, wo] = *bounces->arrivals[i].vertex;
+      const auto& [at, wo, kind, scattering] = *bounces->arrivals[i].vertex;
       const VertexNumbers& numbers = bounces->numbers;
       const LightSampler::Choice choice = sampler.sample(lightReference(at, wo), numbers.lightChoice[i],
                                                          Vec2(numbers.lightU[i], numbers.lightV[i]));
       if (!choice.emitter) continue;
       const EmitterSample sample = choice.emitter->sample(choice.part, at.p, choice.u);
-      const BsdfValue value = at.shape->bsdf().evaluate(at, wo, at.shading.toLocal(sample.wi));
+      const BsdfValue value = scattering->evaluate(at, wo, at.shading.toLocal(sample.wi));
       const bool expected = sample.pdf > 0 && !isBlack(sample.radiance) && !isBlack(value.value);
       EXPECT_EQ(isLit[i], expected) << bsdf << lights;
       expectedLit += expected;

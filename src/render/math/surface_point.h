@@ -7,6 +7,7 @@
 
 namespace odis::render {
 
+class Bsdf;
 class Shape;
 class Texture;
 
@@ -31,10 +32,22 @@ struct SurfacePoint {
   float pError = 0;  // how far p may be off the surface, set by shapes for Scene::spawn()
 };
 
-// Where a path met a surface.
+enum class VertexKind : uint8_t {
+  escaped,   // the ray left the scene: there is no vertex
+  absorbed,  // nor is there where a medium left nothing of the path
+  surface,
+  medium,  // the path is scattered within one
+};
+
+// Where a ray of a path ended. In a medium there is a place, its shading frame are the axes of the world, and
+// `ng` is zero.
 struct Vertex {
   SurfacePoint at;
   Vec3 wo;  // towards where the path came from, in the shading frame; a row of four numbers with at.pError
+  VertexKind kind = VertexKind::surface;
+  const Bsdf* bsdf = nullptr;  // the surface's or Medium::bsdf(); null where there is no vertex
+
+  bool inMedium() const { return kind == VertexKind::medium; }
 };
 
 }  // namespace odis::render

@@ -8,6 +8,7 @@
 
 #include <memory>
 
+#include "render/bsdf/bsdf.h"
 #include "render/medium/phase_function.h"
 #include "render/sampler/random_stream.h"
 
@@ -53,19 +54,20 @@ class Medium {
   virtual Rgb albedo(const Vec3& p) const = 0;
 
   const PhaseFunction& phase() const { return *m_phase; }
-  // Whether light is sampled by next-event estimation from within.
-  bool samplesEmitters() const { return m_samplesEmitters; }
+  // The same as a BSDF for whom vertices in the medium are like those on surfaces. Its shading frame are the
+  // axes of the world, and there is no cosine. It is evaluable if light is sampled by next-event estimation
+  // from within.
+  const Bsdf& bsdf() const { return *m_bsdf; }
   // Whether its density or its albedo vary from place to place in world space.
   virtual bool varies() const = 0;
   virtual uint64_t bytes() const { return 0; }
 
  protected:
-  Medium(PhaseFunctionPtr phase, bool samplesEmitters)
-      : m_phase(std::move(phase)), m_samplesEmitters(samplesEmitters) {}
+  Medium(PhaseFunctionPtr phase, bool samplesEmitters);
 
  private:
   PhaseFunctionPtr m_phase;
-  bool m_samplesEmitters;
+  std::unique_ptr<const Bsdf> m_bsdf;
 };
 
 using MediumPtr = std::shared_ptr<const Medium>;

@@ -21,11 +21,11 @@ struct VertexNumbers {
   Column shadowRay;               // and whether the light is asked for
 };
 
-// Where paths are scattered.
-struct Surfaces : VertexColumns {
+// Where paths are scattered. Phase functions are BSDFs here: Medium::bsdf().
+struct Vertices : VertexColumns {
   Columns3 facing;  // facingNormal()
   const Bsdf* bsdfs[kLanes];
-  // Surfaces that are Lambertian or have facets scatter without virtual calls: `side` is the side that they
+  // Vertices that are Lambertian or have facets scatter without virtual calls: `side` is the side that they
   // scatter to (BsdfSide), what follows is how.
   Column side;
   IntColumn isDiffuse;
@@ -88,16 +88,16 @@ struct NextDirections {
   }
 };
 
-// Some paths from their arrival at vertices of one depth to their departure. Steps fill in one column after
-// another; lanes from `count` on hold anything.
+// Some paths from their arrival at vertices to their departure. Steps fill in one column after another; lanes
+// from `count` on hold anything.
 struct Bounces {
-  int depth = 0;     // 1 for the first vertex
+  int place = 0;     // 1 where the camera's rays end, 2 where the next ones do, and so on
   size_t count = 0;  // of the paths
   std::array<Arrival, kLanes> arrivals;
 
   Columns3 throughput;  // of the paths, up to the vertices
   VertexNumbers numbers;
-  Surfaces at;
+  Vertices at;
   GuidedBsdfs bsdfs;                              // that directions are sampled from
   std::array<LightReference, kLanes> references;  // that the choices of lights depend on
   ChosenLights chosen;
@@ -135,17 +135,17 @@ struct CellLookUps {
   }
 };
 
-// What the paths of a batch share while they are traced; kept from batch to batch for its memory. 274 bytes a
+// What the paths of a batch share while they are traced; kept from batch to batch for its memory. 290 bytes a
 // path and 49 a shadow ray.
 struct Batch {
   std::vector<uint32_t> active;  // paths that have a ray to trace
   std::vector<Ray> rays;         // theirs
   std::vector<Hit> hits;         // what those met
-  std::vector<Vertex> vertices;  // the same as points on surfaces
+  std::vector<Vertex> vertices;  // where they end
   // The order in which steps are taken, so that calls and branches that depend on the BSDF are foreseen:
-  // vertices sorted by BSDF, then the rays that left the scene.
+  // vertices sorted by BSDF, then the rays that ended without one.
   std::vector<uint32_t> order;
-  size_t metCount = 0;            // how many rays met a surface
+  size_t metCount = 0;            // how many rays have a vertex
   std::vector<uint32_t> met;      // which these are
   std::vector<uint8_t> buckets;   // of each of these: what it is sorted by
   std::vector<uint8_t> survives;  // of each path of the batch: whether it goes on
@@ -176,11 +176,12 @@ struct Batch {
     shadowSegments.resize(count + 1);
     hidden.resize(count + 1);
   }
-  std::span<const uint32_t> surfaces() const { return {order.data(), metCount}; }
+  std::span<const uint32_t> withVertex() const { return {order.data(), metCount}; }
 };
 
 // Adds the emission that rays met, weighted against next-event estimation where that could have found it
-// too. Paths go on where they met a surface and are not too deep.
+// too. Paths are scattered where they have a vertex and are not too deep; in scenes with media others go
+// straight on behind the surface that they met.
 void meetEmission(const PathSettings& settings, Batch& batch, Bounces& bounces);
 // Ends paths with the cached radiance of where they arrive, if the guide may (odis::cachedRadiance).
 void endInCache(const PathSettings& settings, Batch& batch, Bounces& bounces);
@@ -189,8 +190,8 @@ void endInCache(const PathSettings& settings, Batch& batch, Bounces& bounces);
 void playRouletteOnArrival(const PathSettings& settings, Batch& batch, Bounces& bounces);
 // Keeps the paths that are scattered, in their order. All steps from here on are theirs.
 void keepScattered(Bounces& bounces);
-// Brings the surfaces into columns.
-void readSurfaces(Bounces& bounces);
+// Brings the vertices into columns.
+void readVertices(Bounces& bounces);
 // Finds out how often the BSDFs draw from lobes that may be guided.
 void findGuidableLobes(const PathSettings& settings, const Batch& batch, Bounces& bounces);
 // Draws the random numbers that the steps from here on need.
@@ -210,12 +211,13 @@ void sampleDirections(Bounces& bounces);
 void describeFirstHits(const PathSettings& settings, Bounces& bounces);
 // Ends paths by their throughput where nothing was learned, as Mitsuba does.
 void playRouletteOnDeparture(const PathSettings& settings, Bounces& bounces);
-// Asks for shadow rays, though not always where the light would add little to the pixel.
+// Asks for shadow rays, though not always where the light would add little to the pixel. In scenes with media
+// they are traced at once.
 void requestShadowRays(const PathSettings& settings, Batch& batch, Bounces& bounces, const LaneList& lit);
 // Tells the recorder what happened.
 void recordBounces(Batch& batch, const Bounces& bounces);
 // Gives each path that survives its next ray.
-void departRays(Bounces& bounces);
+void departRays(const PathSettings& settings, Bounces& bounces);
 
 // Traces the shadow rays of a bounce: adds the light that nothing hides.
 void traceShadowRays(const Scene& scene, std::span<Path> paths, Batch& batch);

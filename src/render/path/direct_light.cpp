@@ -4,13 +4,13 @@
 #include "render/emitter/light_spheres.h"
 #include "render/emitter/moving_light.h"
 #include "render/math/warp.h"
-#include "render/path/bounce.h"
+#include "render/path/media.h"
 #include "render/scene/spawn.h"
 
 namespace odis::render {
 
 LightReference lightReference(const SurfacePoint& at, const Vec3& wo) {
-  return {at.p, facingNormal(at, wo), at.shape->bsdf().traits().transmissive};
+  return {at.p, at.shading.n * signOfSide(wo.z < 0), at.shape->bsdf().traits().transmissive};
 }
 
 namespace {
@@ -19,7 +19,7 @@ namespace {
 bool chooseLights(const PathSettings& settings, Bounces& bounces) {
   ChosenLights& lights = bounces.chosen;
   const VertexNumbers& numbers = bounces.numbers;
-  const Surfaces& at = bounces.at;
+  const Vertices& at = bounces.at;
   std::array<LightSampler::Request, kLanes> requests;
   LaneList unlit;
   for (size_t i = 0; i < bounces.count; ++i) {
@@ -98,7 +98,7 @@ void samplePoints(Bounces& bounces) {
 ODIS_WIDE void estimateAtDiffuse(Bounces& bounces, IntColumn& arrives) {
   LightEstimates& light = bounces.light;
   const LightSamples& samples = bounces.chosen.samples;
-  const Surfaces& at = bounces.at;
+  const Vertices& at = bounces.at;
   for (size_t i = 0, end = endOfLanes(bounces.count); i < end; ++i) {
     const Vec3 wi = samples.wi[i];
     const float pdf = cosineHemispherePdf(at.side[i] * dot(wi, at.n[i]));
@@ -111,7 +111,7 @@ ODIS_WIDE void estimateAtDiffuse(Bounces& bounces, IntColumn& arrives) {
 }
 
 ODIS_WIDE void turnToShadingFrames(const Bounces& bounces, Columns3& local) {
-  const Surfaces& at = bounces.at;
+  const Vertices& at = bounces.at;
   for (size_t i = 0, end = endOfLanes(bounces.count); i < end; ++i)
     local.set(i, CoordinateFrame(at.s[i], at.t[i], at.n[i]).toLocal(bounces.light.wi[i]));
 }
@@ -129,7 +129,7 @@ ODIS_WIDE void keepFaceted(const BsdfValues& values, Bounces& bounces) {
 
 // What surfaces with facets scatter of the samples.
 void estimateAtFaceted(const IntColumn& arrives, Bounces& bounces) {
-  const Surfaces& at = bounces.at;
+  const Vertices& at = bounces.at;
   LaneList lanes;
   for (const size_t i : at.facetedLanes) lanes.addIf(arrives[i], i);
   if (lanes.empty()) return;
@@ -140,11 +140,12 @@ void estimateAtFaceted(const IntColumn& arrives, Bounces& bounces) {
   keepFaceted(values, bounces);
 }
 
+// The same elsewhere, one by one.
 void estimateElsewhere(const LaneList& lanes, Bounces& bounces) {
   LightEstimates& light = bounces.light;
   for (const size_t i : lanes) {
-    const auto& [at, wo] = *bounces.arrivals[i].vertex;
-    const BsdfValue bsdf = bounces.at.bsdfs[i]->evaluate(at, wo, at.shading.toLocal(light.wi[i]));
+    const auto& [at, wo, kind, scattering] = *bounces.arrivals[i].vertex;
+    const BsdfValue bsdf = scattering->evaluate(at, wo, at.shading.toLocal(light.wi[i]));
     light.radiance.set(i, bsdf.value);
     light.bsdfPdf[i] = bsdf.pdf;
     light.guidablePdf[i] = bsdf.guidablePdf;
@@ -190,7 +191,7 @@ LaneList sampleLights(const PathSettings& settings, Bounces& bounces) {
   estimateAtDiffuse(bounces, arrives);
   estimateAtFaceted(arrives, bounces);
   LaneList elsewhere, lit;
-  const Surfaces& at = bounces.at;
+  const Vertices& at = bounces.at;
   for (size_t i = 0; i < bounces.count; ++i)
     elsewhere.addIf(arrives[i] & !at.isDiffuse[i] & !at.isFaceted[i], i);
   estimateElsewhere(elsewhere, bounces);
@@ -240,7 +241,7 @@ struct ShadowRays {
 };
 
 ODIS_WIDE void spawnShadowRays(const Bounces& bounces, ShadowRays& rays) {
-  const Surfaces& at = bounces.at;
+  const Vertices& at = bounces.at;
   const LightEstimates& light = bounces.light;
   for (size_t i = 0, end = endOfLanes(bounces.count); i < end; ++i) {
     const Ray ray = spawnRay(at.p[i], at.ng[i], at.pError[i], light.wi[i], light.distance[i], 0);
@@ -300,6 +301,7 @@ void requestShadowRays(const PathSettings& settings, Batch& batch, Bounces& boun
     batch.shadowCount += asked;
     arrival.path->counts.shadowRays += asked;
   }
+  if (settings.scene->volumetric()) traceThroughMedia(*settings.scene, batch, bounces, lit);
 }
 
 void traceShadowRays(const Scene& scene, std::span<Path> paths, Batch& batch) {

@@ -7,7 +7,7 @@
 namespace odis::render {
 
 void findGuidableLobes(const PathSettings& settings, const Batch& batch, Bounces& bounces) {
-  Surfaces& at = bounces.at;
+  Vertices& at = bounces.at;
   at.guidable = {};
   if (!settings.guide && !settings.rival && !batch.recording) return;
   for (size_t i = 0; i < bounces.count; ++i) {
@@ -30,19 +30,26 @@ float fractionAt(const GuideView& guide, const Bounces& bounces, size_t lane) {
   if (cell == kNoCell) return 1;
   if (bounces.at.isDiffuse[lane]) return bsdfFraction(guide, int32_t(cell), 1.0f);
   if (!guidesDirections(guide.decisions[cell])) return 1;
-  const auto& [at, wo] = *bounces.arrivals[lane].vertex;
-  return bsdfFraction(guide, int32_t(cell), bounces.at.bsdfs[lane]->roughness(at, wo));
+  const Vertex& vertex = *bounces.arrivals[lane].vertex;
+  return bsdfFraction(guide, int32_t(cell), vertex.bsdf->roughness(vertex.at, vertex.wo));
+}
+
+// What a rival knows of a vertex; null where that is nothing.
+const DirectionSampler* askRival(const DirectionGuide& rival, const Bounces& bounces, size_t lane) {
+  const Vertices& at = bounces.at;
+  if (!bounces.arrivals[lane].vertex->inMedium())
+    return rival.at(at.p[lane], at.facing[lane], at.bsdfs[lane]->traits().transmissive);
+  return rival.inMedium(at.p[lane], at.wo[lane], bounces.arrivals[lane].path->medium->phase().meanCosine());
 }
 
 // Finds out what guides a vertex.
 void beginGuided(const PathSettings& settings, Bounces& bounces, size_t lane) {
-  const Surfaces& at = bounces.at;
+  const Vertices& at = bounces.at;
   GuidedBsdfs& bsdfs = bounces.bsdfs;
   if (!(at.guidable[lane] > 0) || !guidesAt(settings, *bounces.arrivals[lane].path)) return;
   float fraction = 1;
   if (settings.rival) {
-    bsdfs.rivals[lane] =
-        settings.rival->at(at.p[lane], at.facing[lane], at.bsdfs[lane]->traits().transmissive);
+    bsdfs.rivals[lane] = askRival(*settings.rival, bounces, lane);
     if (!bsdfs.rivals[lane]) return;
     fraction = bsdfs.rivals[lane]->bsdfFraction();
   } else {
@@ -117,7 +124,7 @@ enum class Source : int32_t { plain, bsdf, map };
 // Samples what Lambertian surfaces scatter: all lanes, as if they were. `drawn` is whether there is anything.
 ODIS_WIDE void sampleDiffuse(Bounces& bounces, IntColumn& drawn) {
   NextDirections& next = bounces.next;
-  const Surfaces& at = bounces.at;
+  const Vertices& at = bounces.at;
   for (size_t i = 0, end = endOfLanes(bounces.count); i < end; ++i) {
     const Vec3 wi = squareToCosineHemisphere({bounces.draws.u[i], bounces.numbers.directionV[i]});
     const float side = at.side[i], pdf = cosineHemispherePdf(wi.z) * (side * side);
@@ -135,7 +142,7 @@ ODIS_WIDE void sampleDiffuse(Bounces& bounces, IntColumn& drawn) {
 ODIS_WIDE void keepFaceted(const Columns3& wi, const BsdfValues& values, const IntColumn& fromFacets,
                            Bounces& bounces, IntColumn& drawn) {
   NextDirections& next = bounces.next;
-  const Surfaces& at = bounces.at;
+  const Vertices& at = bounces.at;
   const size_t end = endOfLanes(bounces.count);
   Columns3 weights;
   IntColumn isDrawn, lobes;
@@ -164,7 +171,7 @@ ODIS_WIDE void keepFaceted(const Columns3& wi, const BsdfValues& values, const I
 
 // Samples what surfaces with facets scatter.
 void sampleFaceted(Bounces& bounces, IntColumn& drawn) {
-  const Surfaces& at = bounces.at;
+  const Vertices& at = bounces.at;
   if (at.facetedLanes.empty()) return;
   FacetedDirections directions(at.wo, at.side);
   IntColumn fromFacets;
@@ -210,7 +217,7 @@ ODIS_WIDE void findSources(const IntColumn& drawn, const Bounces& bounces, IntCo
 }
 
 ODIS_WIDE void turnToWorld(const Bounces& bounces, Columns3& world) {
-  const Surfaces& at = bounces.at;
+  const Vertices& at = bounces.at;
   for (size_t i = 0, end = endOfLanes(bounces.count); i < end; ++i)
     world.set(i, CoordinateFrame(at.s[i], at.t[i], at.n[i]).toWorld(bounces.next.wi[i]));
 }
@@ -219,7 +226,7 @@ ODIS_WIDE void turnToWorld(const Bounces& bounces, Columns3& world) {
 // place of weights.
 ODIS_WIDE void evaluateDiffuse(const IntColumn& sources, const Columns3& world, Bounces& bounces) {
   NextDirections& next = bounces.next;
-  const Surfaces& at = bounces.at;
+  const Vertices& at = bounces.at;
   for (size_t i = 0, end = endOfLanes(bounces.count); i < end; ++i) {
     const bool fromMap = sources[i] == int32_t(Source::map);
     const Vec3 local = CoordinateFrame(at.s[i], at.t[i], at.n[i]).toLocal(world[i]), old = next.wi[i];
@@ -246,7 +253,7 @@ ODIS_WIDE void keepFaceted(const IntColumn& sources, const BsdfValues& values, B
 
 // The same at surfaces with facets.
 void evaluateFaceted(const IntColumn& sources, Bounces& bounces) {
-  const Surfaces& at = bounces.at;
+  const Vertices& at = bounces.at;
   LaneList lanes;
   for (const size_t i : at.facetedLanes) lanes.addIf(sources[i] == int32_t(Source::map), i);
   if (lanes.empty()) return;
@@ -256,8 +263,8 @@ void evaluateFaceted(const IntColumn& sources, Bounces& bounces) {
 }
 
 void evaluateOther(Bounces& bounces, size_t lane) {
-  const auto& [at, wo] = *bounces.arrivals[lane].vertex;
-  const BsdfValue value = bounces.at.bsdfs[lane]->evaluate(at, wo, bounces.next.wi[lane]);
+  const Vertex& vertex = *bounces.arrivals[lane].vertex;
+  const BsdfValue value = vertex.bsdf->evaluate(vertex.at, vertex.wo, bounces.next.wi[lane]);
   bounces.next.weight.set(lane, value.value);
   bounces.next.pdf[lane] = value.pdf;
   bounces.next.guidablePdf[lane] = value.guidablePdf;

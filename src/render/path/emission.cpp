@@ -1,18 +1,17 @@
 // What rays bring when they arrive: emission, and whether it is worth going on.
 #include "render/path/emission.h"
 
-#include "render/path/bounce.h"
+#include "render/path/media.h"
 
 namespace odis::render {
 
-void addEmission(const PathSettings& settings, PathRecorder* recorder, Path& path, int depth,
-                 const Emission& met) {
+void addEmission(const PathSettings& settings, PathRecorder* recorder, Path& path, const Emission& met) {
   path.visible |= !settings.scene->integrator().hideEmitters;
   if (isBlack(met.radiance)) return;
   const float pdf = path.bySampling ? lightPdf(*settings.lights, path.previous, met) : 0;
   const float weight = path.bySampling ? powerHeuristic(path.directionPdf, pdf) : 1;
   path.radiance += path.throughput * met.radiance * weight;
-  if (depth == 1) {
+  if (path.depth == 1) {
     path.emitted += met.radiance;
     path.emittedPdf = pdf;
     ++path.emissions;
@@ -31,19 +30,45 @@ const LightReference* competitor(const Path& path) {
 
 namespace {
 
-// Follows the ray to the surface that it met.
-void arriveAt(Batch& batch, const Arrival& arrival) {
-  Path& path = *arrival.path;
-  const auto& [at, wo] = *arrival.vertex;
-  const float distance = length(at.p - path.ray.origin);
-  path.distance += distance;
-  if (!batch.recording) return;
-  SurfaceEvent event;
-  event.position = toOdis(at.p);
-  event.normal = toOdis(facingNormal(at, wo));
+template <class Event>
+Event eventAt(const Path& path, const Vertex& vertex) {
+  Event event;
+  event.position = toOdis(vertex.at.p);
   event.wo = toOdis(-path.ray.direction);
-  event.distance = distance;
-  batch.recorder.surface(path.handle, event);
+  event.distance = path.travelled;
+  event.time = path.ray.time;
+  return event;
+}
+
+void recordVertex(PathRecorder& recorder, const Path& path, const Vertex& vertex) {
+  if (vertex.inMedium()) return recorder.medium(path.handle, eventAt<MediumEvent>(path, vertex));
+  SurfaceEvent event = eventAt<SurfaceEvent>(path, vertex);
+  event.normal = toOdis(facingNormal(vertex));
+  recorder.surface(path.handle, event);
+}
+
+// Follows a ray to where it ended, and beyond what it passes straight. Calls add(path) for who adds emission.
+template <class AddTo>
+void arrive(const PathSettings& settings, const AddTo& add, Batch& batch, int place, Arrival& arrival) {
+  Path& path = *arrival.path;
+  const Vertex& vertex = *arrival.vertex;
+  const float distance = length(vertex.at.p - path.ray.origin);
+  path.distance += distance;
+  path.travelled += distance;
+  const bool isHidden = hidesLights(*settings.scene, path, vertex);
+  const std::optional<Rgb> passing = passesStraight(settings, place, path, vertex);
+  if (batch.recording && !passing) recordVertex(batch.recorder, path, vertex);
+  if (!vertex.inMedium() && !isHidden) ifShining(path.ray, vertex.at, competitor(path), add(path));
+  if (passing) {
+    path.throughput *= *passing;
+    if (batch.recording) batch.recorder.attenuation(path.handle, toOdis(*passing));
+    goStraightOn(path, vertex);
+    batch.survives[arrival.index] = !isBlack(path.throughput);
+    return;
+  }
+  arrival.scatters = !isDeepest(settings, path);
+  // Where depth ends a path nobody draws a lobe, and the surface counts as one that hides what is behind.
+  if (!arrival.scatters) path.visible = true;
 }
 
 }  // namespace
@@ -54,24 +79,15 @@ void meetEmission(const PathSettings& settings, Batch& batch, Bounces& bounces) 
     Arrival& arrival = bounces.arrivals[i];
     ++arrival.path->counts.rays;
     arrival.scatters = false;
-    const bool met = arrival.vertex->at.shape;
-    arriving.addIf(met, i);
-    leaving.addIf(!met, i);
+    arriving.addIf(arrival.vertex->bsdf, i);
+    leaving.addIf(arrival.vertex->kind == VertexKind::escaped, i);
   }
   const auto add = [&](Path& path) {
     return [&](const Emission& met) {
-      addEmission(settings, batch.recording ? &batch.recorder : nullptr, path, bounces.depth, met);
+      addEmission(settings, batch.recording ? &batch.recorder : nullptr, path, met);
     };
   };
-  for (const size_t i : arriving) {
-    Arrival& arrival = bounces.arrivals[i];
-    Path& path = *arrival.path;
-    arriveAt(batch, arrival);
-    ifShining(path.ray, arrival.vertex->at, competitor(path), add(path));
-    arrival.scatters = settings.maxDepth < 0 || bounces.depth < settings.maxDepth;
-    // Where depth ends a path nobody draws a lobe, and the surface counts as one that hides what is behind.
-    if (!arrival.scatters) path.visible = true;
-  }
+  for (const size_t i : arriving) arrive(settings, add, batch, bounces.place, bounces.arrivals[i]);
   LaneList seeing;  // the environments
   std::array<Escape, kLanes> escapes;
   for (const size_t i : leaving) {
@@ -87,25 +103,28 @@ void meetEmission(const PathSettings& settings, Batch& batch, Bounces& bounces) 
 }
 
 bool scattersEvenly(const Vertex& vertex) {
-  const auto& [at, wo] = vertex;
-  const Bsdf& bsdf = at.shape->bsdf();
+  const auto& [at, wo, kind, bsdf] = vertex;
   // What is refracted spreads over a quarter of the angle of a reflection of the same roughness, or less: of
   // surfaces that let light pass only diffuse ones scatter evenly.
-  const float leastRoughness = bsdf.traits().transmissive ? 1 : kLeastCachedRoughness;
-  return bsdf.guidableProbability(at, wo) >= kLeastCachedGuidable && bsdf.roughness(at, wo) >= leastRoughness;
+  const bool refracts = bsdf->traits().transmissive && !vertex.inMedium();
+  return bsdf->guidableProbability(at, wo) >= kLeastCachedGuidable &&
+         bsdf->roughness(at, wo) >= (refracts ? 1 : kLeastCachedRoughness);
+}
+
+static float cosineOfArrival(const Path& path, const Vertex& vertex) {
+  return vertex.inMedium() ? 1 : absDot(vertex.at.shading.n, path.ray.direction);
 }
 
 void endInCache(const PathSettings& settings, Batch& batch, Bounces& bounces) {
   if (!settings.guide || !settings.guide->cached) return;
   for (Arrival& arrival : bounces.arriving()) {
-    if (!arrival.scatters || bounces.depth == 1) continue;
+    if (!arrival.scatters || arrival.path->depth == 1) continue;
     Path& path = *arrival.path;
     const Vertex& vertex = *arrival.vertex;
     if (path.bySampling)
-      path.footprint += segmentFootprint(length(vertex.at.p - path.ray.origin), path.directionPdf,
-                                         std::abs(dot(vertex.at.shading.n, path.ray.direction)));
+      path.footprint += segmentFootprint(path.travelled, path.directionPdf, cosineOfArrival(path, vertex));
     if (arrival.cell == kNoCell) continue;
-    const Place place{{}, {}, path.identity.pixel, path.identity.sample, false, uint32_t(bounces.depth)};
+    const Place place{{}, {}, path.identity.pixel, path.identity.sample, false, uint32_t(path.depth)};
     Float3 radiance;
     if (!cachedRadiance(*settings.guide, place, arrival.cell, luminance(path.throughput) / path.pixelValue,
                         path.footprint, radiance) ||
@@ -120,12 +139,12 @@ void endInCache(const PathSettings& settings, Batch& batch, Bounces& bounces) {
 void playRouletteOnArrival(const PathSettings& settings, Batch& batch, Bounces& bounces) {
   if (!settings.learnedRoulette) return;
   for (Arrival& arrival : bounces.arriving()) {
-    if (!arrival.scatters || arrival.cell == kNoCell || bounces.depth == 1) continue;
     Path& path = *arrival.path;
+    if (!arrival.scatters || arrival.cell == kNoCell || path.depth == 1) continue;
     const CellDecisions& cell = settings.guide->decisions[arrival.cell];
     const float survival =
         survivalProbability(settings.guide->rules, cell.survivalFactor,
-                            luminance(path.throughput) / path.pixelValue, uint32_t(bounces.depth));
+                            luminance(path.throughput) / path.pixelValue, uint32_t(path.depth));
     // The mean outgoing radiance is a control variate: it leaves the expectation as it is.
     const Float3& outgoing = cell.outgoingRadiance;
     const Rgb standIn = path.throughput * Rgb(outgoing.x, outgoing.y, outgoing.z);

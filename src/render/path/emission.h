@@ -55,9 +55,8 @@ inline float lightPdf(const LightSampler& lights, const LightReference& from, co
 // Where the path's ray started, if next-event estimation competes with its direction; else null.
 const LightReference* competitor(const Path& path);
 // Adds emission that the path's ray met, weighted against next-event estimation where that could have found
-// it too; the ray leads to a vertex of this depth. `recorder` may be null.
-void addEmission(const PathSettings& settings, PathRecorder* recorder, Path& path, int depth,
-                 const Emission& met);
+// it too. `recorder` may be null.
+void addEmission(const PathSettings& settings, PathRecorder* recorder, Path& path, const Emission& met);
 
 // Smoother surfaces and phase functions of narrower peaks end no paths with cached radiance: what they
 // scatter depends too much on the direction. The same is true of surfaces that scatter mostly by lobes that

@@ -8,14 +8,13 @@
 namespace odis::render {
 
 FirstHit firstHitAt(const Vertex& vertex, float distance) {
-  const auto& [at, wo] = vertex;
-  const BsdfFeatures features = at.shape->bsdf().features(at, wo);
-  const float side = wo.z < 0 ? -1.0f : 1.0f;
+  const SurfacePoint& at = vertex.at;
+  const BsdfFeatures features = vertex.bsdf->features(at, vertex.wo);
   FirstHit first;
   first.valid = true;
   first.position = at.p;
-  first.normal = at.shading.n * side;
-  first.geometricNormal = at.ng * side;
+  first.normal = facingNormal(vertex);
+  first.geometricNormal = at.ng * signOfSide(vertex.wo.z < 0);
   first.albedo = features.albedo;
   first.depth = distance;
   first.roughness = features.roughness;
@@ -33,22 +32,23 @@ bool leadsOn(const Bsdf& bsdf, const Vertex& vertex, Lobe lobe) {
 }  // namespace
 
 bool passesMirror(Path& path, const Vertex& vertex, int depth) {
-  const auto& [at, wo] = vertex;
-  if (!at.shape) return false;
+  if (!vertex.bsdf) return false;
+  const SurfacePoint& at = vertex.at;
   path.distance += length(at.p - path.ray.origin);
-  const Bsdf& bsdf = at.shape->bsdf();
+  const Bsdf& bsdf = *vertex.bsdf;
   const BsdfTraits& traits = bsdf.traits();
   BsdfSample next;
   if (!traits.evaluable || traits.choosesLobes) {  // others have no discrete lobe
     path.sampler.startVertex(depth);
     const float uLobe = path.sampler.get1D();
-    next = bsdf.sample(at, wo, uLobe, path.sampler.get2D());
+    next = bsdf.sample(at, vertex.wo, uLobe, path.sampler.get2D());
   }
   if (!leadsOn(bsdf, vertex, next.lobe)) {
     path.first = firstHitAt(vertex, path.distance);
     return false;
   }
   path.ray = Scene::spawn(at, at.shading.toWorld(next.wi));
+  path.medium = at.shape->mediumBeyond(at, path.ray.direction, path.medium);
   return !isBlack(next.weight);
 }
 

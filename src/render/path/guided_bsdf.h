@@ -31,7 +31,7 @@ struct BsdfHost {
   float uLobe;
 
   const SurfacePoint& at() const { return vertex.at; }
-  const Bsdf& bsdf() const { return vertex.at.shape->bsdf(); }
+  const Bsdf& bsdf() const { return *vertex.bsdf; }
 
   Sample sampleBsdf(float u, float v) const { return bsdf().sample(at(), vertex.wo, uLobe, Vec2(u, v)); }
   bool isDiscrete(const Sample& sample) const { return odis::render::isDiscrete(sample.lobe); }

@@ -10,7 +10,7 @@
 #include "render/emitter/light_sampler.h"
 #include "render/path/direction_guide.h"
 #include "render/path/features.h"
-#include "render/sampler/sampler.h"
+#include "render/sampler/random_stream.h"
 #include "render/scene/scene.h"
 
 namespace odis::render {
@@ -73,25 +73,37 @@ struct Path {
   float uSurvival = 0;      // random number that decides, where the ray arrives, whether the path goes on
   LightReference previous;  // where the ray started
   float distance = 0;       // length of the path from the camera to there
+  int depth = 1;            // of the next vertex
   float footprint = 0;      // of the path so far (odis::segmentFootprint)
   uint32_t handle = 0;      // of the recorder
+
+  // In scenes with media.
+  const Medium* medium = nullptr;  // that the ray is in; null for none
+  float travelled = 0;             // distance from the last vertex to where the ray begins
+  RandomStream random{0};          // what media need beside the numbers that have purposes, anew for each ray
 };
 
 // One path as it arrives at one vertex.
 struct Arrival {
   Path* path;
   uint32_t index;        // of the path in the batch
-  const Vertex* vertex;  // without a shape where the ray left the scene
+  const Vertex* vertex;
   uint32_t cell;         // of the guide, or kNoCell
   bool scatters;         // whether the path goes on to be scattered here
 };
 
-// The shading normal on the side that the path came from; `wo` in the shading frame.
-inline Vec3 facingNormal(const SurfacePoint& at, const Vec3& wo) {
-  return at.shading.n * signOfSide(wo.z < 0);
+// The shading normal on the side that the path came from; zero in a medium.
+inline Vec3 facingNormal(const Vertex& vertex) {
+  return vertex.inMedium() ? Vec3(0, 0, 0) : vertex.at.shading.n * signOfSide(vertex.wo.z < 0);
 }
 
-// What the choice among lights depends on at a vertex; `wo`, in the shading frame, says on which side it is.
+// Whether a path ends at its next vertex, where it is scattered no more.
+inline bool isDeepest(const PathSettings& settings, const Path& path) {
+  return settings.maxDepth >= 0 && path.depth >= settings.maxDepth;
+}
+
+// What the choice among lights depends on at a point of a surface; `wo`, in the shading frame, says on which
+// side it is.
 LightReference lightReference(const SurfacePoint& at, const Vec3& wo);
 
 // Traces all paths side by side, a bounce of each before the next bounce of any, so that rays reach the

@@ -20,7 +20,7 @@ void describeFirstHits(const PathSettings& settings, Bounces& bounces) {
     if (settings.learnedRoulette)
       first.survival = survivalProbability(
           settings.guide->rules, settings.guide->decisions[arrival.cell].survivalFactor,
-          luminance(arrival.path->throughput) / arrival.path->pixelValue, uint32_t(bounces.depth));
+          luminance(arrival.path->throughput) / arrival.path->pixelValue, uint32_t(arrival.path->depth));
   }
 }
 
@@ -42,9 +42,9 @@ void recordBounces(Batch& batch, const Bounces& bounces) {
   for (size_t i = 0; i < bounces.count; ++i) {
     const Arrival& arrival = bounces.arrivals[i];
     const uint32_t path = arrival.path->handle;
-    const auto& [at, wo] = *arrival.vertex;
+    const SurfacePoint& at = arrival.vertex->at;
     if (bounces.light.shadowRayProbability[i] > 0) batch.recorder.light(path, lightEventOf(bounces.light, i));
-    const Bsdf& bsdf = at.shape->bsdf();
+    const Bsdf& bsdf = *bounces.at.bsdfs[i];
     const BsdfSample next = bounces.next[i];
     BounceEvent event;
     event.wi = toOdis(at.shading.toWorld(next.wi));
@@ -54,7 +54,7 @@ void recordBounces(Batch& batch, const Bounces& bounces) {
     event.guidableProbability = bounces.at.guidable[i];
     event.survival = bounces.survival[i];
     event.cosine = std::abs(next.wi.z);
-    event.roughness = bounces.at.isDiffuse[i] ? 1.0f : bsdf.roughness(at, wo);
+    event.roughness = bounces.at.isDiffuse[i] ? 1.0f : bsdf.roughness(at, arrival.vertex->wo);
     event.discrete = isDiscrete(next.lobe);
     event.scattersBothSides = bsdf.traits().transmissive;
     batch.recorder.bounce(path, event);

@@ -2,7 +2,7 @@
 #include <odis/instruction_sets.h>
 
 #include "render/bsdf/parameter.h"
-#include "render/path/bounce.h"
+#include "render/path/media.h"
 #include "render/scene/spawn.h"
 
 namespace odis::render {
@@ -20,15 +20,15 @@ void keepScattered(Bounces& bounces) {
 namespace {
 
 ODIS_WIDE void findFacingNormals(Bounces& bounces) {
-  Surfaces& at = bounces.at;
+  Vertices& at = bounces.at;
   for (size_t i = 0, end = endOfLanes(bounces.count); i < end; ++i)
     at.facing.set(i, at.n[i] * (at.wo.z[i] < 0 ? -1.0f : 1.0f));
 }
 
 }  // namespace
 
-void readSurfaces(Bounces& bounces) {
-  Surfaces& at = bounces.at;
+void readVertices(Bounces& bounces) {
+  Vertices& at = bounces.at;
   const Vertex* vertices[kLanes];
   for (size_t i = 0; i < kLanes; ++i) vertices[i] = bounces.arrivals[std::min(i, bounces.count - 1)].vertex;
   at.read(vertices, bounces.count);
@@ -38,8 +38,9 @@ void readSurfaces(Bounces& bounces) {
     const Arrival& arrival = bounces.arrivals[i];
     const Vertex& vertex = *arrival.vertex;
     bounces.throughput.set(i, arrival.path->throughput);
-    const Bsdf& bsdf = vertex.at.shape->bsdf();
+    const Bsdf& bsdf = *vertex.bsdf;
     at.bsdfs[i] = &bsdf;
+    if (vertex.inMedium()) at.facing.set(i, Vec3(0, 0, 0));
     const BsdfSide& side = bsdf.side(vertex.wo);
     at.isDiffuse[i] = side.reflectance != nullptr;
     // Facets that are seen from behind can't be sampled: virtual calls say that those are black.
@@ -61,16 +62,16 @@ void drawNumbers(const PathSettings& settings, Batch& batch, Bounces& bounces) {
   for (size_t i = 0; i < bounces.count; ++i) choosesLobes |= bounces.at.bsdfs[i]->traits().choosesLobes;
   VertexNumbers& numbers = bounces.numbers;
   const auto draw1D = [&](VertexNumber number, Column& x) {
-    batch.samplers.draw1D(dimensionOf(bounces.depth, number), x);
+    batch.samplers.draw1D(dimensionOf(bounces.place, number), x);
   };
   const auto draw2D = [&](VertexNumber number, Column& x, Column& y) {
-    batch.samplers.draw2D(dimensionOf(bounces.depth, number), x, y);
+    batch.samplers.draw2D(dimensionOf(bounces.place, number), x, y);
   };
   draw1D(kLightChoiceNumber, numbers.lightChoice);
   draw2D(kLightPointNumber, numbers.lightU, numbers.lightV);
   if (choosesLobes) draw1D(kLobeNumber, numbers.lobe);
   draw2D(kDirectionNumber, numbers.directionU, numbers.directionV);
-  if (settings.learnedRoulette || bounces.depth >= settings.rrDepth)
+  if (settings.learnedRoulette || bounces.place >= settings.rrDepth)
     draw1D(kSurvivalNumber, numbers.survival);
   if (settings.shadowRoulette) draw1D(kShadowRayNumber, numbers.shadowRay);
 }
@@ -109,7 +110,7 @@ void playRouletteOnDeparture(const PathSettings& settings, Bounces& bounces) {
     // Read where roulette is played: here or, where it was learned, where the path arrives.
     arrival.path->uSurvival = bounces.numbers.survival[i];
     const bool learned = settings.learnedRoulette && arrival.cell != kNoCell;
-    if (bounces.depth >= settings.rrDepth && bounces.survives[i] && !learned)
+    if (arrival.path->depth >= settings.rrDepth && bounces.survives[i] && !learned)
       playByThroughput(settings, bounces, i);
   }
 }
@@ -117,7 +118,7 @@ void playRouletteOnDeparture(const PathSettings& settings, Bounces& bounces) {
 namespace {
 
 ODIS_WIDE void spawnRays(const Bounces& bounces, Columns3& origins, Columns3& directions) {
-  const Surfaces& at = bounces.at;
+  const Vertices& at = bounces.at;
   for (size_t i = 0, end = endOfLanes(bounces.count); i < end; ++i) {
     const Vec3 direction = CoordinateFrame(at.s[i], at.t[i], at.n[i]).toWorld(bounces.next.wi[i]);
     const Ray ray = spawnRay(at.p[i], at.ng[i], at.pError[i], direction, kInfinity, 0);
@@ -128,21 +129,30 @@ ODIS_WIDE void spawnRays(const Bounces& bounces, Columns3& origins, Columns3& di
 
 }  // namespace
 
-void departRays(Bounces& bounces) {
+void departRays(const PathSettings& settings, Bounces& bounces) {
   Columns3 origins, directions;
   spawnRays(bounces, origins, directions);
+  const bool volumetric = settings.scene->volumetric();
   for (size_t i = 0; i < bounces.count; ++i) {
     if (!bounces.survives[i]) continue;
     const Arrival& arrival = bounces.arrivals[i];
     Path& path = *arrival.path;
+    const BsdfTraits& traits = bounces.at.bsdfs[i]->traits();
     const Lobe lobe = bounces.next.lobeAt(i);
     path.throughput *= Rgb(bounces.weight[i]);
     if (!path.visible) path.visibleWeight /= bounces.survival[i];
+    path.ray = {origins[i], directions[i], kInfinity, bounces.at.time[i]};
+    path.travelled = 0;
+    if (volumetric) {
+      path.medium = mediumBeyond(arrival, path.ray.direction);
+      // Next-event estimation at the vertex before still competes with what goes straight on.
+      if (lobe == Lobe::null && traits.passesStraight) continue;
+    }
+    ++path.depth;
     path.hidesEnvironment &= lobe == Lobe::null;
-    path.bySampling = !isDiscrete(lobe);
+    path.bySampling = !isDiscrete(lobe) && traits.evaluable;
     path.directionPdf = bounces.next.pdf[i];
     path.previous = bounces.references[i];
-    path.ray = {origins[i], directions[i], kInfinity, bounces.at.time[i]};
   }
 }
 

@@ -84,8 +84,8 @@ class Sampler {
   // Every vertex of a path starts at a dimension of its own, whatever the vertices before it used.
   void startVertex(int depth) { m_dimension = kDimensionsPerVertex * uint32_t(depth); }
 
-  // Before that comes the number that says how far the ray that leads to the vertex gets through a medium.
-  void startFlight(int depth) { m_dimension = dimensionOf(depth, kFlightNumber) - 1; }
+  // The same, but at the number for one of the vertex's purposes.
+  void startAt(int depth, VertexNumber number) { m_dimension = dimensionOf(depth, number) - 1; }
 
   float get1D() {
     const uint64_t hash = nextHash();

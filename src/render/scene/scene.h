@@ -80,6 +80,8 @@ class Scene {
   // depth nor for `hideEmitters`, and shadow rays pass it, too. So it is where there are media, or where the
   // file names an integrator for media and there is something to pass.
   bool volumetric() const { return !m_media.empty() || (m_integrator.volumetric && m_passesStraight); }
+  // Whether there is anything that may let light pass straight through.
+  bool passesStraight() const { return m_passesStraight; }
   // Each once: those that shapes bound, and the sensor's.
   const std::vector<const Medium*>& media() const { return m_media; }
   // Of all that is there while the shutter is open.
