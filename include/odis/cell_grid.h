@@ -1,10 +1,10 @@
 // Nested cells in world space: cubes of doubling size, each split by the dominant axis of the surface
-// normal; vertices in media, which have none, have cells of their own. A cell is named by a key of 64 bits:
-// three coordinates of 19 bits, the axis, the level.
+// normal; vertices in media, which have none, have cells of their own, of twice the edge: media fill volumes.
+// A cell is named by a key of 64 bits: three coordinates of 19 bits, the axis, the level.
 //
 // Up to the grid's reach all cells of a level have the same size. Beyond it they lie in rings, each twice as
 // far out as the one before and made of cells twice as large, so that a horizon needs few of them. The number
-// of the ring, times kRingStride >> level, is added to the first coordinate.
+// of the ring, times kRingStride >> level (level + 1 in media), is added to the first coordinate.
 #pragma once
 
 #include <cstring>
@@ -48,26 +48,32 @@ class CellGrid {
     assert(isIndex(level, kCellLevels));
     const Float3 local = (position - m_origin) * m_inverseEdge;
     const int ring = ringAround(local);
-    const float scale = powerOfTwo(-exponentOf(ring));
+    const uint32_t axis = dominantAxis(normal);
+    const float share = axis == kNoAxis ? 1.0f / (1 << kMediumDoublings) : 1.0f;
+    const float scale = powerOfTwo(-exponentOf(ring)) * share;
     const float limit = m_inverseReach > 0 ? float(kRingMiddle - 1) : float(kMiddle - 1);
-    return pack((coordinate(local.x * scale, limit) + ring * kRingStride) >> level,
-                coordinate(local.y * scale, limit) >> level, coordinate(local.z * scale, limit) >> level,
-                dominantAxis(normal), level);
+    const int stride = axis == kNoAxis ? kRingStride >> kMediumDoublings : kRingStride;
+    return pack((coordinate(local.x * scale, limit) + ring * stride) >> level,
+                coordinate(local.y * scale, limit) >> level, coordinate(local.z * scale, limit) >> level, axis,
+                level);
   }
 
   // The edge of a cell's cube.
   ODIS_HOST_DEVICE float edge(uint64_t key) const {
-    return powerOfTwo(levelOf(key) + exponentOf(ringOf(key))) / m_inverseEdge;
+    return powerOfTwo(doublingsOf(key) + exponentOf(ringOf(key))) / m_inverseEdge;
   }
 
   // The middle of a cell's cube.
   Float3 middle(uint64_t key) const {
     const float edge = this->edge(key);
-    const int x = unpacked(key, 0) - (ringOf(key) * kRingStride >> levelOf(key));
+    const int x = unpacked(key, 0) - (ringOf(key) * kRingStride >> doublingsOf(key));
     return m_origin + Float3{float(x) + 0.5f, float(unpacked(key, kBits)) + 0.5f,
                              float(unpacked(key, 2 * kBits)) + 0.5f} *
                           edge;
   }
+
+  // Whether a cell lies within the grid's reach.
+  bool isWithinReach(uint64_t key) const { return ringOf(key) == 0; }
 
   // The key of the cell of the same level that lies (x, y, z) cells away, as if rings had no end.
   static uint64_t neighbour(uint64_t key, int x, int y, int z) {
@@ -91,6 +97,8 @@ class CellGrid {
   static constexpr int kRingBits = 11, kRingStride = 1 << kRingBits, kMostRing = 120;
   static constexpr int kRingMiddle = kRingStride / 2;
   static constexpr uint32_t kNoAxis = 6;
+  // How often the edge of cells in media is doubled.
+  static constexpr int kMediumDoublings = 1;
   // Cells of ring r have 2^(r + kRingExponent) times the edge of those within reach.
   static constexpr int kRingExponent = 2;
 
@@ -113,9 +121,14 @@ class CellGrid {
     return max(int(bits >> 23) - 126, 0);
   }
   ODIS_HOST_DEVICE int ringOf(uint64_t key) const {
-    const int level = levelOf(key) & 3;
-    const int ring = (unpacked(key, 0) + (kRingMiddle >> level)) >> (kRingBits - level);
+    const int doublings = doublingsOf(key);
+    const int ring = (unpacked(key, 0) + (kRingMiddle >> doublings)) >> (kRingBits - doublings);
     return m_inverseReach > 0 ? min(max(ring, 0), kMostRing) : 0;
+  }
+
+  // How often the edge of a cell within reach is doubled.
+  ODIS_HOST_DEVICE static int doublingsOf(uint64_t key) {
+    return (levelOf(key) & 3) + (isOfMedium(key) ? kMediumDoublings : 0);
   }
 
   // Rounds down. Numbers are clamped to the limit either side of 0, which only merges what is absurdly far

@@ -51,8 +51,8 @@ void bindMaps(nb::class_<Guide>& guide) {
           },
           "(cells,), uint64: where each cell lies: three coordinates of 19 bits from the lowest bit on, the\n"
           "axis of its normals from bit 57 on (6: in media), its level from bit 60 on. Far out, in rings of\n"
-          "larger cells, 2048 >> level times the ring's number is added to the first coordinate\n"
-          "(odis/cell_grid.h).")
+          "larger cells, 2048 >> level times the ring's number (in media level + 1) is added to the first\n"
+          "coordinate (odis/cell_grid.h).")
       .def_prop_ro(
           "maps",
           [](Self self) {
@@ -212,7 +212,8 @@ and keep it alive. About 610 bytes a cell.)");
           "Number of groups of lights that it knows of.")
       .def_prop_ro(
           "finest_edge", [](const Guide& self) { return 1 / self.view().grid.inverseEdge; },
-          "Edge of the finest cells, in world space; those of the next levels are twice as long.")
+          "Edge of the finest cells, in world space, twice as long in media; those of the next levels are\n"
+          "twice as long, each.")
       .def_prop_ro(
           "origin",
           [](const Guide& self) {

@@ -5,7 +5,7 @@
 
 #include "integrator/test_scenes.h"
 #include "odis/maps/pack.h"
-#include "render/path/bounce.h"
+#include "render/path/media.h"
 #include "support/random.h"
 
 namespace odis::test {
@@ -81,7 +81,8 @@ class Arrivals {
  public:
   explicit Arrivals(const Scene& scene) : m_scene(scene) {}
 
-  // Puts new ones into all but the last lanes, and random numbers.
+  // Puts new ones into all but the last lanes, and random numbers. With a medium around the camera every other
+  // path is scattered in it.
   void fill(Bounces& bounces, Random& random) {
     m_paths.clear();
     bounces.place = 1;
@@ -98,6 +99,8 @@ class Arrivals {
       vertex.wo = vertex.at.shading.toLocal(-ray.direction);
       vertex.bsdf = &vertex.at.shape->bsdf();
       Path& path = m_paths.emplace_back(ray, Sampler(SamplerKind::independent, 1, uint32_t(i), 0));
+      path.medium = m_scene.sensor().medium();
+      if (path.medium && i % 2 == 0) vertex = vertexInMedium(path, 1);
       bounces.arrivals[i] = {&path, uint32_t(i), &vertex, kNoCell, true};
       VertexNumbers& numbers = bounces.numbers;
       for (Column* column : {&numbers.lightChoice, &numbers.lightU, &numbers.lightV, &numbers.lobe,
@@ -138,12 +141,24 @@ std::string rectangle(const std::string& bsdf) {
   return "<shape type=\"rectangle\">" + bsdf + "</shape>";
 }
 
-const std::string kCamera = sensor("origin=\"0,0,5\" target=\"0,0,0\" up=\"0,1,0\"", 40, 8, 8);
+constexpr const char* kPhases[] = {
+    "<phase type=\"isotropic\"/>",
+    "<phase type=\"hg\"><float name=\"g\" value=\"0.6\"/></phase>",
+    "<phase type=\"blendphase\"><float name=\"weight\" value=\"0.3\"/><phase type=\"rayleigh\"/>"
+    "<phase type=\"hg\"/></phase>",
+};
+
+// With a medium around it if there is a phase function.
+std::string cameraWithin(const std::string& phase = {}) {
+  const std::string medium =
+      phase.empty() ? phase : "<medium type=\"homogeneous\">" + phase + "</medium>";
+  return sensor("origin=\"0,0,5\" target=\"0,0,0\" up=\"0,1,0\"", 40, 8, 8, medium);
+}
 
 // Vertices on one surface, some of whose cells guide and some not: the steps of a bounce sample the very
 // mixture that Mixture::sample() is the definition of.
-void expectDirectionsOfTheMixture(const std::string& bsdf, Random& random) {
-  const auto scene = loadScene(kCamera + rectangle(bsdf));
+void expectDirectionsOfTheMixture(const std::string& bsdf, const std::string& phase, Random& random) {
+  const auto scene = loadScene(cameraWithin(phase) + rectangle(bsdf));
   const Maps maps(random);
   std::vector<OdisCellDecisions> decisions(Maps::kCells);
   for (OdisCellDecisions& cell : decisions)
@@ -191,12 +206,14 @@ void expectDirectionsOfTheMixture(const std::string& bsdf, Random& random) {
 
 TEST(Directions, AreThoseOfTheMixture) {
   Random random(2);
-  for (const char* bsdf : kSurfaces) expectDirectionsOfTheMixture(bsdf, random);
+  for (const char* bsdf : kSurfaces) expectDirectionsOfTheMixture(bsdf, "", random);
+  for (const char* phase : kPhases) expectDirectionsOfTheMixture(kSurfaces[0], phase, random);
 }
 
 // Next-event estimation side by side is what the choice of a light, its sample and the BSDF say one by one.
-void expectLightOfEachPath(const std::string& bsdf, const std::string& lights, Random& random) {
-  const auto scene = loadScene(kCamera + rectangle(bsdf) + lights);
+void expectLightOfEachPath(const std::string& phase, const std::string& bsdf, const std::string& lights,
+                           Random& random) {
+  const auto scene = loadScene(cameraWithin(phase) + rectangle(bsdf) + lights);
   const LightSampler sampler(scene->emitters());
   PathSettings settings;
   settings.scene = scene.get();
@@ -216,8 +233,10 @@ void expectLightOfEachPath(const std::string& bsdf, const std::string& lights, R
     for (size_t i = 0; i < kCount; ++i) {
       const auto& [at, wo, kind, scattering] = *bounces->arrivals[i].vertex;
       const VertexNumbers& numbers = bounces->numbers;
-      const LightSampler::Choice choice = sampler.sample(lightReference(at, wo), numbers.lightChoice[i],
-                                                         Vec2(numbers.lightU[i], numbers.lightV[i]));
+      const LightReference reference =
+          kind == VertexKind::medium ? LightReference{at.p, Vec3(0, 0, 0), true} : lightReference(at, wo);
+      const LightSampler::Choice choice =
+          sampler.sample(reference, numbers.lightChoice[i], Vec2(numbers.lightU[i], numbers.lightV[i]));
       if (!choice.emitter) continue;
       const EmitterSample sample = choice.emitter->sample(choice.part, at.p, choice.u);
       const BsdfValue value = scattering->evaluate(at, wo, at.shading.toLocal(sample.wi));
@@ -252,9 +271,10 @@ TEST(Lights, AreThoseOfEachPath) {
   const std::string point =
       "<emitter type=\"point\"><point name=\"position\" x=\"-3\" y=\"0\" z=\"5\"/></emitter>";
   const std::string sky = "<emitter type=\"constant\"/>";
-  for (const char* bsdf : kSurfaces)
-    for (const std::string& lights : {square, square + ball + point, sky, square + ball + point + sky})
-      expectLightOfEachPath(bsdf, lights, random);
+  for (const std::string& lights : {square, square + ball + point, sky, square + ball + point + sky}) {
+    for (const char* bsdf : kSurfaces) expectLightOfEachPath("", bsdf, lights, random);
+    for (const char* phase : kPhases) expectLightOfEachPath(phase, kSurfaces[2], lights, random);
+  }
 }
 
 }  // namespace

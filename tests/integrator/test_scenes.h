@@ -27,12 +27,13 @@ inline std::unique_ptr<render::Scene> loadScene(const std::string& body) {
   return scene;
 }
 
-inline std::string sensor(const std::string& lookAt, float fov, int width, int height) {
+inline std::string sensor(const std::string& lookAt, float fov, int width, int height,
+                          const std::string& medium = {}) {
   return "<sensor type=\"perspective\"><float name=\"fov\" value=\"" + std::to_string(fov) +
          "\"/><transform name=\"to_world\"><lookat " + lookAt +
          "/></transform><film type=\"hdrfilm\"><integer name=\"width\" value=\"" + std::to_string(width) +
          "\"/><integer name=\"height\" value=\"" + std::to_string(height) +
-         "\"/><rfilter type=\"box\"/></film></sensor>";
+         "\"/><rfilter type=\"box\"/></film>" + medium + "</sensor>";
 }
 
 // The inside of a unit sphere that emits radiance 1 and reflects half of what it receives: radiance 1 / (1 -

@@ -209,18 +209,20 @@ TEST(PlaceGrid, CellsFarOutGrowWithTheirDistance) {
   Draw draw;
   for (int i = 0; i < 20000; ++i) {
     const float distance = std::pow(10.0f, draw.uniform(-1, 30));
-    const Float3 p = draw.direction() * distance, normal = draw.direction();
+    const bool inMedium = i % 3 == 0;  // whose cells have twice the edge
+    const Float3 p = draw.direction() * distance, normal = inMedium ? Float3{} : draw.direction();
     uint64_t key = grid.key(p, normal, 0);
     for (int level = 0; level < kCellLevels; ++level, key = CellGrid::parent(key)) {
       ASSERT_EQ(key, grid.key(p, normal, level)) << distance;
       const float edge = grid.edge(key);
+      EXPECT_EQ(CellGrid::isOfMedium(key), inMedium);
       const Float3 off = p - grid.middle(key);
       for (const float along : {off.x, off.y, off.z}) ASSERT_LE(std::abs(along), 0.501f * edge) << distance;
       if (distance < 3) {
-        EXPECT_EQ(edge, grid.finestEdge() * float(1 << level));
+        EXPECT_EQ(edge, grid.finestEdge() * float((inMedium ? 2 : 1) << level));
       } else if (distance > 100 && level == 0) {
         EXPECT_GT(edge, 0.05f * distance);
-        EXPECT_LT(edge, 0.5f * distance);
+        EXPECT_LT(edge, (inMedium ? 1 : 0.5f) * distance);
       }
     }
   }

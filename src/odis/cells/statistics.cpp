@@ -275,7 +275,7 @@ const std::vector<CellStatistics>& CellStore::rollUp() {
     });
   forEachCell(*m_tasks, m_cells.size(), [&](size_t c) {
     CellStatistics& cell = m_cells[c];
-    cell.hasMap = cell.count >= kLeastForMap || cell.parent == kNoCell || isWithinReach(m_links[c].key);
+    cell.hasMap = cell.count >= kLeastForMap || cell.parent == kNoCell || m_grid.isWithinReach(m_links[c].key);
   });
   if (m_looksAround) lookAround();
   return m_cells;
@@ -284,15 +284,11 @@ const std::vector<CellStatistics>& CellStore::rollUp() {
 double CellStore::visitedCells() const {
   double sum = 0;
   for (size_t c = 0; c < m_cells.size(); ++c)
-    if (isWithinReach(m_links[c].key))
+    if (m_grid.isWithinReach(m_links[c].key))
       sum += 1;
     else if (m_cells[c].hasMap)
       sum += m_cells[c].count / (m_cells[c].count + kHalfKnown);
   return sum;
-}
-
-bool CellStore::isWithinReach(uint64_t key) const {
-  return m_grid.edge(key) <= float(1 << CellGrid::levelOf(key)) * m_grid.finestEdge();
 }
 
 // Puts the light of coarser cells together from their children's, then lets all cells look at it.

@@ -176,7 +176,6 @@ class CellStore {
   uint32_t insert(uint64_t key);
   void addNewCells();
   void addReturned(const CellOrder<CellSample>& order);
-  bool isWithinReach(uint64_t key) const;
   void lookAround();
   void fillSurroundings(const LightPoints& points, std::span<const uint32_t> pointsOf);
   std::span<const uint32_t> childrenOf(size_t cell) const {

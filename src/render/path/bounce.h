@@ -135,7 +135,7 @@ struct CellLookUps {
   }
 };
 
-// What the paths of a batch share while they are traced; kept from batch to batch for its memory. 290 bytes a
+// What the paths of a batch share while they are traced; kept from batch to batch for its memory. 282 bytes a
 // path and 49 a shadow ray.
 struct Batch {
   std::vector<uint32_t> active;  // paths that have a ray to trace

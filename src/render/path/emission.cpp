@@ -55,8 +55,10 @@ void arrive(const PathSettings& settings, const AddTo& add, Batch& batch, int pl
   const float distance = length(vertex.at.p - path.ray.origin);
   path.distance += distance;
   path.travelled += distance;
-  const bool isHidden = hidesLights(*settings.scene, path, vertex);
-  const std::optional<Rgb> passing = passesStraight(settings, place, path, vertex);
+  const bool mayPass = settings.scene->volumetric() && !vertex.inMedium();
+  const bool isHidden = mayPass && hidesLight(*settings.scene, path, vertex);
+  const std::optional<Rgb> passing =
+      mayPass ? passesStraight(settings, place, path, vertex) : std::optional<Rgb>();
   if (batch.recording && !passing) recordVertex(batch.recorder, path, vertex);
   if (!vertex.inMedium() && !isHidden) ifShining(path.ray, vertex.at, competitor(path), add(path));
   if (passing) {

@@ -67,19 +67,6 @@ void drawLamps(const LightSampler& lights, Flights& flights) {
   }
 }
 
-// The vertex of a path that is scattered on its ray, in a medium.
-Vertex vertexInMedium(const Path& path, float distance) {
-  Vertex vertex;
-  vertex.kind = VertexKind::medium;
-  vertex.bsdf = &path.medium->bsdf();
-  vertex.at.p = path.ray.origin + path.ray.direction * distance;
-  vertex.at.ng = Vec3(0, 0, 0);
-  vertex.at.uv = Vec2(0, 0);
-  vertex.at.time = path.ray.time;
-  vertex.wo = -path.ray.direction;
-  return vertex;
-}
-
 void land(const Flight& flight, Batch& batch, Path& path, Vertex& vertex) {
   path.throughput *= flight.weight;
   if (batch.recording) batch.recorder.attenuation(path.handle, toOdis(flight.weight));
@@ -110,6 +97,18 @@ void finish(const PathSettings& settings, int place, Batch& batch, Flights& flig
 
 }  // namespace
 
+Vertex vertexInMedium(const Path& path, float distance) {
+  Vertex vertex;
+  vertex.kind = VertexKind::medium;
+  vertex.bsdf = &path.medium->bsdf();
+  vertex.at.p = path.ray.origin + path.ray.direction * distance;
+  vertex.at.ng = Vec3(0, 0, 0);
+  vertex.at.uv = Vec2(0, 0);
+  vertex.at.time = path.ray.time;
+  vertex.wo = -path.ray.direction;
+  return vertex;
+}
+
 void flyThroughMedia(const PathSettings& settings, std::span<Path> paths, int place, Batch& batch) {
   Flights flights;
   for (uint32_t i = 0; i < batch.active.size(); ++i) {
@@ -123,14 +122,12 @@ void flyThroughMedia(const PathSettings& settings, std::span<Path> paths, int pl
   if (flights.count > 0) finish(settings, place, batch, flights);
 }
 
-bool hidesLights(const Scene& scene, const Path& path, const Vertex& vertex) {
-  return scene.volumetric() && scene.integrator().hideEmitters && path.depth == 1 && !vertex.inMedium() &&
-         vertex.at.shape->emitter();
+bool hidesLight(const Scene& scene, const Path& path, const Vertex& vertex) {
+  return scene.integrator().hideEmitters && path.depth == 1 && vertex.at.shape->emitter();
 }
 
 std::optional<Rgb> passesStraight(const PathSettings& settings, int place, Path& path, const Vertex& vertex) {
-  if (!settings.scene->volumetric() || vertex.inMedium()) return {};
-  if (hidesLights(*settings.scene, path, vertex)) return Rgb(1.0f);
+  if (hidesLight(*settings.scene, path, vertex)) return Rgb(1.0f);
   const BsdfTraits& traits = vertex.bsdf->traits();
   // Elsewhere the direction is drawn with those of other paths.
   if (!traits.passesStraight || (traits.evaluable && !isDeepest(settings, path))) return {};

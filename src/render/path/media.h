@@ -8,16 +8,19 @@
 
 namespace odis::render {
 
+// The vertex of a path that is scattered in its medium, at this distance on its ray.
+Vertex vertexInMedium(const Path& path, float distance);
+
 // Draws what becomes of rays, whose ends on surfaces are known, in the media that they are in: paths are
 // scattered there, or absorbed, or arrive with a weight.
 void flyThroughMedia(const PathSettings& settings, std::span<Path> paths, int place, Batch& batch);
 
-// Whether a path sees the surface that it met, a light, no more than if it were not there.
-bool hidesLights(const Scene& scene, const Path& path, const Vertex& vertex);
+// Whether the surface that a path met is a light that the camera does not see (`hideEmitters`).
+bool hidesLight(const Scene& scene, const Path& path, const Vertex& vertex);
 // The factor of a path that goes straight on behind the surface that it met, without a vertex; nothing if the
 // path has a vertex there. `place` as in Bounces.
 std::optional<Rgb> passesStraight(const PathSettings& settings, int place, Path& path, const Vertex& vertex);
-// Gives such a path the rest of its ray.
+// Gives such a path its next ray.
 void goStraightOn(Path& path, const Vertex& vertex);
 
 // The medium that a ray gets into that leaves a vertex in this direction; null for none.
