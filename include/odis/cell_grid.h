@@ -54,8 +54,8 @@ class CellGrid {
     const float limit = m_inverseReach > 0 ? float(kRingMiddle - 1) : float(kMiddle - 1);
     const int stride = axis == kNoAxis ? kRingStride >> kMediumDoublings : kRingStride;
     return pack((coordinate(local.x * scale, limit) + ring * stride) >> level,
-                coordinate(local.y * scale, limit) >> level, coordinate(local.z * scale, limit) >> level, axis,
-                level);
+                coordinate(local.y * scale, limit) >> level, coordinate(local.z * scale, limit) >> level,
+                axis, level);
   }
 
   // The edge of a cell's cube.

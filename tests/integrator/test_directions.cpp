@@ -150,8 +150,7 @@ constexpr const char* kPhases[] = {
 
 // With a medium around it if there is a phase function.
 std::string cameraWithin(const std::string& phase = {}) {
-  const std::string medium =
-      phase.empty() ? phase : "<medium type=\"homogeneous\">" + phase + "</medium>";
+  const std::string medium = phase.empty() ? phase : "<medium type=\"homogeneous\">" + phase + "</medium>";
   return sensor("origin=\"0,0,5\" target=\"0,0,0\" up=\"0,1,0\"", 40, 8, 8, medium);
 }
 

@@ -1,4 +1,6 @@
 // What scene files say of participating media, and what is said about it.
+#include <fmt/format.h>
+
 #include "render/scene/info.h"
 #include "render/scene/scene.h"
 #include "scene/scene_text.h"
@@ -27,8 +29,10 @@ MediaScene readScene(const std::string& body, const std::string& version = "3.0.
   MediaScene result;
   try {
     result.scene = render::Scene::load(
-        folder.write("scene.xml", "<scene version='" + version + "'><emitter type='constant'/>" +
-                                      "<sensor type='perspective'/>" + body + "</scene>"),
+        folder.write("scene.xml",
+                     "<scene version='" + version + "'><emitter type='constant'/>" +
+                         "<sensor type='perspective'><float name='shutter_close' value='1'/></sensor>" +
+                         body + "</scene>"),
         {}, result.warnings);
   } catch (const render::SceneError& error) {
     result.error = error.message();
@@ -141,6 +145,9 @@ TEST(MediaScenes, TellWhatHasNoEffect) {
             std::string::npos);
   EXPECT_NE(readBall("<rgb name='emission' value='1'/>").warning().find("media that shine"),
             std::string::npos);
+  const MediaScene merged = readScene(
+      "<shape type='merge'><medium name='interior' type='homogeneous'/><shape type='sphere'/></shape>");
+  EXPECT_NE(merged.warning().find("the shape 'merge' bounds no medium"), std::string::npos);
 }
 
 constexpr char kFog[] = "<medium name='interior' type='homogeneous'/></shape>";
@@ -167,6 +174,15 @@ TEST(MediaScenes, TellOfBoundariesThatAreOpen) {
                            "<shape type='disk'><transform name='to_world'><translate z='1'/></transform>" +
                            kFog;
   EXPECT_EQ(openingOf(std::string("<shape type='cylinder'>") + kFog + caps), "");
+  // Moving ones, each from a place of its own, as they are when the shutter opens.
+  const auto moving = [](const std::string& type, int z) {
+    const auto at = [&](int time) {
+      return fmt::format("<transform time='{0}'><translate x='{0}' z='{1}'/></transform>", time, z);
+    };
+    return "<shape type='" + type + "'><animation name='to_world'>" + at(0) + at(1) + "</animation>" + kFog;
+  };
+  EXPECT_EQ(openingOf(moving("cylinder", 0) + moving("disk", 0) + moving("disk", 1)), "");
+  EXPECT_NE(openingOf(moving("cylinder", 0) + moving("disk", 0)), "");
   std::string box;
   for (const char* turn : {"x='1' angle='0'", "x='1' angle='90'", "x='1' angle='180'", "x='1' angle='270'",
                            "y='1' angle='90'", "y='1' angle='270'"})

@@ -275,7 +275,8 @@ const std::vector<CellStatistics>& CellStore::rollUp() {
     });
   forEachCell(*m_tasks, m_cells.size(), [&](size_t c) {
     CellStatistics& cell = m_cells[c];
-    cell.hasMap = cell.count >= kLeastForMap || cell.parent == kNoCell || m_grid.isWithinReach(m_links[c].key);
+    cell.hasMap =
+        cell.count >= kLeastForMap || cell.parent == kNoCell || m_grid.isWithinReach(m_links[c].key);
   });
   if (m_looksAround) lookAround();
   return m_cells;

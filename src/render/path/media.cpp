@@ -87,9 +87,8 @@ void finish(const PathSettings& settings, int place, Batch& batch, Flights& flig
     Path& path = *flights.paths[i];
     const MediumSegment& segment = flights.segments[i];
     const Medium& medium = *path.medium;
-    const Flight flight = flights.lamps[i]
-                              ? medium.flyPast(*flights.lamps[i], segment, path.throughput, u[i])
-                              : medium.fly(segment, path.throughput, u[i], path.random);
+    const Flight flight = flights.lamps[i] ? medium.flyPast(*flights.lamps[i], segment, path.throughput, u[i])
+                                           : medium.fly(segment, path.throughput, u[i], path.random);
     land(flight, batch, path, batch.vertices[flights.rays[i]]);
   }
   flights.clear();

@@ -86,10 +86,10 @@ struct Path {
 // One path as it arrives at one vertex.
 struct Arrival {
   Path* path;
-  uint32_t index;        // of the path in the batch
+  uint32_t index;  // of the path in the batch
   const Vertex* vertex;
-  uint32_t cell;         // of the guide, or kNoCell
-  bool scatters;         // whether the path goes on to be scattered here
+  uint32_t cell;  // of the guide, or kNoCell
+  bool scatters;  // whether the path goes on to be scattered here
 };
 
 // The shading normal on the side that the path came from; zero in a medium.

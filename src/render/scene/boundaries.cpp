@@ -51,9 +51,13 @@ class PointGrid {
 
 }  // namespace
 
-void Boundaries::add(const Shape& shape, const SourceLocation& at, const void* key) {
-  const std::vector<Vec3> openings = shape.openings();
+void Boundaries::add(const Shape& shape, const Motion* motion, const SourceLocation& at, const void* key) {
+  std::vector<Vec3> openings = shape.openings();
   if (openings.empty()) return;
+  if (motion) {
+    const Matrix4 toWorld = motion->matrixAt(0);
+    for (Vec3& p : openings) p = transformPoint(toWorld, p);
+  }
   auto frame = std::find_if(m_frames.begin(), m_frames.end(), [&](const Frame& f) { return f.key == key; });
   if (frame == m_frames.end()) frame = m_frames.insert(frame, Frame{key, {}, {}});
   for (const Vec3& p : openings) frame->openings.push_back({p, frame->shapes.size()});

@@ -10,9 +10,10 @@ namespace odis::render {
 
 class Boundaries {
  public:
-  // A shape that bounds a medium. Shapes of the same `frame`, which stand still in one space, may close each
-  // other's openings: a cylinder and the disks at its ends.
-  void add(const Shape& shape, const SourceLocation& at, const void* frame);
+  // A shape that bounds a medium, with its motion (null: it stands still), of which what is when the shutter
+  // opens counts. Shapes of the same `frame`, a space, may close each other's openings: a cylinder and the
+  // disks at its ends.
+  void add(const Shape& shape, const Motion* motion, const SourceLocation& at, const void* frame);
   // Tells of those that are left open. Cost: linear in the number of triangles.
   void warn(Warnings& warnings) const;
 

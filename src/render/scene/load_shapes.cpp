@@ -36,6 +36,11 @@ void refuseMotion(const std::vector<ShapePtr>& shapes, const Motion* motion, con
 
 void ShapeLoader::load(const Properties& node) {
   if (node.type == "shapegroup") return;  // drawn where an instance refers to it
+  if (node.type == "instance" || node.type == "merge")
+    for (const Properties* medium : childrenOf(node, "medium"))
+      m_builder.warn(
+          medium->location,
+          "the shape '" + node.type + "' bounds no medium, the shapes within it do; this one is left out");
   if (node.type == "instance") {
     loadInstance(node);
   } else if (node.type == "merge") {
@@ -69,8 +74,7 @@ ShapeLoader::Made ShapeLoader::make(const Properties& node, bool grouped) {
 
 void ShapeLoader::checkBoundary(const Made& made, const Properties& node) {
   if (!made.shape || !made.shape->boundsMedia()) return;
-  const void* const frame = made.motion ? static_cast<const void*>(made.shape.get()) : m_currentGroup;
-  m_boundaries.add(*made.shape, node.location, frame);
+  m_boundaries.add(*made.shape, made.motion.get(), node.location, m_currentGroup);
   refuseMotion({made.shape}, made.motion.get(), node.placeOf("to_world"));
 }
 
