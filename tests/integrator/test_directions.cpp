@@ -81,8 +81,8 @@ class Arrivals {
  public:
   explicit Arrivals(const Scene& scene) : m_scene(scene) {}
 
-  // Puts new ones into all but the last lanes, and random numbers. With a medium around the camera every other
-  // path is scattered in it.
+  // Puts new ones into all but the last lanes, and random numbers. With a medium around the camera every
+  // other path is scattered in it.
   void fill(Bounces& bounces, Random& random) {
     m_paths.clear();
     bounces.place = 1;

@@ -1,5 +1,5 @@
-// What scenes with media add to a bounce (Scene::volumetric()): rays that are scattered on their way, surfaces
-// that let paths pass straight through, and shadow rays that are attenuated.
+// What scenes with media add to a bounce (Scene::volumetric()): rays that are scattered on their way,
+// surfaces that let paths pass straight through, and shadow rays that are attenuated.
 #pragma once
 
 #include <optional>
