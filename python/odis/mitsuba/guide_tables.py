@@ -64,19 +64,26 @@ class GuideTables:
     last_share: object = None  # UInt32
 
 
+def levels_of(keys):
+    """The levels of cells, 0 for the finest, and how often their edges are doubled: int64 (cells,) each."""
+    level = (keys >> np.uint64(60)).astype(np.int64)
+    in_medium = ((keys >> np.uint64(57)) & np.uint64(7)) == 6
+    return level, level + in_medium
+
+
 def grid_box(guide, orientations):
     """The box of the finest cells to tabulate, in cells from the guide's origin: lowest corner and size, int64 (3,)."""
     keys = guide.cell_keys
-    level = (keys >> np.uint64(60)).astype(np.int64)
+    level, doublings = levels_of(keys)
     axes = [((keys >> np.uint64(19 * a)) & np.uint64((1 << 19) - 1)).astype(np.int64) - (1 << 18) for a in range(3)]
-    near = axes[0] << level < 1024  # without the rings of larger cells, far out (odis/cell_grid.h)
-    level, axes = level[near], [coordinate[near] for coordinate in axes]
+    near = axes[0] << doublings < 1024  # without the rings of larger cells, far out (odis/cell_grid.h)
+    level, doublings, axes = level[near], doublings[near], [coordinate[near] for coordinate in axes]
     if not len(level):
         return np.zeros(3, np.int64), np.ones(3, np.int64)
     low, high = np.zeros(3, np.int64), np.zeros(3, np.int64)
     finest = level == 0 if (level == 0).any() else level == level.min()
     for a, coordinate in enumerate(axes):
-        begin, end = coordinate << level, (coordinate + 1) << level
+        begin, end = coordinate << doublings, (coordinate + 1) << doublings
         core_low, core_high = np.quantile(begin[finest], [0.02, 0.98])
         low[a] = max(begin.min(), int(core_low) - MARGIN)
         high[a] = min(end.max(), int(core_high) + 1 + MARGIN)
@@ -140,7 +147,7 @@ def make_guide_tables(guide, has_media=False):
         least_shadow_ray_probability=mi.Float(rules.least_shadow_ray_probability),
         pixel_cells=array_of(mi.UInt32, guide.pixel_cells) if guide.pixel_cells.size else None)
     if guide.cached_radiance.size:
-        edges = guide.finest_edge * (1 << (guide.cell_keys >> np.uint64(60)).astype(np.int64))
+        edges = guide.finest_edge * (1 << levels_of(guide.cell_keys)[1])
         tables.cached = array_of(mi.Float, guide.cached_radiance)
         tables.cached_footprints = array_of(mi.Float, (rules.least_cached_footprint * edges).astype(np.float32))
         tables.cached_error = mi.Float(rules.cached_error)
