@@ -11,9 +11,10 @@ independent samples and the filter that the scene's file names, or another (--rf
 with `volpath` in place of `path`, with the max_depth and rr_depth of their files. Times are wall clock, without
 Dr.Jit's code generation and compilation, and processor time: each kind renders once to warm up, and an image for which
 kernels were compiled is rendered again. Errors are 0.1 %-trimmed relMSE as src/eval/metrics.h has it, to
-references of `path` with other seeds and the same filter, or to images of a folder (--references). Times are the least over seeds, as other work on the machine
-only adds to them, errors and rays are medians; ratios are to `path`, and error × time is that of the processor. The mean
-is that of all seeds' images, over the reference's, with its standard error without the reference's own. Scenes that do not load get `-`, and the reason on stderr.
+references of `path` with other seeds and the same filter, or to images of a folder (--references). Times are the least
+over seeds, as other work on the machine only adds to them, errors and rays are medians; ratios are to `path`, and error
+× time is that of the processor. The mean is that of all seeds' images, over the reference's, with its standard error
+without the reference's own. Scenes that do not load get `-`, and the reason on stderr.
 """
 import argparse
 import hashlib
@@ -65,7 +66,8 @@ def path_tracer_beside(scene):
 
 def image_of_file(path, size):
     """The colours of an EXR file, averaged down to a width and height."""
-    image = np.array(mi.Bitmap(path).convert(mi.Bitmap.PixelFormat.RGB, mi.Struct.Type.Float32, srgb_gamma=False), np.float64)
+    bitmap = mi.Bitmap(path).convert(mi.Bitmap.PixelFormat.RGB, mi.Struct.Type.Float32, srgb_gamma=False)
+    image = np.array(bitmap, np.float64)
     width, height = size
     if image.shape[0] % height or image.shape[1] % width:
         raise ValueError(f"{path}: expected a multiple of {width}x{height}, found {image.shape[1]}x{image.shape[0]}")
@@ -75,7 +77,8 @@ def image_of_file(path, size):
 def reference_of(scene, path, args):
     """An image by `path`, or `volpath`, with many samples, kept in a file between runs; or that of a folder."""
     if args.references:
-        return image_of_file(os.path.join(args.references, f"{name_of(path)}.exr"), scene.sensors()[0].film().crop_size())
+        file = os.path.join(args.references, f"{name_of(path)}.exr")
+        return image_of_file(file, scene.sensors()[0].film().crop_size())
     if args.reference_spp % REFERENCE_PART:
         raise SystemExit(f"--reference-spp: expected a multiple of {REFERENCE_PART}")
     size = list(scene.sensors()[0].film().crop_size())

@@ -146,14 +146,14 @@ class WrongGuide(unittest.TestCase):
         self.assertTrue((guide.cell_keys >> np.uint64(57) & np.uint64(7) == guide_tables.OF_MEDIUM).any())
         tables, pixels, spp = guide_tables.make_guide_tables(guide, True), base.SIZE ** 2, 64
         pixel = np.repeat(np.arange(pixels, dtype=np.uint32), spp)
+        number = np.tile(np.arange(spp, dtype=np.uint32), pixels)
         values = array_of(mi.Float, np.full(pixels, 0.5, np.float32))
 
         def image(seed, used):
             film = make_film("pixels", scene.sensors()[0].film())
             camera = integrator.Camera(scene.sensors()[0], dr.opaque(mi.UInt64, hash_seed(seed)), film)
-            samples = path.Samples(array_of(mi.UInt32, pixel), array_of(mi.UInt32, np.tile(np.arange(spp, dtype=np.uint32),
-                                                                                          pixels)),
-                                   values if used else None, result=dr.zeros(mi.Float, 4 * pixel.size))
+            samples = path.Samples(array_of(mi.UInt32, pixel), array_of(mi.UInt32, number), values if used else None,
+                                   result=dr.zeros(mi.Float, 4 * pixel.size))
             samples = integrator.choose_samples(samples, np.arange(pixel.size), np.zeros(pixel.size, bool), 1)
             integrator.trace_samples(scene, camera, made.settings, made.known, used, samples)
             colors = np.asarray(samples.result).reshape(base.SIZE, base.SIZE, spp, 4)[..., :3]
@@ -179,8 +179,8 @@ class Parts(unittest.TestCase):
 
     def test_boundaries_do_not_count_without_media(self):
         """Light of a lamp behind three sheets of `null` is seen with a depth of 1 and reaches a wall with 2."""
-        sheets = {f"sheet{i}": {"type": "rectangle", "to_world": at(0, 0, 0.5 + 0.1 * i).scale(9), "bsdf": {"type": "null"}}
-                  for i in range(3)}
+        sheet = {"type": "rectangle", "bsdf": {"type": "null"}}
+        sheets = {f"sheet{i}": {**sheet, "to_world": at(0, 0, 0.5 + 0.1 * i).scale(9)} for i in range(3)}
         scene = mi.load_dict({**room(), **sheets, "sensor": sensor([0, 0.5, 5], [0, 0, 0]),
                               "ball": {"type": "sphere", "radius": 0.3, "emitter": {"type": "area", "radiance": 2.0}}})
         for depth in (1, 2):
@@ -243,8 +243,8 @@ class Parts(unittest.TestCase):
         completions = np.array(recorder.completions).reshape(-1, recording.PACKET)[np.array(row)]
         arriving = 1 * 0.5 + 3 * 0.1
         np.testing.assert_allclose(completions[1, :3], [4, 8, 16])
-        np.testing.assert_allclose(completions[0, :3], [arriving + (1 + 4 / 2) / 4, arriving + 8 / 2 / 2, arriving + 16 / 2],
-                                   rtol=1e-6)
+        expected = [arriving + (1 + 4 / 2) / 4, arriving + 8 / 2 / 2, arriving + 16 / 2]
+        np.testing.assert_allclose(completions[0, :3], expected, rtol=1e-6)
         self.assertAlmostEqual(float(completions[0, 4]), 4 / 2, delta=1e-5)
         self.assertEqual(np.array(recorder.rows).reshape(-1, recording.ROW)[int(row[0]), 5 * recording.PACKET + 4], 9)
 

@@ -74,8 +74,8 @@ def new_row(recorder, active):
 
 @dataclass
 class Vertex:
-    """What is known of a vertex once it has drawn a direction: the fields of odis.PathVertices, as Dr.Jit's arrays; colours
-    are mi.Color3f."""
+    """What is known of a vertex once it has drawn a direction: the fields of odis.PathVertices, as Dr.Jit's arrays;
+    colours are mi.Color3f."""
 
     position: object
     normal: object

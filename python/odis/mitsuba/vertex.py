@@ -41,7 +41,7 @@ class Before:
     n: object
     pdf: object  # of the direction
     bsdf_pdf: object  # that of the BSDF alone; counts where lights are uneven
-    delta: object  # whether next-event estimation could not have found what is met; so it is where the camera's ray begins
+    delta: object  # whether next-event estimation could not have found what is met, as what the camera's ray meets
     cell: object
     fraction: object  # of the choices of a light that are learned
 
@@ -104,7 +104,9 @@ def play_on_arrival(tables, decisions, throughput, relative, depth, u, plays):
 
 
 def play_on_departure(settings, tables, most, eta, depth, cell, active):
-    """The probability with which a path goes on by its throughput, where nothing was learned. most: its greatest channel."""
+    """The probability with which a path goes on by its throughput, where nothing was learned.
+
+    most: the greatest channel of that."""
     plays = active & (most > 0) & (depth >= settings.rr_depth)
     survival = dr.minimum(most * eta * eta, 0.95)
     if tables is not None and settings.learned_roulette:
