@@ -128,14 +128,16 @@ def fly(scene, media, ray, medium, throughput, u, numbers, drawn, active):
     scattered = inside & event.is_valid() & (event.t < si.t)
     weight, p, distance = mi.Spectrum(1), mi.Point3f(event.p), mi.Float(event.t)
     if dr.hint(media.any_homogeneous, mode="scalar"):
-        passing = dr.exp(-optical_depth(event.combined_extinction, dr.select(scattered, distance, si.t)))
-        density = dr.sum(shares * dr.select(scattered, event.combined_extinction * passing, passing))
-        value = dr.select(scattered, event.sigma_s * passing, passing)
+        extinction = mi.Spectrum(event.combined_extinction)
+        passing = mi.Spectrum(dr.exp(-optical_depth(extinction, dr.select(scattered, distance, si.t))))
+        density = dr.sum(shares * dr.select(scattered, extinction * passing, passing))
+        value = dr.select(scattered, mi.Spectrum(event.sigma_s) * passing, passing)
         weight = dr.select(closed, dr.select(density > 0, value / density, 0), weight)
     if dr.hint(media.any_heterogeneous, mode="scalar"):
         tracking = scattered & ~closed
         scattered &= closed
-        majorant, sigma_s, sigma_n = mi.Float(event.combined_extinction[0]), event.sigma_s, event.sigma_n
+        majorant = mi.Float(event.combined_extinction[0])
+        sigma_s, sigma_n = mi.Spectrum(event.sigma_s), mi.Spectrum(event.sigma_n)
         onward = mi.Ray3f(ray)
         while dr.hint(tracking, label="odis: tracking", exclude=[scene, media, numbers]):
             empty = sigma_n / majorant
@@ -150,7 +152,8 @@ def fly(scene, media, ray, medium, throughput, u, numbers, drawn, active):
             drawn += 2
             tracking &= event.is_valid() & (distance + event.t < si.t)
             p, distance = dr.select(tracking, event.p, p), dr.select(tracking, distance + event.t, distance)
-            majorant, sigma_s, sigma_n = event.combined_extinction[0], event.sigma_s, event.sigma_n
+            majorant = mi.Float(event.combined_extinction[0])
+            sigma_s, sigma_n = mi.Spectrum(event.sigma_s), mi.Spectrum(event.sigma_n)
     return Flight(si, scattered, p, dr.select(scattered, distance, si.t), weight, drawn)
 
 
@@ -184,8 +187,9 @@ def transmittance(scene, known, ray, medium, numbers, drawn, active):
             closed = inside & medium.is_homogeneous()
             of_medium = dr.zeros(mi.MediumInteraction3f)
             of_medium.wi, of_medium.p, of_medium.wavelengths = -ray.d, ray.o, ray.wavelengths
-            extinction = medium.get_majorant(of_medium, closed)
-            left = dr.select(closed, left * dr.exp(-optical_depth(extinction, segment)), left)
+            extinction = mi.Spectrum(medium.get_majorant(of_medium, closed))
+            passing = mi.Spectrum(dr.exp(-optical_depth(extinction, segment)))
+            left = dr.select(closed, left * passing, left)
             inside &= ~closed
         if dr.hint(media.any_heterogeneous, mode="scalar"):
             tracking, distance = mi.Bool(inside), mi.Float(0)
@@ -194,7 +198,7 @@ def transmittance(scene, known, ray, medium, numbers, drawn, active):
                 event = medium.sample_interaction(onward, numbers.further(drawn), mi.UInt32(0), tracking)
                 distance += event.t
                 tracking &= event.is_valid() & (distance < segment)
-                left = dr.select(tracking, left * (event.sigma_n / event.combined_extinction), left)
+                left = dr.select(tracking, left * mi.Spectrum(event.sigma_n / event.combined_extinction), left)
                 onward.o = dr.select(tracking, event.p, onward.o)
                 # Roulette where little is left.
                 most = dr.max(dr.abs(left))
