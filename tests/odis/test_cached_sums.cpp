@@ -72,6 +72,31 @@ TEST(CachedSums, KeepTheEnergyOfWildVertices) {
   EXPECT_GT(rest, 0);
 }
 
+// In media all first vertices scatter towards the camera: they have no part in what is returned to all sides.
+TEST(CachedSums, LeaveOutFirstVerticesInMedia) {
+  std::vector<PathVertex> vertices = floorUnderPatch({0, 0, 1}, 8000, 6);
+  for (size_t i = 0; i < vertices.size(); ++i) {
+    PathVertex& v = vertices[i];
+    v.normal = {};
+    v.cosine = 1;
+    v.depth = uint16_t(1 + i % 2);
+    const float light = v.depth == 1 ? 10.0f : 1.0f;
+    v.direct = {light, light, light};
+    v.radiance = {};
+    v.pixel = uint32_t(i / 2);
+  }
+  CachingStore store(vertices);
+  const std::vector<CellStatistics>& cells = store.rollUp();
+  const std::vector<CachedRadiance> cached = cacheRadiance(*libraryTasks(), cells);
+  double counted = 0;
+  for (size_t c = 0; c < cells.size(); ++c)
+    for (size_t half = 0; half < 2 && cells[c].level == 0; ++half) {
+      counted += cells[c].halves[half].count;
+      EXPECT_NEAR(cached[2 * c + half].radiance.x, 1, 1e-4);
+    }
+  EXPECT_EQ(counted, 4000);
+}
+
 // However bright a vertex is, its half moves by a few standard errors at most, as the other half makes them
 // out, and by what is spread over all cells. What is trusted of it stays as it is but for that.
 TEST(CachedSums, AreMovedLittleByAVertex) {

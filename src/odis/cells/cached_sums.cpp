@@ -25,6 +25,12 @@ std::vector<std::array<double, 2>> largestVariances(const Tasks& tasks, std::spa
   return result;
 }
 
+// How much a sample counts for cached radiance. In media first vertices do not count: all of them scatter towards
+// the camera, paths that may end come from all sides, and phase functions are seldom even.
+double shareOf(const DepthShares& shares, const CellSample& sample) {
+  return sample.depth == 1 && isZero(sample.normal) ? 0 : shares.of(sample.depth);
+}
+
 }  // namespace
 
 void CellStore::cache(uint32_t maxDepth) {
@@ -37,7 +43,7 @@ void CellStore::cache(uint32_t maxDepth) {
 void CellStore::addReturned(const CellOrder<CellSample>& order) {
   forEachCell(*m_tasks, m_cells.size(), [&](size_t c) {
     forEachItem(order.of(c), [&](const CellSample& sample) {
-      const double share = m_depthShares.of(sample.depth);
+      const double share = shareOf(m_depthShares, sample);
       if (!(share > 0)) return;
       const Float3& outgoing = sample.outgoing;
       const double brightness = luminance(outgoing);
@@ -69,7 +75,7 @@ void CellStore::addReturned(const CellOrder<CellSample>& order) {
       for (size_t half = 0; half < 2; ++half)
         limits[half][level] = returnedLimit(spreads[at][half].count, variances[at][half]);
     forEachItem(order.of(c), [&](const CellSample& sample) {
-      if (m_depthShares.of(sample.depth) > 0)
+      if (shareOf(m_depthShares, sample) > 0)
         passOn(m_cells[c].halves[sample.half()], sample.outgoing, limits[sample.half()]);
     });
   });
