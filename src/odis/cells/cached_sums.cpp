@@ -25,8 +25,8 @@ std::vector<std::array<double, 2>> largestVariances(const Tasks& tasks, std::spa
   return result;
 }
 
-// How much a sample counts for cached radiance. In media first vertices do not count: all of them scatter towards
-// the camera, paths that may end come from all sides, and phase functions are seldom even.
+// How much a sample counts for cached radiance. In media first vertices do not count: all of them scatter
+// towards the camera, paths that may end come from all sides, and phase functions are seldom even.
 double shareOf(const DepthShares& shares, const CellSample& sample) {
   return sample.depth == 1 && isZero(sample.normal) ? 0 : shares.of(sample.depth);
 }
