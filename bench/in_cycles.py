@@ -12,7 +12,8 @@ Cycles 4 and later mix guide and BSDF as 3.4 does, in place of resampled importa
 
 Errors are 0.1 %-trimmed relMSE as src/eval/metrics.h has it, to an unguided image of another seed; times are of all
 threads, without what an image of 8 x 8 pixels takes (loading). Medians over seeds; ratios are to unguided paths. With
-`--pairs` no reference is rendered: errors are half of the squared differences of two seeds, means over pairs. Needs
+`--pairs` no reference is rendered: errors are half of the squared differences of two seeds, means over pairs. *Mean* is
+that of the images of all seeds over that of unguided ones, with its standard error by pairs of one seed. Needs
 `pip install mitsuba` to read OpenEXR.
 """
 import argparse
@@ -108,8 +109,16 @@ def median_of_neighbours(image):
     return np.median(np.lib.stride_tricks.sliding_window_view(padded, (3, 3), axis=(0, 1)), axis=(-2, -1))
 
 
+def means_of(images):
+    """For each guide the mean of its images over that of unguided ones, and the standard error by pairs of a seed."""
+    means = {name: np.mean(of_guide, axis=(1, 2, 3)) for name, of_guide in images.items()}
+    off = means["off"]
+    spread = lambda x: x.std(ddof=1) / np.sqrt(len(x)) if len(x) > 1 else np.nan
+    return {name: (m.mean() / off.mean(), spread(m - off) / off.mean()) for name, m in means.items()}
+
+
 def measure_pairs(program, scene, guides, spp, args):
-    """For each guide, unguided first: error and seconds."""
+    """For each guide, unguided first: error and seconds; and means_of()."""
     loading = np.median([program.render(scene, 1, 0, size=(8, 8)) for _ in range(3)])
     images, seconds = {name: [] for name in guides}, {name: [] for name in guides}
     with tempfile.TemporaryDirectory() as folder:
@@ -119,24 +128,26 @@ def measure_pairs(program, scene, guides, spp, args):
                 seconds[name].append(max(program.render(scene, spp, seed, library, image) - loading, 1e-3))
                 images[name].append(read(image))
     around = median_of_neighbours(np.mean([np.mean(of_guide, axis=0) for of_guide in images.values()], axis=0))
-    return {name: np.array([error_of_pairs(images[name], around), np.median(seconds[name])]) for name in guides}
+    found = {name: np.array([error_of_pairs(images[name], around), np.median(seconds[name])]) for name in guides}
+    return found, means_of(images)
 
 
 def measure(program, scene, guides, spp, args):
-    """For each guide, unguided first, a list over seeds: error, seconds, and the error after denoising, if any."""
+    """For each guide, unguided first: error, seconds, and the error after denoising, if any; and means_of()."""
     reference = reference_of(program, scene, args)
     loading = np.median([program.render(scene, 1, 0, size=(8, 8)) for _ in range(3)])
-    found = {name: [] for name in guides}
+    found, images = {name: [] for name in guides}, {name: [] for name in guides}
     for seed in range(args.seeds):
         for name, library in guides.items():
             with tempfile.TemporaryDirectory() as folder:
                 image = pathlib.Path(folder) / "image.exr"
                 seconds = program.render(scene, spp, seed, library, image) - loading
-                row = [trimmed_relative_error(read(image), reference), max(seconds, 1e-3)]
+                images[name].append(read(image))
+                row = [trimmed_relative_error(images[name][-1], reference), max(seconds, 1e-3)]
                 if args.denoise:
                     row.append(trimmed_relative_error(denoised(image, args.denoise), reference))
                 found[name].append(row)
-    return {name: np.median(rows, axis=0) for name, rows in found.items()}
+    return {name: np.median(rows, axis=0) for name, rows in found.items()}, means_of(images)
 
 
 def print_row(cells):
@@ -146,20 +157,21 @@ def print_row(cells):
 def compare(program, guides, args):
     ratios = {}
     columns = ["error", "seconds", *(["denoised"] if args.denoise else [])]
-    print_row(["scene", "samples", "guide", *columns, *(f"{c} ratio" for c in columns), "error × time"])
-    print_row(["---", "--:", "---", *["--:"] * (2 * len(columns) + 1)])
+    print_row(["scene", "samples", "guide", *columns, *(f"{c} ratio" for c in columns), "error × time",
+               "mean"])
+    print_row(["---", "--:", "---", *["--:"] * (2 * len(columns) + 2)])
     for scene in args.scenes:
         for spp in map(int, args.spp.split(",")):
-            found = (measure_pairs if args.pairs else measure)(program, scene, guides, spp, args)
+            found, means = (measure_pairs if args.pairs else measure)(program, scene, guides, spp, args)
             for name, values in found.items():
                 ratio = values / found["off"]
                 ratios.setdefault((spp, name), []).append(ratio)
                 print_row([scene.name, str(spp), name, *(f"{v:.4g}" for v in values), *(f"{r:.2f}" for r in ratio),
-                           f"{ratio[0] * ratio[1]:.2f}"])
+                           f"{ratio[0] * ratio[1]:.2f}", "{:.4f} ± {:.4f}".format(*means[name])])
     for (spp, name), values in ratios.items():
         mean = np.exp(np.log(values).mean(axis=0))
         print_row([f"mean of {len(values)}", str(spp), name, *[""] * len(columns), *(f"{r:.2f}" for r in mean),
-                   f"{mean[0] * mean[1]:.2f}"])
+                   f"{mean[0] * mean[1]:.2f}", ""])
 
 
 def main():
