@@ -76,6 +76,24 @@ TEST(PglPaths, NothingIsLearnedAtMirrorsNorWithoutANormal) {
   }
 }
 
+// In volumes Cycles may have more segments than it asks room for, and it writes into earlier ones.
+TEST(PglPaths, SegmentsStayWhereTheyAreBeyondTheRoomThatWasAskedFor) {
+  pgl::PathSegmentStorage path;
+  path.Reserve(3);
+  std::vector<pgl::PathSegment*> segments;
+  for (int i = 0; i < 100; ++i) segments.push_back(addVertex(path, 0));
+  for (int i = 0; i < 100; ++i) {
+    pgl::SetPosition(segments[i], {0, 0, float(i)});
+    pgl::SetVolumeScatter(segments[i], true);
+    if (i < 99) scatter(segments[i], 1, 1);
+  }
+  pgl::SetDirectContribution(segments[99], {1, 1, 1});
+  pgl::SetMiWeight(segments[99], 1);
+  const std::vector<pgl::SampleData> samples = samplesOf(path);
+  ASSERT_EQ(samples.size(), 99u);
+  for (int i = 0; i < 99; ++i) EXPECT_EQ(samples[i].position.z, float(i));
+}
+
 TEST(PglPaths, VolumesAreVerticesAndTransmittanceIsPartOfWhatArrives) {
   pgl::PathSegmentStorage path;
   pgl::PathSegment* first = addVertex(path, 0);
