@@ -333,5 +333,61 @@ TEST_F(PglFields, GuideDirectionsInVolumes) {
   EXPECT_NEAR(distribution.PDF({0, 0, 1}), 1 / (4 * kPi), 1e-6f);
 }
 
+// A volume of a narrow phase function, which the samples were drawn from. In its lower half light comes from
+// one side, in its upper half now and then and from anywhere: there the phase function draws all directions,
+// also those that the host asks for.
+TEST_F(PglFields, LeaveDirectionsInVolumesToNarrowPhaseFunctions) {
+  const auto field = newField();
+  pgl::SampleStorage samples;
+  ToyNumbers numbers = numbersOf(3);
+  const float g = 0.6f;
+  const auto phase = [&](float cosine) {
+    return (1 - g * g) / (4 * kPi * std::pow(1 + g * g - 2 * g * cosine, 1.5f));
+  };
+  const Float3 forward{0.6f, 0, 0.8f};
+  for (int i = 0; i < 20000; ++i) {
+    const Float3 at{numbers.next(), numbers.next(), numbers.next()};
+    const float turned = (1 - g * g) / (1 - g + 2 * g * numbers.next());
+    const float cosine = (1 + g * g - turned * turned) / (2 * g), sine = std::sqrt(1 - cosine * cosine);
+    const float phi = 2 * kPi * numbers.next();
+    const Float3 wi = forward * cosine + Float3{0, 1, 0} * (sine * std::cos(phi)) +
+                      Float3{0.8f, 0, -0.6f} * (sine * std::sin(phi));
+    pgl::PathSegmentStorage path;
+    pgl::PathSegment* first = path.NextSegment();
+    pgl::SetPosition(first, toPgl(at));
+    pgl::SetDirectionOut(first, toPgl(forward * -1.0f));
+    pgl::SetVolumeScatter(first, true);
+    pgl::SetRoughness(first, 1 - g);
+    pgl::SetDirectionIn(first, toPgl(wi));
+    pgl::SetPDFDirectionIn(first, phase(cosine));
+    pgl::SetScatteringWeight(first, {1, 1, 1});
+    pgl::PathSegment* sky = path.NextSegment();
+    pgl::SetPosition(sky, toPgl(at + wi * 1e4f));
+    pgl::SetDirectionOut(sky, toPgl(wi * -1.0f));
+    pgl::SetNormal(sky, toPgl(wi * -1.0f));
+    const bool now = numbers.next() < 0.05f;
+    const float light = at.z < 0.5f ? (dot(wi, forward) < 0 ? 10.0f : 0.1f) : now ? 40.0f : 0.0f;
+    pgl::SetDirectContribution(sky, {light, light, light});
+    handOver(path, samples);
+  }
+  field->Update(samples);
+  pgl::VolumeSamplingDistribution distribution(field.get());
+  float unused = 0;
+  float lowerShare = 0, upperShare = 0;
+  for (const bool upper : {false, true}) {
+    ASSERT_TRUE(distribution.Init(field.get(), {0.5f, 0.5f, upper ? 0.8f : 0.2f}, unused));
+    const float ofMap = distribution.PDF(toPgl(forward));
+    distribution.ApplySingleLobeHenyeyGreensteinProduct(toPgl(forward), g);
+    const float share = (distribution.PDF(toPgl(forward)) - ofMap) / (phase(1) - ofMap);
+    EXPECT_GE(share, 0);
+    upper ? upperShare = share : lowerShare = share;
+    Chi2Options options;
+    options.quadrature = 48;
+    EXPECT_LE(expectSamplesFollow(distribution, options), 5);
+  }
+  EXPECT_GT(upperShare, 0.9f);
+  EXPECT_LT(lowerShare, 0.7f);
+}
+
 }  // namespace
 }  // namespace odis::test

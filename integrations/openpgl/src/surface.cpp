@@ -19,15 +19,10 @@ using namespace odis::openpgl_interface;
 
 namespace {
 
-constexpr float kPi = 3.14159265358979f;
 constexpr float kUniform = 1 / (4 * kPi);
 
 odis::Float3 cosineDirection(const odis::Float3& n, float u, float v) {
-  // An orthonormal basis (Duff et al. 2017).
-  const float sign = std::copysign(1.0f, n.z), a = -1 / (sign + n.z), b = n.x * n.y * a;
-  const odis::Float3 s{1 + sign * n.x * n.x * a, sign * b, -sign * n.x}, t{b, sign + n.y * n.y * a, -n.y};
-  const float r = std::sqrt(u), phi = 2 * kPi * v;
-  return s * (r * std::cos(phi)) + t * (r * std::sin(phi)) + n * std::sqrt(std::max(1 - u, 0.0f));
+  return directionAround(n, std::sqrt(std::max(1 - u, 0.0f)), std::sqrt(u), v);
 }
 
 }  // namespace

@@ -7,8 +7,30 @@
 
 using namespace odis::openpgl_interface;
 
-// The type behind Open PGL's handle: the map of a place's cell, to be mixed with the phase function by the host. Threads
-// have one each, on cache lines of its own.
+namespace {
+
+// The phase function of Henyey and Greenstein.
+struct HenyeyGreenstein {
+  odis::Float3 forward;  // unit vector along which light came
+  float g = 0;           // mean cosine of the deflection
+
+  float pdf(const odis::Float3& wi) const {
+    const float squared = std::max(1 + g * g - 2 * g * dot(wi, forward), 1e-6f);
+    return (1 - g * g) / (4 * kPi * squared * std::sqrt(squared));
+  }
+  odis::Float3 sample(float u, float v) const {
+    const float turned = (1 - g * g) / (1 - g + 2 * g * u);
+    const float cosine = std::abs(g) < 1e-3f ? 1 - 2 * u : (1 + g * g - turned * turned) / (2 * g);
+    const float clamped = std::clamp(cosine, -1.0f, 1.0f);
+    return directionAround(forward, clamped, std::sqrt(1 - clamped * clamped), v);
+  }
+};
+
+}  // namespace
+
+// The type behind Open PGL's handle: the map of a place's cell, to be mixed with the phase function by the host. Hosts mix
+// the two half and half; where the cell has learned that the phase function should draw more directions, it draws the
+// rest of them here. Threads have one each, on cache lines of its own.
 struct alignas(64) VolumeSamplingDistribution {
  public:
   // Whether there is a map: places of which nothing is known are left to the phase function.
@@ -16,31 +38,50 @@ struct alignas(64) VolumeSamplingDistribution {
     const odis::Float3 at = toOdis(position);
     m_view = field.guidesAt(at, true) ? &field.view() : nullptr;
     m_cell = m_view ? odis::findCell(*m_view, {at, {}}) : odis::kNoCell;
+    m_phaseShare = 0;
     return m_cell != odis::kNoCell;
+  }
+  void applyPhase(const pgl_vec3f& forward, float meanCosine) {
+    if (m_cell == odis::kNoCell) return;
+    const float wanted = odis::bsdfFraction(*m_view, int32_t(m_cell), 1 - std::abs(meanCosine));
+    m_phaseShare = std::max(2 * wanted - 1, 0.0f);
+    m_phase = {toOdis(forward), meanCosine};
   }
   void clear() { m_cell = odis::kNoCell; }
   uint32_t cell() const { return m_cell; }
 
   float sample(const pgl_point2f& u, pgl_vec3f& direction) const {
-    if (m_cell != odis::kNoCell) {
-      const odis::SamplingMap<float>::Sample sample = map().sample(u.x, u.y);
-      direction = fromOdis(sample.wi);
-      return sample.pdf;
+    if (m_cell == odis::kNoCell) {
+      direction = fromOdis(odis::squareToDirection(odis::Vector2<float>{u.x, u.y}));
+      return kUniform;
     }
-    const float z = 1 - 2 * u.x, r = std::sqrt(std::max(1 - z * z, 0.0f)), phi = 6.2831853f * u.y;
-    direction = {r * std::cos(phi), r * std::sin(phi), z};
-    return kUniform;
+    if (u.x < m_phaseShare) {
+      direction = fromOdis(m_phase.sample(u.x / m_phaseShare, u.y));
+      return pdf(direction);
+    }
+    const float stretched = std::min((u.x - m_phaseShare) / (1 - m_phaseShare), kOneMinusEpsilon);
+    const odis::SamplingMap<float>::Sample sample = map().sample(stretched, u.y);
+    direction = fromOdis(sample.wi);
+    return mixed(sample.wi, sample.pdf);
   }
   float pdf(const pgl_vec3f& direction) const {
+    return m_cell != odis::kNoCell ? mixed(toOdis(direction), map().pdf(toOdis(direction))) : kUniform;
+  }
+  float radiancePdf(const pgl_vec3f& direction) const {
     return m_cell != odis::kNoCell ? map().pdf(toOdis(direction)) : kUniform;
   }
 
  private:
-  static constexpr float kUniform = 0.07957747f;  // 1 / (4 pi)
+  static constexpr float kUniform = 1 / (4 * kPi), kOneMinusEpsilon = 0x1.fffffep-1f;
+  float mixed(const odis::Float3& wi, float mapPdf) const {
+    return m_phaseShare > 0 ? mapPdf + m_phaseShare * (m_phase.pdf(wi) - mapPdf) : mapPdf;
+  }
   odis::SamplingMap<float> map() const { return {m_view->maps, int32_t(m_cell)}; }
 
   const odis::GuideView* m_view = nullptr;
   uint32_t m_cell = odis::kNoCell;
+  HenyeyGreenstein m_phase;
+  float m_phaseShare = 0;  // of the directions here
 };
 
 extern "C" {
@@ -69,11 +110,12 @@ float pglVolumeSamplingDistributionSamplePDF(PGLVolumeSamplingDistribution distr
 }
 float pglVolumeSamplingDistributionIncomingRadiancePDF(PGLVolumeSamplingDistribution distribution,
                                                        pgl_vec3f direction) {
-  return distribution->pdf(direction);
+  return distribution->radiancePdf(direction);
 }
-// The map stays that of the radiance: the host's mixture has the phase function.
-void pglVolumeSamplingDistributionApplySingleLobeHenyeyGreensteinProduct(PGLVolumeSamplingDistribution,
-                                                                         pgl_vec3f, float) {}
+void pglVolumeSamplingDistributionApplySingleLobeHenyeyGreensteinProduct(
+    PGLVolumeSamplingDistribution distribution, pgl_vec3f direction, float meanCosine) {
+  distribution->applyPhase(direction, meanCosine);
+}
 bool pglVolumeSamplingDistributionSupportsApplySingleLobeHenyeyGreensteinProduct(
     PGLVolumeSamplingDistribution) {
   return true;
