@@ -5,9 +5,7 @@
 #include "field.h"
 #include "vectors.h"
 
-using namespace odis::openpgl_interface;
-
-namespace {
+namespace odis::openpgl_interface {
 
 // The phase function of Henyey and Greenstein.
 struct HenyeyGreenstein {
@@ -26,7 +24,9 @@ struct HenyeyGreenstein {
   }
 };
 
-}  // namespace
+}  // namespace odis::openpgl_interface
+
+using namespace odis::openpgl_interface;
 
 // The type behind Open PGL's handle: the map of a place's cell, to be mixed with the phase function by the host. Hosts mix
 // the two half and half; where the cell has learned that the phase function should draw more directions, it draws the
