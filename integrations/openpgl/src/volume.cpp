@@ -38,13 +38,13 @@ struct alignas(64) VolumeSamplingDistribution {
     const odis::Float3 at = toOdis(position);
     m_view = field.guidesAt(at, true) ? &field.view() : nullptr;
     m_cell = m_view ? odis::findCell(*m_view, {at, {}}) : odis::kNoCell;
-    m_phaseShare = 0;
+    m_mixture = {0, 1};
     return m_cell != odis::kNoCell;
   }
   void applyPhase(const pgl_vec3f& forward, float meanCosine) {
     if (m_cell == odis::kNoCell) return;
     const float wanted = odis::bsdfFraction(*m_view, int32_t(m_cell), 1 - std::abs(meanCosine));
-    m_phaseShare = std::max(2 * wanted - 1, 0.0f);
+    m_mixture = {std::max(2 * wanted - 1, 0.0f), 1};
     m_phase = {toOdis(forward), meanCosine};
   }
   void clear() { m_cell = odis::kNoCell; }
@@ -55,11 +55,11 @@ struct alignas(64) VolumeSamplingDistribution {
       direction = fromOdis(odis::squareToDirection(odis::Vector2<float>{u.x, u.y}));
       return kUniform;
     }
-    if (u.x < m_phaseShare) {
-      direction = fromOdis(m_phase.sample(u.x / m_phaseShare, u.y));
+    const auto [fromMap, stretched] = m_mixture.choose(u.x);
+    if (!fromMap) {
+      direction = fromOdis(m_phase.sample(stretched, u.y));
       return pdf(direction);
     }
-    const float stretched = std::min((u.x - m_phaseShare) / (1 - m_phaseShare), kOneMinusEpsilon);
     const odis::SamplingMap<float>::Sample sample = map().sample(stretched, u.y);
     direction = fromOdis(sample.wi);
     return mixed(sample.wi, sample.pdf);
@@ -72,16 +72,18 @@ struct alignas(64) VolumeSamplingDistribution {
   }
 
  private:
-  static constexpr float kUniform = 1 / (4 * kPi), kOneMinusEpsilon = 0x1.fffffep-1f;
+  static constexpr float kUniform = 1 / (4 * kPi);
   float mixed(const odis::Float3& wi, float mapPdf) const {
-    return m_phaseShare > 0 ? mapPdf + m_phaseShare * (m_phase.pdf(wi) - mapPdf) : mapPdf;
+    if (!(m_mixture.bsdfFraction() > 0)) return mapPdf;
+    const float phasePdf = m_phase.pdf(wi);
+    return m_mixture.pdf(phasePdf, phasePdf, mapPdf);
   }
   odis::SamplingMap<float> map() const { return {m_view->maps, int32_t(m_cell)}; }
 
   const odis::GuideView* m_view = nullptr;
   uint32_t m_cell = odis::kNoCell;
   HenyeyGreenstein m_phase;
-  float m_phaseShare = 0;  // of the directions here
+  odis::Mixture<float> m_mixture{0, 1};  // of phase function and map: the directions here
 };
 
 extern "C" {

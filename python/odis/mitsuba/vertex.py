@@ -134,7 +134,6 @@ class Mixture:
         map_pdf = self.map.pdf(direction, self.guided & active)
         return dr.fma(1 - self.fraction, map_pdf * share_of_smooth - own_pdf, own_pdf)
 
-
     def take(self, drawn, discrete, from_map, map_direction, map_value, map_pdf, share_of_smooth):
         """What a vertex leaves by: `drawn`, of the BSDF, or the map's direction, with the weight that both make."""
         from_map = from_map & ~discrete

@@ -57,8 +57,11 @@ void arrive(const PathSettings& settings, const AddTo& add, Batch& batch, int pl
   path.travelled += distance;
   const bool mayPass = settings.scene->volumetric() && !vertex.inMedium();
   const bool isHidden = mayPass && hidesLight(*settings.scene, path, vertex);
-  const std::optional<Rgb> passing =
-      mayPass ? passesStraight(settings, place, path, vertex) : std::optional<Rgb>();
+  std::optional<Rgb> passing;
+  if (isHidden)
+    passing = Rgb(1.0f);
+  else if (mayPass)
+    passing = passesStraight(settings, place, path, vertex);
   if (batch.recording && !passing) recordVertex(batch.recorder, path, vertex);
   if (!vertex.inMedium() && !isHidden) ifShining(path.ray, vertex.at, competitor(path), add(path));
   if (passing) {

@@ -126,7 +126,6 @@ bool hidesLight(const Scene& scene, const Path& path, const Vertex& vertex) {
 }
 
 std::optional<Rgb> passesStraight(const PathSettings& settings, int place, Path& path, const Vertex& vertex) {
-  if (hidesLight(*settings.scene, path, vertex)) return Rgb(1.0f);
   const BsdfTraits& traits = vertex.bsdf->traits();
   // Elsewhere the direction is drawn with those of other paths.
   if (!traits.passesStraight || (traits.evaluable && !isDeepest(settings, path))) return {};

@@ -17,8 +17,8 @@ void flyThroughMedia(const PathSettings& settings, std::span<Path> paths, int pl
 
 // Whether the surface that a path met is a light that the camera does not see (`hideEmitters`).
 bool hidesLight(const Scene& scene, const Path& path, const Vertex& vertex);
-// The factor of a path that goes straight on behind the surface that it met, without a vertex; nothing if the
-// path has a vertex there. `place` as in Bounces.
+// The factor of a path that goes straight on behind the surface that it met, no hidden light, without a
+// vertex; nothing if the path has a vertex there. `place` as in Bounces.
 std::optional<Rgb> passesStraight(const PathSettings& settings, int place, Path& path, const Vertex& vertex);
 // Gives such a path its next ray.
 void goStraightOn(Path& path, const Vertex& vertex);
