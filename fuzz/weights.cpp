@@ -15,7 +15,7 @@ void readAll(std::string_view bytes) {
     const core::DirectionNetwork network(weights);
     const core::CellStatistics cell;
     network.predict({&cell}, nullptr);
-    core::LightNetwork(weights).predict({&cell}, nullptr, kMaxLightGroups);
+    core::LightNetwork(weights).predict({&cell}, nullptr, core::kFewGroups);
   } catch (const core::WeightsError&) {
   }
 }

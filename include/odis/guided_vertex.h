@@ -79,8 +79,14 @@ class GuidedVertex {
       return kNoLightGroup;
     }
     u /= learned.fraction;
-    uint32_t group = 0;
-    while (group + 1 < m_view->lightGroups && u >= learned.cdf[group + 1]) ++group;
+    uint32_t group = 0, end = m_view->lightGroups;
+    while (end - group > 1) {
+      const uint32_t middle = (group + end) / 2;
+      if (u >= learned.cdf[middle])
+        group = middle;
+      else
+        end = middle;
+    }
     u = stretched((u - learned.cdf[group]) / (learned.cdf[group + 1] - learned.cdf[group]));
     return group;
   }

@@ -36,7 +36,7 @@ typedef struct OdisFloat3 {
 // No limit of OdisFrameOptions.mostSamplesPerPixel.
 #define ODIS_UNLIMITED 0xffffffffu
 // The most groups of lights that a host may tell apart for next-event estimation.
-#define ODIS_MAX_LIGHT_GROUPS 32
+#define ODIS_MAX_LIGHT_GROUPS 128
 // With a smaller setting `max-depth` (but 0) no path ends with cached radiance: how much light comes from how
 // many bounces differs too much from place to place.
 #define ODIS_LEAST_CACHED_MAX_DEPTH 8
@@ -110,8 +110,9 @@ typedef struct OdisLightParts {
 
 typedef struct OdisGuideOptions {
   size_t size ODIS_DEFAULT(sizeof(OdisGuideOptions));
-  OdisModel model ODIS_DEFAULT(NULL);    // NULL: the networks that come with the library
-  uint32_t lightGroups ODIS_DEFAULT(0);  // that the vertices tell apart, <= 32; 0: learn nothing about lights
+  OdisModel model ODIS_DEFAULT(NULL);  // NULL: the networks that come with the library
+  uint32_t lightGroups
+      ODIS_DEFAULT(0);  // that the vertices tell apart, <= 128; 0: learn nothing about lights
   const OdisLightParts* lightParts ODIS_DEFAULT(NULL);  // groups that are parts of one light; copied
   size_t lightPartCount ODIS_DEFAULT(0);
   // Told of progress while guides are built; may cancel. NULL: nobody is told.

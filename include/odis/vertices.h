@@ -63,8 +63,9 @@ typedef struct OdisPathVertex {
   // of lights.
   float lightGroupProbability ODIS_DEFAULT(0);
   uint32_t lightGroup ODIS_DEFAULT(ODIS_NO_LIGHT_GROUP);
-  // Optional: bit g is set where lights of group g may light this vertex. Vertices that some group may not
-  // light are left out of what is learned about the choice of lights, which holds for all of a cell.
+  // Optional: bit g is set where lights of group g may light this vertex, bit 31 where all groups from 31 on
+  // may. Vertices that some group may not light are left out of what is learned about the choice of lights,
+  // which holds for all of a cell.
   uint32_t lightableGroups ODIS_DEFAULT(~(0u));
 
   // Optional: weight of the path in its pixel by the reconstruction filter; no radiance or contribution

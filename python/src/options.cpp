@@ -27,7 +27,7 @@ void setLightParts(GuideOptions& options, const Ranges& ranges) {
 constexpr const char* kGuideOptions = R"(How guides are made of vertices; all fields are optional.
 
 model: Model; None: the networks that come with the library
-light_groups: int <= 32 (0): groups of lights that the vertices tell apart; 0: learn nothing about lights
+light_groups: int <= 128 (0): groups of lights that the vertices tell apart; 0: learn nothing about lights
 light_parts: list of (first, count) ([]): groups that are equal parts of one light
 settings: str (""): all that hardly any host changes, by name: words like "cells=64 map-floor=0.05" with
     blanks between them, of which later ones win (odis.settings() lists them)

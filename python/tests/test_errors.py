@@ -110,7 +110,7 @@ class Library(unittest.TestCase):
     def test_options(self):
         invalid = odis.ErrorCode.INVALID_ARGUMENT
         for name, value in (("settings", "cells=-1"), ("settings", "map-floor=2"), ("settings", "map-clamp=0"),
-                            ("settings", "prior-samples=-1:0:0:0"), ("settings", "cels=3"), ("light_groups", 33)):
+                            ("settings", "prior-samples=-1:0:0:0"), ("settings", "cels=3"), ("light_groups", 129)):
             options = odis.GuideOptions(**{name: value})
             self.assertEqual(getattr(options, name), value)
             self.expect_error(invalid, odis.GuideBuilder, options)

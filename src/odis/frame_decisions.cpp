@@ -3,6 +3,7 @@
 #include "odis/frame_data.h"
 #include "odis/image/guiding_gain.h"
 #include "odis/image/sample_counts.h"
+#include "odis/models/lights.h"
 
 namespace odis::core {
 
@@ -36,8 +37,10 @@ bool Frame::Data::nextRefinementPays() const {
 }
 
 // Lets the guide learn no more where that does not pay. A builder that others learn from learns on, and so
-// does a guide of which nothing was predicted.
+// does a guide of which nothing was predicted, or that learns about many groups of lights: the prediction
+// knows maps alone.
 void Frame::Data::settleRefinement() {
+  if (guideOptions.lightGroups > kFewGroups) return;
   const bool predicted = guideOptions.fixedBsdfFraction == 0 && cells.raysPerPath() > 0;
   if (options.guidedCost > 0 && ownsBuilder && predicted && !nextRefinementPays()) schedule.endRefinement();
 }

@@ -76,12 +76,12 @@ TEST(ApiMessages, SayWhatToDoAboutASizeByTheNameOfTheStruct) {
 
 TEST(ApiMessages, SayHowManyGroupsOfLightsThereMayBe) {
   GuideOptions options;
-  options.lightGroups = 40;
+  options.lightGroups = 140;
   try {
     const GuideBuilder builder(options);
-    FAIL() << "40 groups are taken";
+    FAIL() << "140 groups are taken";
   } catch (const Error& e) {
-    EXPECT_NE(std::string(e.what()).find("at most 32, found 40"), std::string::npos) << e.what();
+    EXPECT_NE(std::string(e.what()).find("at most 128, found 140"), std::string::npos) << e.what();
   }
 }
 

@@ -95,7 +95,7 @@ TEST(LightGroups, DrawTheirOwnLights) {
 class LearnedLightsTest : public ::testing::Test {
  protected:
   LearnedLightsTest() {
-    for (int i = 0; i < 40; ++i)
+    for (int i = 0; i < 150; ++i)
       m_points.push_back(
           std::make_unique<PointLight>(m_random.inCube(3), Rgb(1, 1, 1) * (0.1f + m_random())));
     for (int i = 0; i < 12; ++i)
@@ -145,6 +145,20 @@ TEST_F(LearnedLightsTest, AreDrawnAsStated) {
       if (expected.back() < 1) expected.back() = 0;
       EXPECT_GT(pValue(counts, expected), kLeastP) << share;
     }
+}
+
+// So many as there are emitters, or 32, if these have so many parts; and no more than are asked for.
+TEST_F(LearnedLightsTest, AreAsManyAsEmitters) {
+  const auto groupsOf = [&](size_t distant, size_t points, uint32_t most = odis::kMaxLightGroups) {
+    std::vector<Emitter*> some;
+    for (size_t i = 0; i < distant; ++i) some.push_back(m_distant[i].get());
+    for (size_t i = 0; i < points; ++i) some.push_back(m_points[i].get());
+    return LightSampler(indexed(some), most).groupCount();
+  };
+  EXPECT_EQ(groupsOf(2, 20), 22u);
+  EXPECT_EQ(groupsOf(2, 48), 50u);
+  EXPECT_EQ(groupsOf(2, 150), odis::kMaxLightGroups);
+  EXPECT_EQ(groupsOf(2, 150, 32), 32u);
 }
 
 TEST_F(LearnedLightsTest, PreparedReferencesSayTheSame) {

@@ -143,7 +143,7 @@ TEST(LightTree, EveryLightThatShinesCanBeDrawn) {
 
 // What docs/figures.md says of memory: a leaf of a mesh, and a light that is an emitter of its own.
 TEST(LightTree, TakesSoManyBytesALight) {
-  constexpr int kLights = 1024, kLeafBytes = 77, kEmitterBytes = 98;
+  constexpr int kLights = 4096, kLeafBytes = 77, kEmitterBytes = 98;
   Random random(3);
   const auto mesh = soup(kLights, 0.1f, random);
   AreaLight area(*mesh, uniform(1));

@@ -45,7 +45,7 @@ class WrongLights : public core::LightModel {
     result[engine() % 2] = kind == 0 ? 1 : kind == 1 ? NAN : -1;
     return result;
   }
-  double reliability(const core::CellStatistics&) const override { return 0.9; }
+  double reliability(const core::CellChain&, uint32_t) const override { return 0.9; }
 };
 
 // The same options with such models, which most directions follow.

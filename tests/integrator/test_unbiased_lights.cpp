@@ -64,8 +64,8 @@ std::string openRoom(int size) {
 // Tables for no reason, and values that are none.
 class AdversarialLights : public core::LightModel {
  public:
-  double reliability(const core::CellStatistics& cell) const override {
-    return cell.count / (cell.count + 20);
+  double reliability(const core::CellChain& chain, uint32_t) const override {
+    return chain[0]->count / (chain[0]->count + 20);
   }
   core::LightSquares predict(const core::CellChain& chain, const core::LightSquares*,
                              uint32_t) const override {
@@ -86,8 +86,8 @@ class AdversarialLights : public core::LightModel {
 // All the same: the first group and no other.
 class StubbornLights : public core::LightModel {
  public:
-  double reliability(const core::CellStatistics& cell) const override {
-    return cell.count / (cell.count + 20);
+  double reliability(const core::CellChain& chain, uint32_t) const override {
+    return chain[0]->count / (chain[0]->count + 20);
   }
   core::LightSquares predict(const core::CellChain&, const core::LightSquares*, uint32_t) const override {
     return {1};
@@ -121,6 +121,24 @@ struct ImageRoom {
   static constexpr int kMaxDepth = 5;
 };
 
+// The lamp room with more lamps, large and small ones, so that its groups are more than the network knows.
+struct CrowdedRoom {
+  static std::string text() {
+    std::string text = lampRoom(16);
+    std::mt19937 engine(5);
+    const auto number = [&](float low, float high) {
+      return std::to_string(low + (high - low) * float(engine() % 10000) / 10000);
+    };
+    for (int i = 0; i < 150; ++i)
+      text += "<shape type=\"sphere\"><point name=\"center\" x=\"" + number(-1.8f, 1.8f) + "\" y=\"" +
+              number(-0.5f, 1) + "\" z=\"" + number(-1.8f, 0.8f) + "\"/><float name=\"radius\" value=\"" +
+              number(0.002f, 0.03f) + "\"/><emitter type=\"area\"><rgb name=\"radiance\" value=\"" +
+              number(1, 30) + "\"/></emitter></shape>";
+    return text;
+  }
+  static constexpr int kMaxDepth = 4;
+};
+
 template <class Scene>
 class UnbiasedLights : public test::AgainstPath<Scene> {
  protected:
@@ -150,6 +168,7 @@ class UnbiasedLights : public test::AgainstPath<Scene> {
 using UnbiasedLightsTest = UnbiasedLights<LampRoom>;
 using UnbiasedRegionsTest = UnbiasedLights<OpenRoom>;
 using UnbiasedImagesTest = UnbiasedLights<ImageRoom>;
+using UnbiasedCrowdTest = UnbiasedLights<CrowdedRoom>;
 
 TEST_F(UnbiasedLightsTest, Learned) {
   expectLearnedUnbiased();
@@ -173,6 +192,18 @@ TEST_F(UnbiasedLightsTest, Adversarial) {
 
 TEST_F(UnbiasedImagesTest, Learned) {
   expectLearnedUnbiased();
+}
+
+TEST_F(UnbiasedCrowdTest, Learned) {
+  expectLearnedUnbiased();
+}
+
+TEST_F(UnbiasedCrowdTest, Stubborn) {
+  expectStubbornUnbiased();
+}
+
+TEST_F(UnbiasedCrowdTest, Adversarial) {
+  expectAdversarialUnbiased();
 }
 
 TEST_F(UnbiasedRegionsTest, Learned) {

@@ -191,15 +191,15 @@ TEST_F(Training, RunTimeAgreesWithLibtorch) {
   for (size_t i = 0; i < pairs.count; ++i) {
     uint32_t groups = 0;
     core::LightFeatures features;
-    for (size_t g = 0; g < kMaxLightGroups; ++g) {
-      features.formula[g] = pairs.formula[i * kMaxLightGroups + g];
+    for (size_t g = 0; g < core::kFewGroups; ++g) {
+      features.formula[g] = pairs.formula[i * core::kFewGroups + g];
       groups += features.formula[g] > 0;
       for (size_t f = 0; f < core::kPairFeatures; ++f)
-        features.pairs[f][g] = pairs.pairs[(i * kMaxLightGroups + g) * core::kPairFeatures + f];
+        features.pairs[f][g] = pairs.pairs[(i * core::kFewGroups + g) * core::kPairFeatures + f];
     }
     const auto result = lights.shares(features, groups);
-    for (size_t g = 0; g < kMaxLightGroups; ++g)
-      EXPECT_NEAR(result[g], shares[i * kMaxLightGroups + g], 1e-4) << i << " " << g;
+    for (size_t g = 0; g < core::kFewGroups; ++g)
+      EXPECT_NEAR(result[g], shares[i * core::kFewGroups + g], 1e-4) << i << " " << g;
   }
 }
 

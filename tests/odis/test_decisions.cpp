@@ -8,6 +8,7 @@
 #include "odis/cells/statistics.h"
 #include "odis/floor_under_patch.h"
 #include "odis/models/lights.h"
+#include "odis/models/model.h"
 #include "odis/models/returned_light.h"
 #include "odis/models/second_moments.h"
 
@@ -151,6 +152,57 @@ TEST(Lights, TablesFollowTheRootOfWhatGroupsGive) {
   EXPECT_GT(result[0].learnedLightFraction, 0.5f);
   EXPECT_LT(result[0].learnedLightFraction, 1);
   EXPECT_EQ(result[1].learnedLightFraction, 0);  // has seen nothing
+}
+
+// Where many groups are told apart a sample says little of each, and more is left to the next coarser cell.
+TEST(Lights, ManyGroupsLeanOnTheNextCoarserCell) {
+  constexpr uint32_t kMany = 100;
+  const auto shareOfFirst = [](uint32_t groups) {
+    std::vector<CellStatistics> cells(2);
+    cells[0].level = kCellLevels - 1;
+    cells[0].lightCount = 1e6;
+    cells[0].lightSquares[1] = 1e6;
+    cells[1].level = kCellLevels - 2;
+    cells[1].parent = 0;
+    cells[1].lightCount = 30;
+    cells[1].lightSquares[0] = 30;
+    std::vector<CellDecisions> result(2);
+    const std::vector<float> tables = tabulateLights(*libraryTasks(), result, cells, LightFormula(), groups);
+    return tables[groups + 2];
+  };
+  EXPECT_NEAR(shareOfFirst(2), 0.5, 1e-6);
+  EXPECT_NEAR(shareOfFirst(kMany), 1 / (1 + std::sqrt(2 * kMany / 30.0)), 1e-6);
+}
+
+// The network looks at each group by itself, 32 at once: which of them stand together does not matter.
+TEST(Lights, TheNetworkTreatsAllGroupsAlike) {
+  constexpr uint32_t kMany = 60;
+  std::vector<CellStatistics> cells(1);
+  cells[0].level = kCellLevels - 1;
+  cells[0].lightCount = 500;
+  for (uint32_t g = 0; g < kMany; ++g) cells[0].lightSquares[g] = 1 + g % 7;
+  std::vector<CellDecisions> result(1);
+  const std::vector<float> table =
+      tabulateLights(*libraryTasks(), result, cells, *Model::builtIn().lights, kMany);
+  const auto share = [&](uint32_t g) { return table[g + 1] - table[g]; };
+  EXPECT_NEAR(table[kMany], 1, 1e-6);
+  for (uint32_t g = 7; g < kMany; ++g) EXPECT_NEAR(share(g), share(g - 7), 1e-6) << g;
+  EXPECT_GT(share(6), share(0));
+}
+
+TEST(Lights, TheNetworkLeavesManyGroupsToTheFormula) {
+  const std::shared_ptr<const LightModel> network = Model::builtIn().lights;
+  std::vector<CellStatistics> cells(1);
+  cells[0].level = kCellLevels - 1;
+  cells[0].lightCount = 5;
+  cells[0].lightSquares = {2, 1, 7};
+  const auto tableBy = [&](const LightModel& model, uint32_t groups) {
+    std::vector<CellDecisions> result(1);
+    return tabulateLights(*libraryTasks(), result, cells, model, groups);
+  };
+  const uint32_t most = network->mostGroups();
+  EXPECT_NE(tableBy(*network, most), tableBy(LightFormula(), most));
+  EXPECT_EQ(tableBy(*network, most + 1), tableBy(LightFormula(), most + 1));
 }
 
 TEST(Lights, FewSamplesAreEnoughInMedia) {

@@ -142,7 +142,7 @@ TEST(SavedFields, ABuilderOfAnOlderVersionHasDefaults) {
   EXPECT_EQ(GuideBuilder::load(withoutClamp, std::nullopt, libraryTasks()).options().clamp,
             GuideOptions().clamp);
   // Without what lights have brought, all groups are alike; maps are what they were.
-  const Guide older = load({"part0.cells.finest.lightSquares", "part0.fractions.roughness",
+  const Guide older = load({"part0.cells.finest.groupSquares", "part0.fractions.roughness",
                             "part0.cells.leftOut", "part0.cells.counts.twice"})
                           .build();
   const GuideView view = older.view();

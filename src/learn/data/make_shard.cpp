@@ -9,6 +9,7 @@
 #include "learn/data/folder_settings.h"
 #include "learn/scenes/generate.h"
 #include "learn/scenes/random.h"
+#include "odis/models/light_features.h"
 #include "odis_version.h"
 #include "render/files/read_json.h"
 #include "render/files/replace_file.h"
@@ -106,7 +107,7 @@ nlohmann::ordered_json addView(ShardWriter& writer, const std::string& file, siz
   const auto scene = render::Scene::load(file, load, warnings);
   if (!scene->media().empty())
     throw render::SceneError({file}, "found participating media, expected none: data sets are of surfaces");
-  const render::LightSampler lights(scene->emitters());
+  const render::LightSampler lights(scene->emitters(), core::kFewGroups);
   if (settings.windows.count > 0) {
     const WindowView content =
         traceWindows(*scene, lights, settings.windows, settings.targets, settings.pilots, random.bits());

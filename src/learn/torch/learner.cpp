@@ -73,7 +73,7 @@ struct LightRows {
   torch::Tensor pairs, formula, rms, probability;
 
   LightRows(const LightBatch& b, const torch::Device& device) {
-    const auto count = int64_t(b.count), groups = int64_t(kMaxLightGroups);
+    const auto count = int64_t(b.count), groups = int64_t(core::kFewGroups);
     pairs = toDevice(b.pairs, {count, groups, core::kPairFeatures}, device);
     formula = toDevice(b.formula, {count, groups}, device);
     rms = toDevice(b.rms, {count, groups}, device);

@@ -118,9 +118,9 @@ void ExamplePool::draw(uint64_t seed, uint64_t step, size_t count, double shiftP
 
 void ExamplePool::draw(uint64_t seed, uint64_t step, size_t count, LightBatch& batch) const {
   batch.count = count;
-  batch.pairs.assign(count * kMaxLightGroups * core::kPairFeatures, 0);
+  batch.pairs.assign(count * core::kFewGroups * core::kPairFeatures, 0);
   for (std::vector<float>* values : {&batch.formula, &batch.rms, &batch.probability})
-    values->assign(count * kMaxLightGroups, 0);
+    values->assign(count * core::kFewGroups, 0);
   const Random stream = Random(seed).fork(fmt::format("lights of step {}", step));
   tbb::parallel_for(size_t(0), count, [&](size_t row) {
     Random random = stream.fork(fmt::format("{}", row));
@@ -133,7 +133,7 @@ void ExamplePool::draw(uint64_t seed, uint64_t step, size_t count, LightBatch& b
     const float* rms = &view.lightRms[example * view.groups];
     const float sum = std::accumulate(rms, rms + view.groups, 0.0f);
     for (size_t g = 0; g < view.groups; ++g) {
-      const size_t at = row * kMaxLightGroups + g;
+      const size_t at = row * core::kFewGroups + g;
       for (size_t f = 0; f < core::kPairFeatures; ++f)
         batch.pairs[at * core::kPairFeatures + f] = features.pairs[f][g];
       batch.formula[at] = std::max(features.formula[g], 1e-6f);

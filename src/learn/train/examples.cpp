@@ -101,7 +101,7 @@ ViewExamples examplesOf(const ShardReader& shard, size_t view) {
 
   ViewExamples examples;
   examples.count = targets.size();
-  examples.groups = targets.empty() ? 0 : std::min(targets.front().lights.size(), size_t(kMaxLightGroups));
+  examples.groups = targets.empty() ? 0 : std::min(targets.front().lights.size(), size_t(core::kFewGroups));
   std::vector<const PathVertex*> vertices;  // of the targets
   for (const Target& target : targets) {
     size_t at = target.vertex, pilot = 0;

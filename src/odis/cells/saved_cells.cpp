@@ -19,7 +19,7 @@ constexpr void forEachField(FieldsOf<CellStatistics>, const Body& body) {
   body("centroid", &CellStatistics::centroid);
   body("normal", &CellStatistics::normal);
   body("bothSides", &CellStatistics::bothSides);
-  body("lightSquares", &CellStatistics::lightSquares);
+  body("groupSquares", &CellStatistics::lightSquares);  // "lightSquares" were of 32 groups
   body("histogram", &CellStatistics::histogram);
 }
 

@@ -3,7 +3,6 @@
 #include <cmath>
 
 #include "odis/maps/fast_log2.h"
-#include "odis/models/lights.h"
 
 namespace odis::core {
 
@@ -16,8 +15,7 @@ constexpr float kShareScale = 1.0f / 4, kCountScale = 1.0f / 8;
 
 // Writes the share of each group, in proportion to the roots of squares, or zeros; returns whether there
 // are any.
-bool sharesOf(const std::array<double, kMaxLightGroups>& squares, uint32_t groups,
-              std::array<float, kMaxLightGroups>& shares) {
+bool sharesOf(const LightSquares& squares, uint32_t groups, GroupShares& shares) {
   double sum = 0;
   for (uint32_t g = 0; g < groups; ++g) sum += std::sqrt(squares[g]);
   const double scale = sum > 0 && sum < INFINITY ? 1 / sum : 0;
@@ -30,7 +28,7 @@ bool sharesOf(const std::array<double, kMaxLightGroups>& squares, uint32_t group
 
 void computeFeatures(const CellChain& chain, uint32_t groups, LightFeatures& features) {
   features.pairs = {};
-  const auto put = [&](int feature, const std::array<float, kMaxLightGroups>& shares) {
+  const auto put = [&](int feature, const GroupShares& shares) {
     for (uint32_t g = 0; g < groups; ++g)
       features.pairs[size_t(feature)][g] = kShareScale * fastLog2(shares[g] + kLeastShare);
   };
@@ -38,7 +36,7 @@ void computeFeatures(const CellChain& chain, uint32_t groups, LightFeatures& fea
     std::fill_n(features.pairs[size_t(feature)].begin(), groups, value);
   };
   // From the coarsest level on, so that the formula's shares come along.
-  std::array<float, kMaxLightGroups> shares;
+  GroupShares shares;
   LightSquares formula{};
   bool parent = false;
   for (int level = kCellLevels - 1; level >= 0; --level) {
@@ -56,7 +54,8 @@ void computeFeatures(const CellChain& chain, uint32_t groups, LightFeatures& fea
   if (!sharesOf(formula, groups, features.formula))
     std::fill_n(features.formula.begin(), groups, 1 / float(groups));
   put(2 * kCellLevels, features.formula);
-  fill(2 * kCellLevels + 1, kShareScale * float(std::log2(double(groups))));
+  // Networks are trained where there are few groups.
+  fill(2 * kCellLevels + 1, kShareScale * float(std::log2(double(std::min(groups, kFewGroups)))));
 }
 
 }  // namespace odis::core

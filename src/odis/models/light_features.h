@@ -3,7 +3,7 @@
 
 #include <array>
 
-#include "odis/cells/statistics.h"
+#include "odis/models/lights.h"
 
 namespace odis::core {
 
@@ -11,10 +11,11 @@ namespace odis::core {
 // the share by formula; the number of groups.
 inline constexpr int kPairFeatures = 2 * kCellLevels + 2;
 
+using GroupShares = std::array<float, kMaxLightGroups>;
+
 struct LightFeatures {
-  std::array<std::array<float, kMaxLightGroups>, kPairFeatures>
-      pairs;                                   // [feature][group]; groups that are not: zero
-  std::array<float, kMaxLightGroups> formula;  // shares, with the sum 1
+  std::array<GroupShares, kPairFeatures> pairs;  // [feature][group]; groups that are not: zero
+  GroupShares formula;                           // shares, with the sum 1
 };
 
 // Features of the first cell of a chain, where there are so many groups.

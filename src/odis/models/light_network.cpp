@@ -1,5 +1,6 @@
 #include "odis/models/light_network.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace odis::core {
@@ -7,7 +8,7 @@ namespace odis::core {
 namespace {
 
 constexpr uint32_t kWidestPairLayer = 32;
-static_assert(kLanes == kMaxLightGroups);
+static_assert(kMaxLightGroups % kLanes == 0 && kPairFeatures <= kWidestPairLayer);
 
 }  // namespace
 
@@ -21,20 +22,27 @@ LightNetwork::LightNetwork(const Weights& weights) {
   if (inputs != 1) throw WeightsError("lights.2: expected one output");
 }
 
-std::array<float, kMaxLightGroups> LightNetwork::shares(const LightFeatures& features,
-                                                        uint32_t groups) const {
-  // All groups side by side.
-  float x[kWidestPairLayer * kMaxLightGroups], y[kWidestPairLayer * kMaxLightGroups];
-  m_layers[0].applyLanes(features.pairs[0].data(), x);
-  rectify(std::span(x, m_layers[0].outputs() * kMaxLightGroups));
-  m_layers[1].applyLanes(x, y);
-  rectify(std::span(y, m_layers[1].outputs() * kMaxLightGroups));
-  m_layers[2].applyLanes(y, x);
+void LightNetwork::correct(const LightFeatures& features, uint32_t first, uint32_t count,
+                           float* corrections) const {
+  float x[kWidestPairLayer * kLanes], y[kWidestPairLayer * kLanes];
+  for (size_t feature = 0; feature < kPairFeatures; ++feature)
+    std::copy_n(&features.pairs[feature][first], kLanes, &x[feature * kLanes]);
+  m_layers[0].applyLanes(x, y);
+  rectify(std::span(y, m_layers[0].outputs() * kLanes));
+  m_layers[1].applyLanes(y, x);
+  rectify(std::span(x, m_layers[1].outputs() * kLanes));
+  m_layers[2].applyLanes(x, y);
+  std::copy_n(y, count, corrections);
+}
+
+GroupShares LightNetwork::shares(const LightFeatures& features, uint32_t groups) const {
+  GroupShares result{};
+  for (uint32_t first = 0; first < groups; first += kLanes)
+    correct(features, first, std::min(groups - first, kLanes), &result[first]);
   // A softmax, in double precision where functions of floats differ from system to system in their last bit.
-  std::array<float, kMaxLightGroups> result{};
   float most = -INFINITY, total = 0;
   for (uint32_t g = 0; g < groups; ++g) {
-    result[g] = x[g] + float(std::log(double(std::max(features.formula[g], 1e-6f))));
+    result[g] += float(std::log(double(std::max(features.formula[g], 1e-6f))));
     most = std::max(most, result[g]);
   }
   for (uint32_t g = 0; g < groups; ++g) total += result[g] = float(std::exp(double(result[g] - most)));
@@ -51,7 +59,7 @@ LightSquares LightNetwork::predict(const CellChain& chain, const LightSquares*, 
   if (!lit) return squares;
   LightFeatures features;
   computeFeatures(chain, groups, features);
-  const std::array<float, kMaxLightGroups> share = shares(features, groups);
+  const GroupShares share = shares(features, groups);
   for (uint32_t g = 0; g < groups; ++g) squares[g] = double(share[g]) * share[g];
   return squares;
 }

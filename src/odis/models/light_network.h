@@ -15,13 +15,18 @@ class LightNetwork : public LightModel {
   explicit LightNetwork(const Weights& weights);
   LightSquares predict(const CellChain& chain, const LightSquares* parent, uint32_t groups) const override;
   bool knowsMedia() const override { return false; }
+  // It is trained with 32 at most; with 128 the formula is better.
+  uint32_t mostGroups() const override { return 2 * kFewGroups; }
   // Cells that have seen little follow their ancestors; the network knows how little that is.
-  double reliability(const CellStatistics&) const override { return 1; }
+  double reliability(const CellChain&, uint32_t) const override { return 1; }
 
   // The share of each group, with the sum 1.
-  std::array<float, kMaxLightGroups> shares(const LightFeatures& features, uint32_t groups) const;
+  GroupShares shares(const LightFeatures& features, uint32_t groups) const;
 
  private:
+  // What is added to the logarithms of the formula's shares, for some of the groups: kLanes at most.
+  void correct(const LightFeatures& features, uint32_t first, uint32_t count, float* corrections) const;
+
   Dense m_layers[3];
 };
 

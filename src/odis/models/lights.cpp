@@ -10,8 +10,9 @@ namespace odis::core {
 
 namespace {
 
-// Weight of the coarser level beside a cell's own samples, in samples.
-constexpr double kLightPriorSamples = 30;
+// Weight of the coarser level beside a cell's own samples, in samples: of few groups, and of more for each of
+// them, since a few samples say little of a group that is seldom drawn.
+constexpr double kLightPriorSamples = 30, kPriorSamplesPerGroup = 2;
 // The number of samples that makes the formula half as reliable.
 constexpr double kHalfEnough = 20;
 // Bounds of a ratio for the parts of a light: the second moment of the best choice among them over that of
@@ -43,21 +44,29 @@ void evenOut(std::span<double> weights) {
 
 }  // namespace
 
-LightSquares LightFormula::predict(const CellChain& chain, const LightSquares* parent, uint32_t) const {
+LightSquares LightFormula::predict(const CellChain& chain, const LightSquares* parent,
+                                   uint32_t groups) const {
   const CellStatistics& cell = *chain[0];
   LightSquares result{};
-  const double prior = parent ? kLightPriorSamples : 0;
+  const double ofParent = groups <= kFewGroups ? kLightPriorSamples : kPriorSamplesPerGroup * groups;
+  const double prior = parent ? ofParent : 0;
   if (!(cell.lightCount + prior > 0)) return result;
-  for (size_t g = 0; g < result.size(); ++g)
+  for (size_t g = 0; g < groups; ++g)
     result[g] = shrunkMean(cell.lightSquares[g], cell.lightCount, parent ? (*parent)[g] : 0, prior);
   return result;
 }
 
-double LightFormula::reliability(const CellStatistics& cell) const {
+double LightFormula::reliability(const CellChain& chain, uint32_t groups) const {
+  const CellStatistics& cell = *chain[0];
   // In media light changes little from place to place, so that ancestors tell enough, and what else chooses
   // lights knows nothing of transmittance.
   if (cell.inMedium) return 1;
-  return ownWeight(cell.lightCount, kHalfEnough);
+  if (groups <= kFewGroups) return ownWeight(cell.lightCount, kHalfEnough);
+  // Of many groups most is known from the ancestors, and most of that from the coarsest.
+  const CellStatistics* coarsest = chain[0];
+  for (const CellStatistics* ancestor : chain)
+    if (ancestor) coarsest = ancestor;
+  return ownWeight(coarsest->lightCount, kPriorSamplesPerGroup * groups);
 }
 
 std::vector<float> tabulateLights(const Tasks& tasks, std::vector<CellDecisions>& result,
@@ -68,8 +77,10 @@ std::vector<float> tabulateLights(const Tasks& tasks, std::vector<CellDecisions>
   std::vector<float> table(cells.size() * (groups + 1));
   forEachFromCoarse(tasks, cells, [&](size_t c) {
     const uint32_t parent = cells[c].parent;
-    const LightModel& decides = modelFor<LightModel>(cells[c], model, formula);
-    squares[c] = decides.predict(chainOf(cells, c), parent == kNoCell ? nullptr : &squares[parent], groups);
+    const LightModel& decides =
+        groups > model.mostGroups() ? formula : modelFor<LightModel>(cells[c], model, formula);
+    const CellChain chain = chainOf(cells, c);
+    squares[c] = decides.predict(chain, parent == kNoCell ? nullptr : &squares[parent], groups);
     std::array<double, kMaxLightGroups> weights{};
     for (uint32_t g = 0; g < groups; ++g) {
       const double weight = std::sqrt(squares[c][g]);
@@ -79,7 +90,8 @@ std::vector<float> tabulateLights(const Tasks& tasks, std::vector<CellDecisions>
       if (light.first <= groups && light.count <= groups - light.first)
         evenOut(std::span(weights).subspan(light.first, light.count));
     const double total = std::accumulate(weights.begin(), weights.end(), 0.0);
-    result[c].learnedLightFraction = total > 0 ? float(kLearnedFraction * decides.reliability(cells[c])) : 0;
+    const double reliability = decides.reliability(chain, groups);
+    result[c].learnedLightFraction = total > 0 ? float(kLearnedFraction * reliability) : 0;
     float* cdf = &table[c * (groups + 1)];
     double sum = 0;
     for (uint32_t g = 0; g < groups && total > 0; ++g) {

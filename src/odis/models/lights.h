@@ -11,6 +11,8 @@ namespace odis::core {
 
 using LightParts = OdisLightParts;
 
+// So many groups of lights are few: each cell learns about them from the samples that maps need, too.
+inline constexpr uint32_t kFewGroups = 32;
 // The learned-light fraction where a cell has seen enough.
 inline constexpr double kLearnedFraction = 0.9;
 
@@ -26,17 +28,19 @@ class LightModel {
   // Given the statistics of the cell and its ancestors, and its parent's result (null for the coarsest
   // level). Called for parents before their children; thread-safe. `groups` is at most kMaxLightGroups.
   virtual LightSquares predict(const CellChain& chain, const LightSquares* parent, uint32_t groups) const = 0;
-  // Whether the model decides in cells of media, too; where it does not, the formula does.
+  // Whether the model decides in cells of media, too, and among how many groups; elsewhere the formula does.
   virtual bool knowsMedia() const { return true; }
-  // How reliable the cell's result is, from 0 to 1: the learned-light fraction is in proportion to it.
-  virtual double reliability(const CellStatistics& cell) const = 0;
+  virtual uint32_t mostGroups() const { return kMaxLightGroups; }
+  // How reliable the result is of the first cell of a chain, from 0 to 1: the learned-light fraction is in
+  // proportion to it.
+  virtual double reliability(const CellChain& chain, uint32_t groups) const = 0;
 };
 
 // The cell's means, shrunk towards its parent's by how many samples the cell has.
 class LightFormula : public LightModel {
  public:
   LightSquares predict(const CellChain& chain, const LightSquares* parent, uint32_t groups) const override;
-  double reliability(const CellStatistics& cell) const override;
+  double reliability(const CellChain& chain, uint32_t groups) const override;
 };
 
 // The model that decides in a cell: the formula where the model knows nothing of media and the cell is one.

@@ -28,7 +28,7 @@ enum class SampleSpread { automatic, even, adaptive };
 
 struct GuideOptions {
   std::optional<Model> model;  // none: the networks that come with the library
-  uint32_t lightGroups = 0;    // that the vertices tell apart, <= 32; 0: learn nothing about lights
+  uint32_t lightGroups = 0;    // that the vertices tell apart, <= 128; 0: learn nothing about lights
   std::vector<OdisLightParts> lightParts;
   OdisProgressFunction progressFunction = nullptr;
   void* progressUser = nullptr;

@@ -43,7 +43,7 @@ bool isDivisible(const Emitter& emitter) {
 
 }  // namespace
 
-LightSampler::LightSampler(const std::vector<const Emitter*>& emitters)
+LightSampler::LightSampler(const std::vector<const Emitter*>& emitters, uint32_t mostGroups)
     : m_emitters(emitters),
       m_probability(emitters.size(), 0.0f),
       m_groupOf(emitters.size(), 0),
@@ -64,8 +64,9 @@ LightSampler::LightSampler(const std::vector<const Emitter*>& emitters)
     weights.push_back(usable(emitters[i]->meanIrradiance()));
     m_infiniteIrradiance += weights.back();
   }
-  divide(uint32_t(lights.size()));
-  m_tree = LightTree(lights, kMaxLightGroups - m_infiniteGroups);
+  mostGroups = std::min(mostGroups, std::max(uint32_t(emitters.size()), kFewLightGroups));
+  divide(uint32_t(lights.size()), mostGroups);
+  m_tree = LightTree(lights, mostGroups - m_infiniteGroups);
   if (m_infinite.empty()) return;
 
   const float even = 1 / float(weights.size());
@@ -88,12 +89,12 @@ void LightSampler::prepare(std::span<LightReference> refs) const {
   for (size_t i = 0; i < refs.size(); ++i) refs[i].treeProbability = treeBesideInfinite(irradiances[i]);
 }
 
-void LightSampler::divide(uint32_t lights) {
+void LightSampler::divide(uint32_t lights, uint32_t mostGroups) {
   const uint32_t count = uint32_t(m_infinite.size());
   uint32_t divisible = 0;
   for (const uint32_t emitter : m_infinite) divisible += isDivisible(*m_emitters[emitter]);
   // The finest grid that leaves some groups to the lights of the tree.
-  const uint32_t most = kMaxLightGroups - std::min(lights, kTreeGroups);
+  const uint32_t most = mostGroups - std::min(lights, kTreeGroups);
   m_side = kFinestGrid;
   while (m_side > 1 && count + divisible * (regions() - 1) > most) m_side /= 2;
   if (count > kMostInfiniteGroups) m_side = 1;

@@ -17,6 +17,9 @@ struct LightGroup {
   float irradiance = 0;  // that infinite ones give on average over all ways to face, W/m^2
 };
 
+// How many groups of lights there may be where emitters are fewer.
+inline constexpr uint32_t kFewLightGroups = 32;
+
 // Chooses among the parts of all emitters that are somewhere by a tree, and among those infinitely far away
 // by their mean irradiance. Between the two the irradiance decides that the tree may give the reference. A
 // tenth of both choices is spread evenly, so that none is starved by a bad estimate.
@@ -27,8 +30,9 @@ struct LightGroup {
 class LightSampler {
  public:
   LightSampler() = default;
-  // The emitters of a scene, in the order of their indices.
-  explicit LightSampler(const std::vector<const Emitter*>& emitters);
+  // The emitters of a scene, in the order of their indices. There are at most so many groups, and at most
+  // kFewLightGroups or one for each emitter, whichever is more.
+  explicit LightSampler(const std::vector<const Emitter*>& emitters, uint32_t mostGroups = kMaxLightGroups);
 
   struct Choice {
     const Emitter* emitter = nullptr;  // null if no light shines upon the reference
@@ -77,7 +81,7 @@ class LightSampler {
 
  private:
   // Gives groups to the emitters outside of the tree, which holds so many lights.
-  void divide(uint32_t lights);
+  void divide(uint32_t lights, uint32_t mostGroups);
   uint32_t regions() const { return m_side * m_side; }
   // The probability of choosing from the tree.
   float treeProbability(const LightReference& ref) const {
