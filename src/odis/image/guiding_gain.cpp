@@ -27,30 +27,66 @@ void addTo(Color& sum, const PixelSums& sums, double sign = 1) {
   for (int c = 0; c < 3; ++c) sum[c] += sign * sums.sum[c];
 }
 
+uint32_t blocksAlong(uint32_t pixels) {
+  return (pixels + kPixelValueBlock - 1) / kPixelValueBlock;
+}
+
 double grayOf(const Color& color) {
   return luminance({float(color[0]), float(color[1]), float(color[2])});
 }
+
+// Sums over samples.
+struct ColorSums {
+  Color sum{};
+  uint64_t count = 0;
+
+  void add(const PixelSums& sums) {
+    addTo(sum, sums);
+    count += sums.count;
+  }
+  ColorSums without(const PixelSums& sums) const {
+    ColorSums result = *this;
+    addTo(result.sum, sums, -1);
+    result.count -= sums.count;
+    return result;
+  }
+};
 
 // The samples of an image and what they are compared with. Pixels are sums over samples, or give them.
 template <class Pixels>
 struct GuidedImage {
   const Pixels& pixels;
   uint32_t width, height;
+  std::vector<ColorSums> blocks{};  // of 8 x 8 pixels, row by row
 
-  // Sums over the samples of a rectangle without those of one pixel of it.
-  std::pair<Color, uint64_t> around(uint32_t x0, uint32_t y0, uint32_t x1, uint32_t y1,
-                                    size_t without) const {
+  uint32_t blockColumns() const { return blocksAlong(width); }
+  uint32_t blockOf(uint32_t x, uint32_t y) const {
+    return y / kPixelValueBlock * blockColumns() + x / kPixelValueBlock;
+  }
+  ColorSums sumOver(uint32_t x0, uint32_t y0, uint32_t x1, uint32_t y1) const {
+    ColorSums sums;
+    for (uint32_t y = y0; y < std::min(y1, height); ++y)
+      for (uint32_t x = x0; x < std::min(x1, width); ++x) sums.add(pixels[size_t(y) * width + x]);
+    return sums;
+  }
+  void sumBlocks(const Tasks& tasks) {
+    blocks.resize(size_t(blockColumns()) * blocksAlong(height));
+    tasks.forEach(blocksAlong(height), [this](size_t row) {
+      for (uint32_t column = 0; column < blockColumns(); ++column) {
+        const uint32_t x = column * kPixelValueBlock, y = uint32_t(row) * kPixelValueBlock;
+        blocks[row * blockColumns() + column] = sumOver(x, y, x + kPixelValueBlock, y + kPixelValueBlock);
+      }
+    });
+  }
+  // The mean luminance of all samples; 0 where there are none.
+  double mean() const {
     Color sum{};
     uint64_t count = 0;
-    for (uint32_t y = y0; y < std::min(y1, height); ++y)
-      for (uint32_t x = x0; x < std::min(x1, width); ++x) {
-        const PixelSums& pixel = pixels[size_t(y) * width + x];
-        addTo(sum, pixel);
-        count += pixel.count;
-      }
-    const PixelSums& leftOut = pixels[without];
-    addTo(sum, leftOut, -1);
-    return {sum, count - leftOut.count};
+    for (const ColorSums& block : blocks) {
+      for (int c = 0; c < 3; ++c) sum[c] += block.sum[c];
+      count += block.count;
+    }
+    return grayOf(sum) / double(std::max<uint64_t>(count, 1));
   }
 };
 
@@ -97,27 +133,24 @@ template <class Pixels>
 Kinds compareRow(const Pixels& unguided, const GuidedImage<Pixels>& samples, uint32_t y, double mean) {
   Kinds result;
   result.pixels.reserve(samples.width);
-  const uint32_t blocks = (samples.width + kPixelValueBlock - 1) / kPixelValueBlock;
   for (uint32_t x = 0; x < samples.width; ++x) {
     const size_t i = size_t(y) * samples.width + x;
     const PixelSums &ofUnguided = unguided[i], &ofGuided = samples.pixels[i];
     const PixelSums* kinds[] = {&ofUnguided, &ofGuided};
     if (kinds[0]->count == 0 || kinds[1]->count == 0) continue;
-    auto [near, nearCount] = samples.around(x - std::min(x, 1u), y - std::min(y, 1u), x + 2, y + 2, i);
-    const uint32_t blockX = x / kPixelValueBlock * kPixelValueBlock,
-                   blockY = y / kPixelValueBlock * kPixelValueBlock;
-    const auto [block, blockCount] =
-        samples.around(blockX, blockY, blockX + kPixelValueBlock, blockY + kPixelValueBlock, i);
-    if (nearCount == 0 || blockCount == 0) continue;
-    for (double& channel : near) channel /= double(nearCount);
-    const double value = pixelValue(std::max(grayOf(block) / double(blockCount), 0.0), mean);
-    PixelDistances pixel{y / kPixelValueBlock * blocks + x / kPixelValueBlock, {}, 0};
+    ColorSums near =
+        samples.sumOver(x - std::min(x, 1u), y - std::min(y, 1u), x + 2, y + 2).without(ofGuided);
+    const ColorSums block = samples.blocks[samples.blockOf(x, y)].without(ofGuided);
+    if (near.count == 0 || block.count == 0) continue;
+    for (double& channel : near.sum) channel /= double(near.count);
+    const double value = pixelValue(std::max(grayOf(block.sum) / double(block.count), 0.0), mean);
+    PixelDistances pixel{samples.blockOf(x, y), {}, 0};
     for (int k = 0; k < 2; ++k) {
-      pixel.squares[k] = meanSquare(*kinds[k], near) / (value * value);
+      pixel.squares[k] = meanSquare(*kinds[k], near.sum) / (value * value);
       result.rays[k] += kinds[k]->rays;
       result.counts[k] += kinds[k]->count;
     }
-    pixel.product = meanProduct(*kinds[0], *kinds[1], near) / (value * value);
+    pixel.product = meanProduct(*kinds[0], *kinds[1], near.sum) / (value * value);
     result.pixels.push_back(pixel);
   }
   return result;
@@ -166,29 +199,21 @@ std::optional<GuidingGain> ratioOf(const BlockVariances& blocks) {
 template <class Pixels>
 std::optional<GuidingGain> gainOf(const Tasks& tasks, const Pixels& unguided, const Pixels& guided,
                                   uint32_t width) {
-  const GuidedImage<Pixels> samples{guided, width, uint32_t(guided.size() / width)};
-  Color sum{};
-  uint64_t count = 0;
-  for (size_t i = 0; i < guided.size(); ++i) {
-    const PixelSums& pixel = guided[i];
-    addTo(sum, pixel);
-    count += pixel.count;
-  }
-  const double mean = grayOf(sum) / double(std::max<uint64_t>(count, 1));
+  GuidedImage<Pixels> samples{guided, width, uint32_t(guided.size() / width)};
+  samples.sumBlocks(tasks);
+  const double mean = samples.mean();
   if (!(mean > 0)) return {};
 
   std::vector<Kinds> rows(samples.height);
   tasks.forEach(rows.size(), [&](size_t y) { rows[y] = compareRow(unguided, samples, uint32_t(y), mean); });
-  // Memory: 32 bytes a pixel that has both, in rows or together.
+  // Memory: 32 bytes a pixel that has both, in rows or together, and half a byte a pixel.
   Kinds all;
   size_t pixels = 0;
   for (const Kinds& row : rows) pixels += row.pixels.size();
   all.pixels.reserve(pixels);
   for (Kinds& row : rows) all.append(std::exchange(row, {}));
   if (all.pixels.size() < kLeastPixels || !(all.rays[0] > 0)) return {};
-  const auto blocksAlong = [](uint32_t pixels) { return (pixels + kPixelValueBlock - 1) / kPixelValueBlock; };
-  const size_t blockCount = size_t(blocksAlong(width)) * blocksAlong(samples.height);
-  const std::optional<GuidingGain> gain = ratioOf(variancesOfBlocks(all, blockCount));
+  const std::optional<GuidingGain> gain = ratioOf(variancesOfBlocks(all, samples.blocks.size()));
   if (!gain) return {};
   const double rays = all.raysPerSample(1) / all.raysPerSample(0);
   return GuidingGain{gain->ratio * rays, gain->standardError * rays};
