@@ -122,7 +122,8 @@ ViewExamples examplesOf(const ShardReader& shard, size_t view) {
     for (const size_t pilot : pilotsOf(variant, view, pilots.size()))
       parts.emplace_back(pilots[pilot].vertices);
     store.add(parts, 0);
-    const std::vector<core::CellStatistics>& cells = store.rollUp();
+    store.rollUp();
+    const std::vector<core::CellStatistics>& cells = store.lookAround();
     for (const PathVertex* vertex : vertices) addInput(store, cells, *vertex, frame.unit, examples);
   }
   return examples;

@@ -13,9 +13,10 @@ namespace odis::core {
 
 namespace {
 
-// A cell beyond the grid's reach has a map of its own from so many samples on; one of fewer samples would not
-// save what it costs.
-constexpr double kLeastForMap = 64;
+// A finest cell has a map of its own from so many samples on; fewer would hardly change its parent's.
+constexpr double kLeastForFinestMap = 16;
+// Cells beyond the grid's reach: from so many on. One of fewer samples would not save what it costs.
+constexpr double kLeastForFarMap = 64;
 // With so many samples a half of such a map comes from the cell itself (GuideOptions::priorSamples).
 constexpr double kHalfKnown = 250;
 
@@ -275,11 +276,14 @@ const std::vector<CellStatistics>& CellStore::rollUp() {
     });
   forEachCell(*m_tasks, m_cells.size(), [&](size_t c) {
     CellStatistics& cell = m_cells[c];
-    cell.hasMap =
-        cell.count >= kLeastForMap || cell.parent == kNoCell || m_grid.isWithinReach(m_links[c].key);
+    cell.hasMap = cell.parent == kNoCell || cell.count >= leastForMap(c);
   });
-  if (m_looksAround) lookAround();
   return m_cells;
+}
+
+double CellStore::leastForMap(size_t cell) const {
+  if (!m_grid.isWithinReach(m_links[cell].key)) return kLeastForFarMap;
+  return m_links[cell].level == 0 ? kLeastForFinestMap : 0;
 }
 
 double CellStore::visitedCells() const {
@@ -293,7 +297,8 @@ double CellStore::visitedCells() const {
 }
 
 // Puts the light of coarser cells together from their children's, then lets all cells look at it.
-void CellStore::lookAround() {
+const std::vector<CellStatistics>& CellStore::lookAround() {
+  if (!m_looksAround) return m_cells;
   LightPoints points;
   std::vector<uint32_t> pointsOf(m_cells.size(), kNoCell);
   for (int level = 1; level < kCellLevels; ++level)
@@ -315,6 +320,7 @@ void CellStore::lookAround() {
     m_around.size = m_cells.size();
   }
   fillSurroundings(points, pointsOf);
+  return m_cells;
 }
 
 // Cells of one parent, and of one grandparent, have the same cells around them: what those have seen is put

@@ -51,8 +51,8 @@ struct CellStatistics {
   const Surroundings* around = nullptr;                // null where nothing asked for it
   // Whether its vertices are those of a medium, as its key says: they have no normals, and cosines are 1.
   bool inMedium = false;
-  // Whether it has a map of its own, not its parent's. Cells beyond the grid's reach that paths seldom come
-  // to have none, so that they cost next to nothing.
+  // Whether it has a map of its own, not its parent's. Finest cells, and those beyond the grid's reach, that
+  // paths seldom come to have none, so that they cost next to nothing.
   bool hasMap = true;
 };
 
@@ -137,9 +137,10 @@ class CellStore {
   BatchSamples take(const VertexBatch& batch, const VertexRules& rules = {}) const;
   BatchSamples takeWithoutCells(const VertexBatch& batch, const VertexRules& rules) const;
   void add(std::span<BatchSamples* const> batches, int cellsPerDiagonal);
-  // The cells, with the coarser levels and what lies around filled in. They stay as they are until more is
-  // added.
+  // The cells, with the coarser levels filled in. They stay as they are until more is added.
   const std::vector<CellStatistics>& rollUp();
+  // Fills in what lies around the cells that are rolled up, in a store that gathers it. Returns the cells.
+  const std::vector<CellStatistics>& lookAround();
 
   // How many cells there are that paths come to: beyond the grid's reach one counts less than 1, by how many
   // samples it has.
@@ -176,7 +177,8 @@ class CellStore {
   uint32_t insert(uint64_t key);
   void addNewCells();
   void addReturned(const CellOrder<CellSample>& order);
-  void lookAround();
+  // The least number of samples with which a cell has a map of its own.
+  double leastForMap(size_t cell) const;
   void fillSurroundings(const LightPoints& points, std::span<const uint32_t> pointsOf);
   std::span<const uint32_t> childrenOf(size_t cell) const {
     return std::span(m_children).subspan(m_firstChild[cell], m_firstChild[cell + 1] - m_firstChild[cell]);
