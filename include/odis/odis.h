@@ -163,9 +163,10 @@ ODIS_API void odisDescribeVertices(OdisPathVertices* vertices, const OdisPathVer
 
 ODIS_API void odisInitFrameOptions(OdisFrameOptions* options, size_t size);
 // Memory: 112 bytes a pixel for means (keepPixelMeans) and 9 for decisions. Without means at most 37 a pixel
-// in all until the first pass after the pilot has ended, if the pilot has at most one sample in a pixel (else
-// up to 40 more), and 9 from then on. While counts are settled 55 more for a moment. 84 bytes a vertex that
-// is learned from, until the guide is built anew, and 112 more for some of the pilot's; the guide's own.
+// in all until the first pass after the pilot has ended (53 where the guide is not refined), if the pilot has
+// at most one sample in a pixel (else up to 40 more), and 9 from then on. While counts are settled 55 more
+// for a moment. 84 bytes a vertex that is learned from, until the guide is built anew, and 120 more for some
+// of the pilot's; the guide's own.
 ODIS_API OdisFrame odisNewFrame(OdisContext context, const OdisFrameOptions* options);
 ODIS_API void odisRetainFrame(OdisFrame frame);
 ODIS_API void odisReleaseFrame(OdisFrame frame);

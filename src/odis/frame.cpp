@@ -43,6 +43,7 @@ Float3 finiteOrBlack(const Float3& value, std::atomic<uint64_t>& notFinite) {
 GuideOptions ownGuideOptions(const FrameOptions& options) {
   constexpr float kErrorOfOneSample = 0.6f;
   GuideOptions guide = options.guide;
+  if (options.guidedCost == 0) guide.alwaysMaps = true;
   if (guide.cachedError == 0) guide.cachedError = kErrorOfOneSample / std::sqrt(float(options.most()));
   return guide;
 }
@@ -235,6 +236,7 @@ void Frame::Data::endOraclePass() {
 void Frame::Data::buildGuide() {
   cells = builder->build(pixelValues);
   useCells();
+  if (guideSavesNothing()) return giveUpGuiding();
   settleRefinement();
   takeStock();
 }
@@ -299,10 +301,9 @@ void Frame::Data::endGuidedPass() {
     pilot = PixelSamples();
     later = PixelSamples();
   }
-  if (givesUp)
-    giveUpGuiding();
-  else
-    learnFromGuidedPass();
+  if (!givesUp) return learnFromGuidedPass();
+  giveUpGuiding();
+  done = end;
 }
 
 void Frame::Data::learnFromGuidedPass() {

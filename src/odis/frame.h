@@ -39,9 +39,9 @@ using SampleRange = OdisSampleRange;
 using FrameSample = OdisFrameSample;
 using FrameStatistics = OdisFrameStatistics;
 
-// Pixels are counted row by row. Memory: 112 bytes a pixel for means and 9 for decisions, or 37 and later 9
-// in all without means (odisNewFrame has the details); 84 bytes a vertex that is learned from, until the
-// guide is built anew, 112 more for some of the pilot's, 188 more where vertices are kept; the guide's own.
+// Pixels are counted row by row. Memory: 112 bytes a pixel for means and 9 for decisions, or 53 and later
+// 9 in all without means (odisNewFrame has the details); 84 bytes a vertex that is learned from, until the
+// guide is built anew, 120 more for some of the pilot's, 188 more where vertices are kept; the guide's own.
 // All functions throw std::logic_error when they are called out of order.
 class Frame {
  public:

@@ -60,6 +60,8 @@ struct Frame::Data {
   void endGuidedPass();
   void learnFromGuidedPass();
   void spreadSamples();
+  void endRefinement();
+  bool guideSavesNothing() const;
   bool guidingDoesNotPay();
   void giveUpGuiding();
   void refineGuide();

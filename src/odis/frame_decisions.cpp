@@ -7,6 +7,11 @@
 
 namespace odis::core {
 
+// The time to build a cell without a map of its own, over that with one.
+constexpr double kCostWithoutMaps = 0.25;
+// Of paths with less rays beyond their first vertex roulette saves less than looking it up takes.
+constexpr double kFewRays = 3;
+
 // Settles how many samples each pixel has.
 void Frame::Data::spreadSamples() {
   std::vector<PixelNoise> noise(pixelCount);
@@ -31,7 +36,7 @@ bool Frame::Data::nextRefinementPays() const {
   possible.seen = std::min(pilotSamples, double(kMostPilotSamples)) + done * learnedInPass;
   possible.learned = (next - done) * learnedInPass;
   possible.remaining = (schedule.most() - next) * pixels - pilotSamples;
-  possible.builtCellCost = options.builtCellCost;
+  possible.builtCellCost = options.builtCellCost * (cells.guidesDirections() ? 1 : kCostWithoutMaps);
   possible.recordedRayCost = options.recordedRayCost;
   return refinementPays(possible);
 }
@@ -42,13 +47,29 @@ bool Frame::Data::nextRefinementPays() const {
 void Frame::Data::settleRefinement() {
   if (guideOptions.lightGroups > kFewGroups) return;
   const bool predicted = guideOptions.fixedBsdfFraction == 0 && cells.raysPerPath() > 0;
-  if (options.guidedCost > 0 && ownsBuilder && predicted && !nextRefinementPays()) schedule.endRefinement();
+  if (options.guidedCost > 0 && ownsBuilder && predicted && !nextRefinementPays()) endRefinement();
+}
+
+void Frame::Data::endRefinement() {
+  schedule.endRefinement();
+  if (done > 0 || laterSamplesTaken > 0) return;
+  schedule.spreadLater();
+  later = keptOfLater(options, schedule);
+}
+
+// Whether the pilot tells that a guide would not save what its look-ups take: no directions, no lights, and
+// few rays. The radiance cache needs its cells in any case.
+bool Frame::Data::guideSavesNothing() const {
+  if (options.guidedCost == 0 || !ownsBuilder || paper || guideOptions.caches()) return false;
+  return cells.raysPerPath() > 0 && cells.raysPerPath() < kFewRays && !cells.guidesDirections() &&
+         !cells.choosesLights();
 }
 
 // Whether the first guided samples, compared with the pilot's, were clearly not worth their time.
 bool Frame::Data::guidingDoesNotPay() {
-  if (!options.guided || options.oracleSamples() > 0 || options.guidedCost == 0) return false;
-  if (done > 0 || end >= schedule.mostRemaining()) return false;
+  if (!options.guided || guidingGivenUp || options.oracleSamples() > 0 || options.guidedCost == 0)
+    return false;
+  if (end != schedule.comparedAfter() || end >= schedule.mostRemaining()) return false;
   const std::optional<GuidingGain> gain = guidedOverUnguided(*tasks, pilot, later, options.width);
   if (gain) measuredCostRatio = gain->ratio * options.guidedCost;
   return gain && guidingIsWorse(*gain, options.guidedCost);
@@ -60,8 +81,7 @@ void Frame::Data::giveUpGuiding() {
   guidingGivenUp = true;
   guide = cells = Guide();
   ++guidesBuilt;
-  schedule.endRefinement();
-  done = end;
+  endRefinement();
   takeStock();
 }
 

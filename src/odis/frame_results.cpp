@@ -18,10 +18,10 @@ PixelSamples keptOfPilot(const FrameOptions& options, const Schedule& schedule) 
   return options.keepPixelMeans ? PixelSamples::sums(pixels)
                                 : PixelSamples::few(pixels, schedule.mostPilotSamples());
 }
-// Counts are settled by the samples of the first pass, of which there is one in each pixel if it is guided.
+// Counts are settled by the samples of the first pass, and guided ones compared with the pilot's.
 PixelSamples keptOfLater(const FrameOptions& options, const Schedule& schedule) {
   const size_t pixels = size_t(options.width) * options.height;
-  const uint32_t first = options.guided ? 1 : schedule.spreadAfter();
+  const uint32_t first = options.guided ? schedule.comparedAfter() : schedule.spreadAfter();
   return options.keepPixelMeans ? PixelSamples::sums(pixels)
                                 : PixelSamples::few(pixels, std::min(first, schedule.mostRemaining()));
 }

@@ -49,6 +49,22 @@ Model modelOf(const GuideOptions& options) {
   return model;
 }
 
+// Whether maps would not pay for themselves, as coarse ones tell
+// (docs/experiments/0071-maps-and-lights-that-pay.md).
+bool savesLittle(const GuidingPrediction& prediction) {
+  constexpr float kLeastSaved = 0.04f;
+  return prediction.image.count > 0 && prediction.varianceRatio > 1 - kLeastSaved;
+}
+void setFractions(std::vector<CellDecisions>& decisions, float fraction) {
+  for (CellDecisions& cell : decisions) std::fill_n(cell.bsdfFraction, kRoughnessClasses, fraction);
+}
+bool leavesAllToBsdf(const std::vector<CellDecisions>& decisions) {
+  return std::all_of(decisions.begin(), decisions.end(), [](const CellDecisions& cell) {
+    return std::all_of(cell.bsdfFraction, cell.bsdfFraction + kRoughnessClasses,
+                       [](float fraction) { return fraction == 1; });
+  });
+}
+
 }  // namespace
 
 Guide::Guide() = default;
@@ -90,6 +106,16 @@ uint64_t Guide::bytes() const {
 }
 float Guide::predictedVarianceRatio() const {
   return m_data ? m_data->prediction.varianceRatio : 1;
+}
+
+bool Guide::guidesDirections() const {
+  return m_data && !leavesAllToBsdf(m_data->decisions);
+}
+
+bool Guide::choosesLights() const {
+  return m_data && m_data->lightGroups > 1 &&
+         std::any_of(m_data->decisions.begin(), m_data->decisions.end(),
+                     [](const CellDecisions& cell) { return cell.learnedLightFraction > 0; });
 }
 
 double Guide::raysPerPath() const {
@@ -282,8 +308,10 @@ static Histogram cosinesIn(const CellStatistics& cell, bool cosineProduct) {
   return meanCosines(cell.normal * perVertex, float(cell.bothSides) * perVertex);
 }
 
-// A guide of maps alone, made for coarse levels first; leaves the distributions that they were made from.
+// A guide of maps alone, made by a model for coarse levels first; finer ones than `finestLevel` take their
+// parents'. Leaves the distributions that they were made from.
 Guide GuideBuilder::Data::buildMaps(const CellStore& store, const std::vector<CellStatistics>& cells,
+                                    const DirectionModel& model, int finestLevel,
                                     std::vector<DirectionDistribution>& distributions) const {
   Guide guide;
   guide.m_data = std::make_shared<Guide::Data>(cells.size());
@@ -295,12 +323,12 @@ Guide GuideBuilder::Data::buildMaps(const CellStore& store, const std::vector<Ce
   const DirectionFormula formula(options.priorSamples);
   forEachFromCoarse(*tasks, cells, [&](size_t c) {
     const uint32_t parent = cells[c].parent;
-    if (!cells[c].hasMap) {
+    if (parent != kNoCell && (!cells[c].hasMap || cells[c].level < finestLevel)) {
       distributions[c] = distributions[parent];
       std::copy_n(result.mapAt(parent), kMapShares, result.mapAt(c));
       return;
     }
-    distributions[c] = modelFor<DirectionModel>(cells[c], *directions, formula)
+    distributions[c] = modelFor<DirectionModel>(cells[c], model, formula)
                            .predict(chainOf(cells, c), parent == kNoCell ? nullptr : &distributions[parent]);
     packMap(product(distributions[c].radiance(), options.floor, cosinesIn(cells[c], options.cosineProduct)),
             result.mapAt(c));
@@ -308,8 +336,20 @@ Guide GuideBuilder::Data::buildMaps(const CellStore& store, const std::vector<Ce
   return guide;
 }
 
-void GuideBuilder::Data::addRouletteAndLights(Guide::Data& guide, const CellStore& store,
-                                              const std::vector<CellStatistics>& cells) const {
+// Maps of the two coarsest levels by the formula, which cost next to nothing.
+Guide GuideBuilder::Data::buildCoarseMaps(const CellStore& store, const std::vector<CellStatistics>& cells,
+                                          std::vector<DirectionDistribution>& distributions) const {
+  return buildMaps(store, cells, DirectionFormula(options.priorSamples), kCellLevels - 2, distributions);
+}
+
+Guide GuideBuilder::Data::buildFineMaps(CellStore& store, const std::vector<CellStatistics>& cells,
+                                        std::vector<DirectionDistribution>& distributions) const {
+  store.lookAround();
+  return buildMaps(store, cells, *directions, 0, distributions);
+}
+
+void GuideBuilder::Data::addRoulette(Guide::Data& guide, const CellStore& store,
+                                     const std::vector<CellStatistics>& cells) const {
   fillRoulette(*tasks, guide.decisions, cells, guide.prediction.image, options.controlVariate);
   guide.cachedError = options.cachedError;
   if (guide.cachedError > 0) {
@@ -317,10 +357,35 @@ void GuideBuilder::Data::addRouletteAndLights(Guide::Data& guide, const CellStor
     guide.maxDepth = store.depthShares().maxDepth();
     guide.cachedShares.assign(store.depthShares().shares().begin(), store.depthShares().shares().end());
   }
-  guide.lightGroups = options.lightGroups;
-  if (guide.lightGroups > 0)
-    guide.lightTables =
-        tabulateLights(*tasks, guide.decisions, cells, *lights, guide.lightGroups, options.lightParts);
+}
+
+// The guide's decisions with the learned-light fractions of one way to choose lights, and its tables.
+LightChoice GuideBuilder::Data::chooseLights(const Guide::Data& guide,
+                                             const std::vector<CellStatistics>& cells,
+                                             LightDecider decider) const {
+  LightChoice choice;
+  choice.decisions = guide.decisions;
+  const LightFormula formula;
+  const LightModel& model = decider == LightDecider::model ? *lights : formula;
+  choice.tables =
+      tabulateLights(*tasks, choice.decisions, cells, model, options.lightGroups, options.lightParts);
+  if (decider == LightDecider::nothing)
+    for (CellDecisions& cell : choice.decisions) cell.learnedLightFraction = 0;
+  return choice;
+}
+
+// Chooses lights in the way that the pilot's vertices, if they tell, predict to be best.
+void GuideBuilder::Data::decideLights(Guide::Data& guide, const std::vector<CellStatistics>& cells,
+                                      const LightDecisionInputs& inputs) const {
+  LightChoice model = chooseLights(guide, cells, LightDecider::model);
+  if (lightMoment(inputs, model, 0) > 0) {
+    LightChoice formula = chooseLights(guide, cells, LightDecider::formula);
+    guide.lightDecider = core::decideLights(inputs, formula, model);
+    if (guide.lightDecider == LightDecider::formula) model = std::move(formula);
+    if (guide.lightDecider == LightDecider::nothing) model = chooseLights(guide, cells, guide.lightDecider);
+  }
+  guide.lightTables = std::move(model.tables);
+  guide.decisions = std::move(model.decisions);
 }
 
 Guide GuideBuilder::build(ArrayView<const float> pixelValues) const {
@@ -334,24 +399,40 @@ Guide GuideBuilder::Data::build(ArrayView<const float> pixelValues) {
   CellStore& store = allCells(sum);
   const std::vector<CellStatistics>& cells = store.rollUp();
   progress.report(0.3);
-  std::vector<DirectionDistribution> distributions;
-  Guide guide = buildMaps(store, cells, distributions);
-  progress.report(0.7);
-  Guide::Data& result = *guide.m_data;
   std::vector<ArrayView<const FractionSample>> unguided;
   uint64_t seen = 0;
   for (const auto& [id, part] : parts) {
     unguided.emplace_back(part.fractions.samples);
     seen += part.fractions.seen;
   }
-  result.prediction =
-      chooseFractions(result.decisions, {store, cells, distributions, guide.view().maps, guide.view().rules,
+  std::vector<DirectionDistribution> distributions;
+  const auto predict = [&](Guide& guide) {
+    Guide::Data& data = *guide.m_data;
+    data.prediction =
+        chooseFractions(data.decisions, {store, cells, distributions, data.maps.data(), guide.view().rules,
                                          unguided, fractionStride(seen), pixelValues});
-  if (const float fixed = options.fixedBsdfFraction; fixed > 0) {
-    for (CellDecisions& cell : result.decisions) std::fill_n(cell.bsdfFraction, kRoughnessClasses, fixed);
+  };
+  Guide guide;
+  if (decidesMaps()) {
+    guide = buildCoarseMaps(store, cells, distributions);
+    predict(guide);
+  }
+  if (!guide.m_data || !savesLittle(guide.m_data->prediction)) {
+    guide = buildFineMaps(store, cells, distributions);
+    progress.report(0.7);
+    predict(guide);
+  } else {
+    setFractions(guide.m_data->decisions, 1);
+  }
+  Guide::Data& result = *guide.m_data;
+  if (options.fixedBsdfFraction > 0) {
+    setFractions(result.decisions, options.fixedBsdfFraction);
     result.prediction.varianceRatio = 1;
   }
-  addRouletteAndLights(result, store, cells);
+  addRoulette(result, store, cells);
+  result.lightGroups = options.lightGroups;
+  if (result.lightGroups > 0)
+    decideLights(result, cells, {store, unguided, fractionStride(seen), pixelValues, result.lightGroups});
   progress.report(1);
   return guide;
 }
@@ -375,11 +456,13 @@ Guide GuideBuilder::rebuild(const Guide& previous) const {
   progress.report(0);
   const std::vector<CellStatistics>& cells = store.rollUp();
   progress.report(0.3);
+  const Guide::Data& old = *previous.m_data;
   std::vector<DirectionDistribution> distributions;
-  Guide guide = m_data->buildMaps(store, cells, distributions);
+  Guide guide = m_data->decidesMaps() && !previous.guidesDirections()
+                    ? m_data->buildCoarseMaps(store, cells, distributions)
+                    : m_data->buildFineMaps(store, cells, distributions);
   progress.report(0.7);
   Guide::Data& result = *guide.m_data;
-  const Guide::Data& old = *previous.m_data;
   forEachFromCoarse(*m_data->tasks, cells, [&](size_t c) {
     const uint32_t known = old.index.find(result.keys[c]);
     if (known == kNoCell && cells[c].parent == kNoCell) return;
@@ -387,7 +470,14 @@ Guide GuideBuilder::rebuild(const Guide& previous) const {
     std::copy_n(from.bsdfFraction, kRoughnessClasses, result.decisions[c].bsdfFraction);
   });
   result.prediction = old.prediction;
-  m_data->addRouletteAndLights(result, store, cells);
+  m_data->addRoulette(result, store, cells);
+  result.lightGroups = m_data->options.lightGroups;
+  if (result.lightGroups > 0) {
+    result.lightDecider = old.lightDecider;
+    LightChoice choice = m_data->chooseLights(result, cells, old.lightDecider);
+    result.lightTables = std::move(choice.tables);
+    result.decisions = std::move(choice.decisions);
+  }
   progress.report(1);
   return guide;
 }

@@ -21,7 +21,7 @@ namespace odis::core {
 class Archive;
 class ArchiveWriter;
 
-// What a builder takes of some vertices, so that those need not be kept: 72 bytes a vertex, and 112 for each
+// What a builder takes of some vertices, so that those need not be kept: 72 bytes a vertex, and 120 for each
 // that the BSDF sampling fractions are chosen by (a quarter at most, of many vertices).
 class VertexSamples {
  public:
@@ -58,6 +58,10 @@ class Guide {
   uint64_t bytes() const;
   // The variance of a guided sample that the pilot predicts, as a ratio to an unguided one; 1 before build().
   float predictedVarianceRatio() const;
+  // Whether there are maps that are worth sampling from: not where all is left to the BSDF.
+  bool guidesDirections() const;
+  // Whether any cell has learned which lights to choose.
+  bool choosesLights() const;
   // How many rays followed a first vertex of the pilot, on average; 0 before build().
   double raysPerPath() const;
 

@@ -8,6 +8,7 @@
 #include "odis/guide.h"
 #include "odis/models/bsdf_fraction.h"
 #include "odis/models/direction_formula.h"
+#include "odis/models/light_decision.h"
 #include "odis/models/lights.h"
 #include "odis/models/model.h"
 #include "odis/work/progress.h"
@@ -49,6 +50,7 @@ struct Guide::Data {
   std::vector<float> cachedShares;  // [bounces left]; empty without maxDepth
   std::vector<float> lightTables;
   uint32_t lightGroups = 0;
+  LightDecider lightDecider = LightDecider::model;
   std::vector<uint32_t> pixelCells;  // [pixel]; empty but by the paper's method
   GuidingPrediction prediction;
 };
@@ -108,11 +110,22 @@ struct GuideBuilder::Data {
   const CellGrid* grid() const;
   void requireSameOptions(const Data& other) const;
 
+  // Whether maps are only made where they are predicted to save variance.
+  bool decidesMaps() const { return !options.alwaysMaps && options.fixedBsdfFraction == 0; }
   Guide build(ArrayView<const float> pixelValues);
   Guide buildMaps(const CellStore& store, const std::vector<CellStatistics>& cells,
+                  const DirectionModel& model, int finestLevel,
                   std::vector<DirectionDistribution>& distributions) const;
-  void addRouletteAndLights(Guide::Data& guide, const CellStore& store,
-                            const std::vector<CellStatistics>& cells) const;
+  Guide buildCoarseMaps(const CellStore& store, const std::vector<CellStatistics>& cells,
+                        std::vector<DirectionDistribution>& distributions) const;
+  Guide buildFineMaps(CellStore& store, const std::vector<CellStatistics>& cells,
+                      std::vector<DirectionDistribution>& distributions) const;
+  void addRoulette(Guide::Data& guide, const CellStore& store,
+                   const std::vector<CellStatistics>& cells) const;
+  LightChoice chooseLights(const Guide::Data& guide, const std::vector<CellStatistics>& cells,
+                           LightDecider decider) const;
+  void decideLights(Guide::Data& guide, const std::vector<CellStatistics>& cells,
+                    const LightDecisionInputs& inputs) const;
 
   GuideOptions options;
   Progress progress;

@@ -258,6 +258,8 @@ void SavedFrame::readPosition(const Archive& file) {
                    schedule.restore(position.samplesPerPixel, {position.samplesBefore, before}),
                "frame.before: is damaged");
   if (position.next == ODIS_PASS_GUIDED && !position.builder) schedule.endRefinement();
+  if (schedule.lastRefinement() == 0 && position.spreadAfter != schedule.spreadAfter())
+    schedule.spreadLater();
   // Who learns needs a builder.
   const bool learns = position.next != ODIS_PASS_GUIDED || position.done < schedule.lastRefinement();
   file.require(position.next <= ODIS_PASS_GUIDED && position.done <= schedule.end() &&

@@ -87,6 +87,7 @@ void Guide::save(ArchiveWriter& file) const {
   file.add("guide.maps", std::span<const uint16_t>(m_data->maps.data(), cells * kMapShares));
   saveFields(file, "guide.decisions", m_data->decisions);
   file.addValue("guide.lightGroups", m_data->lightGroups);
+  file.addValue("guide.lightDecider", m_data->lightDecider);
   file.add("guide.lightTables", m_data->lightTables);
   saveFields(file, "guide.cached", m_data->cached);
   file.addValue("guide.cachedError", m_data->cachedError);
@@ -126,6 +127,8 @@ Guide Guide::load(const Archive& file) {
   data.decisions = loadFields<CellDecisions>(file, "guide.decisions", keys.size());
   data.lightGroups = file.value<uint32_t>("guide.lightGroups");
   file.require(data.lightGroups <= kMaxLightGroups, "guide.lightGroups: is damaged");
+  if (file.contains("guide.lightDecider")) data.lightDecider = file.value<LightDecider>("guide.lightDecider");
+  file.require(data.lightDecider <= LightDecider::model, "guide.lightDecider: is damaged");
   const size_t columns = data.lightGroups + 1;
   data.lightTables = file.get<float>("guide.lightTables", data.lightGroups > 0 ? keys.size() * columns : 0);
   for (size_t c = 0; c < keys.size(); ++c) {

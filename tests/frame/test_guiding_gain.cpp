@@ -2,6 +2,7 @@
 #include <random>
 
 #include "frame/run_frame.h"
+#include "odis/floor_under_patch.h"
 #include "odis/image/guiding_gain.h"
 #include "odis/options/options.h"
 
@@ -150,6 +151,51 @@ TEST(GuidingGain, FramesStopGuidingWhereItDoesNotPay) {
   Frame always(options);
   const std::vector<bool> unweighed = guidedPasses(always, options);
   EXPECT_EQ(std::count(unweighed.begin(), unweighed.end(), false), 1) << "the pilot";
+}
+
+// A floor that is seen from above, under light that is the same from everywhere: a path meets it and ends.
+// `raysAfter` are the rays that follow.
+void addFloor(Frame& frame, const FramePass& pass, uint32_t side, float raysAfter) {
+  for (uint32_t pixel = 0; pixel < side * side; ++pixel) {
+    const SampleRange range = frame.samples(pixel);
+    if (range.count == 0) continue;
+    const std::vector<PathVertex> seen = core::floorUnderPatch(core::kBright, int(range.count), pixel);
+    for (uint32_t i = 0; i < range.count; ++i) {
+      const float light = seen[i].position.x;  // noise
+      PathVertex v = seen[i];
+      v.pixel = pixel;
+      v.sample = range.first + i;
+      v.radiance = {light, light, light};
+      v.indirect = 0.5f * light;
+      v.raysAfter = raysAfter;
+      const FrameSample sample{pixel, v.sample, {0.5f * light, 0.5f * light, 0.5f * light}, 2};
+      frame.add({&sample, 1},
+                pass.wantsVertices ? ArrayView<const PathVertex>(&v, 1) : ArrayView<const PathVertex>());
+    }
+  }
+}
+
+TEST(GuidingGain, FramesThatNothingIsSavedInAreNotGuided) {
+  constexpr uint32_t kSide = 64;
+  const auto guidesAt = [](float raysAfter, const std::string& settings) {
+    FrameOptions options = toyOptions(kSide, kSide, 8);
+    options.set("pilot-spp=1 guided-cost=1 " + settings);
+    options.guide.lightGroups = 0;
+    Frame frame(options);
+    std::vector<bool> guided;
+    while (const FramePass* pass = frame.beginPass()) {
+      guided.push_back(pass->guide->cellCount > 0);
+      addFloor(frame, *pass, kSide, raysAfter);
+      frame.endPass();
+    }
+    EXPECT_EQ(frame.statistics().guidingGivenUp, !guided[1]);
+    EXPECT_NEAR(double(frame.statistics().samples), kSide * kSide * 8, kSide * kSide);
+    return bool(guided[1]);
+  };
+  EXPECT_FALSE(guidesAt(1, ""));
+  EXPECT_TRUE(guidesAt(1, "guided-cost=0"));
+  // Roulette would save much of long paths.
+  EXPECT_TRUE(guidesAt(8, ""));
 }
 
 // Which frames stop is decided by their samples: by a half of them, here.

@@ -271,6 +271,7 @@ TEST(InspectSaved, AFrameWithinAPassHasItsWholeTiles) {
   const core::GuideOptions guide = guideOptions(8);
   core::FrameOptions options = frameOptions(32, 20, guide);
   options.pilotWeight = 0.5f;
+  options.guidedCost = 0;  // or nothing would be guided
   const SavedInspection pilot = look(savedFrame(options, 0, 32 * 17));
   EXPECT_EQ(pilot.frame->tilesDone, 2u);
   EXPECT_EQ(pilot.frame->tiles, 4u);

@@ -125,6 +125,37 @@ TEST(Guide, UniformLightKeepsTheVarianceAsItIs) {
   EXPECT_GT(builder.build().predictedVarianceRatio(), 0.9f);
 }
 
+// Where maps save next to nothing all is left to the BSDF, and cells have the maps of coarse ones; a guide
+// that is rebuilt stays so.
+TEST(Guide, HasMapsOnlyWhereTheySaveMuch) {
+  std::vector<PathVertex> vertices = floorUnderPatch(kBright, 20000, 2);
+  GuideBuilder bright(byFormula());
+  bright.add(vertices);
+  EXPECT_TRUE(bright.build().guidesDirections());
+  for (PathVertex& v : vertices) {
+    v.radiance = {1, 1, 1};
+    v.indirect = 1;
+  }
+  for (const bool always : {false, true}) {
+    GuideOptions options = byFormula();
+    options.alwaysMaps = always;
+    GuideBuilder builder(options);
+    builder.add(vertices);
+    const Guide guide = builder.build(), again = builder.rebuild(guide);
+    for (const Guide* each : {&guide, &again}) {
+      const GuideView view = each->view();
+      const uint32_t cell = findSlot(view.slots, view.slotMask,
+                                     CellGrid(view.grid).key({0.51f, 0.51f, 0}, {0, 0, 1}, 0)),
+                     parent = findSlot(view.slots, view.slotMask, CellGrid::parent(view.keys[cell]));
+      const uint16_t* const maps = view.maps;
+      EXPECT_EQ(
+          std::equal(maps + cell * kMapShares, maps + (cell + 1) * kMapShares, maps + parent * kMapShares),
+          !always);
+      if (!always) EXPECT_FALSE(each->guidesDirections());
+    }
+  }
+}
+
 TEST(Guide, FallsBackToCoarserCellsAndThenToNothing) {
   const std::vector<PathVertex> vertices = floorUnderPatch(kBright, 5000, 3);
   GuideBuilder builder(byFormula());
@@ -237,7 +268,7 @@ TEST(Guide, IsTheSameFromWhatWasTakenOfUnguidedVertices) {
   const uint64_t ofCells = parts.heldBytes();
   parts.addToFractions(taken);
   for (const VertexSamples& samples : taken) EXPECT_EQ(samples.bytes(), 0u);
-  EXPECT_LT(double(parts.heldBytes() - ofCells), 112 * (double(vertices.size()) / 4) * 1.01)
+  EXPECT_LT(double(parts.heldBytes() - ofCells), 120 * (double(vertices.size()) / 4) * 1.01)
       << "more is kept than build() needs";
   EXPECT_TRUE(sameGuide(whole.build(), parts.build()));
 }

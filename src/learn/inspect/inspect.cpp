@@ -103,7 +103,7 @@ class Inspector {
   // The formula's guide and, if another model is chosen, that one's; the last one decides.
   void buildGuides() {
     const auto build = [&](const std::string& name, const std::string& more) {
-      GuideBuilder builder(GuideOptions(m_pilot.guideOptions).set("cached=off" + more));
+      GuideBuilder builder(GuideOptions(m_pilot.guideOptions).set("cached=off maps=always" + more));
       builder.add(m_pilot.vertices);
       m_guides.push_back({name, builder.build(m_pilot.pixelValues)});
     };

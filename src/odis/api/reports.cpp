@@ -96,9 +96,12 @@ void FrameReport::report(OdisContextImpl& context, const Frame& frame, bool vert
   if (now.notFinite > 0 && told.notFinite == 0)
     warn(context, "samples that are not finite count as black: " + std::to_string(now.notFinite) + " by now");
   if (now.guidingGivenUp && !told.guidingGivenUp)
-    context.log(ODIS_LOG_INFO, "guiding is given up: the first guided samples had " +
-                                   threeDigits(now.measuredCostRatio) +
-                                   " of the variance times the cost of unguided ones");
+    context.log(ODIS_LOG_INFO,
+                "guiding is given up: " +
+                    (now.measuredCostRatio > 0
+                         ? "the first guided samples had " + threeDigits(now.measuredCostRatio) +
+                               " of the variance times the cost of unguided ones"
+                         : std::string("the pilot predicts that it would save next to nothing")));
   if (frame.isComplete() && context.hears(ODIS_LOG_INFO)) context.log(ODIS_LOG_INFO, summaryText(frame));
 }
 

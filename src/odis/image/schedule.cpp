@@ -82,6 +82,13 @@ Schedule::Schedule(const FrameOptions& options)
   m_end = m_spp - m_pilotEverywhere;
 }
 
+void Schedule::spreadLater() {
+  assert(m_lastRefinement == 0);
+  if (m_spreadAfter == 0) return;
+  m_spreadAfter = 2;
+  m_decided = std::max(m_decided, m_spreadAfter);
+}
+
 uint64_t Schedule::pilotSamples() const {
   return m_isInPilot.empty() ? m_pixels * m_pilotEverywhere
                              : std::accumulate(m_isInPilot.begin(), m_isInPilot.end(), uint64_t(0));

@@ -70,6 +70,11 @@ class Schedule {
   bool countsAreKnown(uint32_t done) const { return done >= m_spreadAfter || m_end <= m_spreadAfter; }
   // Has the guide built no more.
   void endRefinement() { m_lastRefinement = 0; }
+  // Settles how many samples each pixel has by two of each, which tell more than one and a pilot's. Only
+  // where the guide won't be built in between: the first ones' weights are then known after one pass as well.
+  void spreadLater();
+  // After how many of the samples that remain guided ones are compared with the pilot's.
+  uint32_t comparedAfter() const { return m_lastRefinement > 0 ? 1 : std::max(m_spreadAfter, 1u); }
 
   // Whether the frame can be extended at any place; otherwise only at end().
   bool isExtendedAnywhere() const { return m_inTheMean; }

@@ -27,6 +27,8 @@ FractionSample fractionSampleOf(const PathVertex& v, bool isUsable) {
           .roughness = v.roughness,
           .raysAfter = v.raysAfter,
           .pixel = v.pixel,
+          .lightGroup = v.lightGroup,
+          .lightGroupProbability = v.lightGroupProbability,
           .isFirst = v.depth == 1,
           .isUsable = isUsable,
           .discrete = v.discrete,

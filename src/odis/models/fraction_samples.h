@@ -10,7 +10,7 @@
 
 namespace odis::core {
 
-// A vertex that knows its contributions, in 112 bytes. Fields have the names and units of PathVertex's.
+// A vertex that knows its contributions, in 120 bytes. Fields have the names and units of PathVertex's.
 struct FractionSample {
   Float3 position, normal, wi, lightDirection;
   float distance;
@@ -21,6 +21,8 @@ struct FractionSample {
   float light, lightPdf, lightBsdfPdf, lightGuidablePdf;
   float roughness, raysAfter;
   uint32_t pixel;
+  uint32_t lightGroup;
+  float lightGroupProbability;
   bool isFirst;   // of its path
   bool isUsable;  // by a cell; others count towards the image alone
   bool discrete, scattersBothSides;
@@ -47,6 +49,8 @@ constexpr void forEachField(FieldsOf<FractionSample>, const Body& body) {
   body("roughness", &FractionSample::roughness);
   body("raysAfter", &FractionSample::raysAfter);
   body("pixel", &FractionSample::pixel);
+  body("lightGroup", &FractionSample::lightGroup);
+  body("lightGroupProbability", &FractionSample::lightGroupProbability);
   body("isFirst", &FractionSample::isFirst);
   body("isUsable", &FractionSample::isUsable);
   body("discrete", &FractionSample::discrete);

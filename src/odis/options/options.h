@@ -51,6 +51,7 @@ struct GuideOptions {
   uint32_t pixelTile = 1;        // a map for each square of so many pixels a side
   float pixelShare = 1;          // of a pixel's map in what guides there; the rest is its cell's
   bool pixelDirectLight = true;  // whether maps at pixels tell of what next-event estimation covers
+  bool alwaysMaps = false;       // whether there are maps of all cells even where they save little
   bool cosineProduct = true;     // whether maps are multiplied by the cosine at a vertex
 
   // Whether paths end with cached radiance.

@@ -261,6 +261,10 @@ std::vector<Row> rowsOfPilotAndCells() {
           "map-clamp", {0.001f, 1e9f},
           "A sample counts at most this many times its neighbourhood's mean in maps.",
           [](auto& o) -> auto& { return o.guide.clamp; }),
+      choice<bool>(
+          "maps", {{"auto", false}, {"always", true}},
+          "Whether cells have maps where coarse ones save much, or always.",
+          [](auto& o) -> auto& { return o.guide.alwaysMaps; }),
   };
 }
 

@@ -10,12 +10,18 @@ void findGuidableLobes(const PathSettings& settings, const Batch& batch, Bounces
   Vertices& at = bounces.at;
   at.guidable = {};
   if (!settings.guide && !settings.rival && !batch.recording) return;
+  // Where only directions ask for it, cells that leave them to the BSDF save the call.
+  const bool onlyDirections =
+      !settings.rival && !batch.recording && settings.guideBounces < 0 && !settings.guide->pixels.cells;
+  const auto guides = [&](uint32_t cell) {
+    return cell != kNoCell && guidesDirections(settings.guide->decisions[cell]);
+  };
   for (size_t i = 0; i < bounces.count; ++i) {
     if (at.isDiffuse[i]) {
       at.guidable[i] = at.side[i] != 0 ? 1.0f : 0.0f;
     } else if (at.isFaceted[i]) {
       at.guidable[i] = at.faceted[i].guidable();
-    } else {
+    } else if (!onlyDirections || guides(bounces.arrivals[i].cell)) {
       const Vertex& vertex = *bounces.arrivals[i].vertex;
       at.guidable[i] = at.bsdfs[i]->guidableProbability(vertex.at, vertex.wo);
     }
