@@ -44,6 +44,7 @@ std::string statsTable(const RunStats& stats) {
                              seconds > 0 ? double(r.samples) * 1e-6 / seconds : 0.0));
   row("rays",
       fmt::format("{:.3f} M, {:.3f} M shadow rays", double(r.rays) * 1e-6, double(r.shadowRays) * 1e-6));
+  if (r.guidingGivenUp) row("guide", "given up, since it does not pay");
   if (r.cells > 0) {
     row("pilot vertices", fmt::format("{} in {} cells", r.pilotVertices, r.cells));
     row("pilot's share", fmt::format("{:.3f} of the samples' weight", r.pilotShare));
@@ -84,6 +85,7 @@ std::string statsJson(const RunStats& stats) {
                                  {"shadowRays", r.shadowRays},
                                  {"pilotVertices", r.pilotVertices},
                                  {"cells", r.cells},
+                                 {"guidingGivenUp", r.guidingGivenUp},
                                  {"pilotShare", r.pilotShare},
                                  {"guidedCost", r.guidedCost()},
                                  {"bytes",

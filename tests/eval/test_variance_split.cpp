@@ -181,7 +181,7 @@ TEST_P(VarianceSplitRoom, AddsUp) {
 
   Progress quiet;
   const VarianceSplit result = splitVariance(*scene, o, reference, 320, quiet);
-  EXPECT_LT(result.variance.error, 0.05 * variance);
+  EXPECT_LT(result.variance.error, 0.06 * variance);
   // Another seed learned another guide, whose variance differs by some per cent.
   const double guides = GetParam() == IntegratorKind::odis ? 0.05 * variance : 0;
   EXPECT_NEAR(result.variance.value, variance,

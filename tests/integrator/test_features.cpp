@@ -95,7 +95,7 @@ TEST(Alpha, IsTheShareThatIsNeitherEmptyNorHidden) {
 }
 
 TEST(GuideFeatures, DifferWhereLightDoes) {
-  const auto scene = test::loadScene(test::indirectRoom(32));
+  const auto scene = test::loadScene(test::indirectRoom(96));
   const RenderedImage frame = test::renderScene(*scene, withFeatures()).image;
   const auto [least, most] = std::minmax_element(frame.guideEntropy.begin(), frame.guideEntropy.end());
   EXPECT_GT(*least, 0);

@@ -184,6 +184,7 @@ void FrameIntegrator::finish(RenderResult& result) {
   stats.cells = frame.cells;
   stats.bytesMaps = frame.guideBytes;
   stats.bytesBuild = frame.buildingBytes;
+  stats.guidingGivenUp = frame.guidingGivenUp;
   stats.pilotShare = frame.pilotFraction;
 }
 

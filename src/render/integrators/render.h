@@ -19,6 +19,7 @@ struct RenderStats {
   uint64_t cellsBuilt = 0;  // in secondsBuild: those of all guides, of which the last has `cells`
   uint64_t bytesBuild = 0;  // held at most until the guide is built: pilot vertices and what is made of them
   uint64_t bytesMaps = 0, bytesLights = 0;
+  bool guidingGivenUp = false;  // since it does not pay
   double pilotShare = 0;  // of the pilot in the weights of all samples
   double spp = 0;         // samples per pixel really taken
   // In the mean of any pixel: from 2 on there is a variance everywhere. Of a film that splats it is not known
