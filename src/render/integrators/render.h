@@ -20,8 +20,8 @@ struct RenderStats {
   uint64_t bytesBuild = 0;  // held at most until the guide is built: pilot vertices and what is made of them
   uint64_t bytesMaps = 0, bytesLights = 0;
   bool guidingGivenUp = false;  // since it does not pay
-  double pilotShare = 0;  // of the pilot in the weights of all samples
-  double spp = 0;         // samples per pixel really taken
+  double pilotShare = 0;        // of the pilot in the weights of all samples
+  double spp = 0;               // samples per pixel really taken
   // In the mean of any pixel: from 2 on there is a variance everywhere. Of a film that splats it is not known
   // whether there are more than that.
   uint32_t fewestSamples = 0;
