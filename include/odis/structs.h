@@ -110,9 +110,8 @@ typedef struct OdisLightParts {
 
 typedef struct OdisGuideOptions {
   size_t size ODIS_DEFAULT(sizeof(OdisGuideOptions));
-  OdisModel model ODIS_DEFAULT(NULL);  // NULL: the networks that come with the library
-  uint32_t lightGroups
-      ODIS_DEFAULT(0);  // that the vertices tell apart, <= 128; 0: learn nothing about lights
+  OdisModel model ODIS_DEFAULT(NULL);    // NULL: the networks that come with the library
+  uint32_t lightGroups ODIS_DEFAULT(0);  // that vertices tell apart, <= 128; 0: learn nothing about lights
   const OdisLightParts* lightParts ODIS_DEFAULT(NULL);  // groups that are parts of one light; copied
   size_t lightPartCount ODIS_DEFAULT(0);
   // Told of progress while guides are built; may cancel. NULL: nobody is told.

@@ -9,7 +9,8 @@ namespace odis::core {
 
 // The time to build a cell without a map of its own, over that with one.
 constexpr double kCostWithoutMaps = 0.25;
-// Of paths with less rays beyond their first vertex roulette saves less than looking it up takes.
+// Where paths trace fewer rays than this beyond their first vertex, learned roulette saves less time than
+// looking it up takes.
 constexpr double kFewRays = 3;
 
 // Settles how many samples each pixel has.

@@ -359,7 +359,7 @@ void GuideBuilder::Data::addRoulette(Guide::Data& guide, const CellStore& store,
   }
 }
 
-// The guide's decisions with the learned-light fractions of one way to choose lights, and its tables.
+// The guide's decisions with the learned-light fractions by the model or the formula, and the tables.
 LightChoice GuideBuilder::Data::chooseLights(const Guide::Data& guide,
                                              const std::vector<CellStatistics>& cells,
                                              LightDecider decider) const {
@@ -369,23 +369,25 @@ LightChoice GuideBuilder::Data::chooseLights(const Guide::Data& guide,
   const LightModel& model = decider == LightDecider::model ? *lights : formula;
   choice.tables =
       tabulateLights(*tasks, choice.decisions, cells, model, options.lightGroups, options.lightParts);
-  if (decider == LightDecider::nothing)
-    for (CellDecisions& cell : choice.decisions) cell.learnedLightFraction = 0;
   return choice;
 }
 
-// Chooses lights in the way that the pilot's vertices, if they tell, predict to be best.
+// Gives a guide its choice of lights. Where nothing decides the tables are the formula's, and not followed.
+void GuideBuilder::Data::useLights(Guide::Data& guide, LightChoice choice, LightDecider decider) {
+  guide.lightDecider = decider;
+  guide.lightTables = std::move(choice.tables);
+  guide.decisions = std::move(choice.decisions);
+  if (decider == LightDecider::nothing)
+    for (CellDecisions& cell : guide.decisions) cell.learnedLightFraction = 0;
+}
+
+// Chooses lights in the way that the pilot's vertices predict to be best.
 void GuideBuilder::Data::decideLights(Guide::Data& guide, const std::vector<CellStatistics>& cells,
                                       const LightDecisionInputs& inputs) const {
   LightChoice model = chooseLights(guide, cells, LightDecider::model);
-  if (lightMoment(inputs, model, 0) > 0) {
-    LightChoice formula = chooseLights(guide, cells, LightDecider::formula);
-    guide.lightDecider = core::decideLights(inputs, formula, model);
-    if (guide.lightDecider == LightDecider::formula) model = std::move(formula);
-    if (guide.lightDecider == LightDecider::nothing) model = chooseLights(guide, cells, guide.lightDecider);
-  }
-  guide.lightTables = std::move(model.tables);
-  guide.decisions = std::move(model.decisions);
+  LightChoice formula = chooseLights(guide, cells, LightDecider::formula);
+  const LightDecider decider = core::decideLights(inputs, formula, model);
+  useLights(guide, std::move(decider == LightDecider::model ? model : formula), decider);
 }
 
 Guide GuideBuilder::build(ArrayView<const float> pixelValues) const {
@@ -472,12 +474,8 @@ Guide GuideBuilder::rebuild(const Guide& previous) const {
   result.prediction = old.prediction;
   m_data->addRoulette(result, store, cells);
   result.lightGroups = m_data->options.lightGroups;
-  if (result.lightGroups > 0) {
-    result.lightDecider = old.lightDecider;
-    LightChoice choice = m_data->chooseLights(result, cells, old.lightDecider);
-    result.lightTables = std::move(choice.tables);
-    result.decisions = std::move(choice.decisions);
-  }
+  if (result.lightGroups > 0)
+    Data::useLights(result, m_data->chooseLights(result, cells, old.lightDecider), old.lightDecider);
   progress.report(1);
   return guide;
 }

@@ -124,6 +124,7 @@ struct GuideBuilder::Data {
                    const std::vector<CellStatistics>& cells) const;
   LightChoice chooseLights(const Guide::Data& guide, const std::vector<CellStatistics>& cells,
                            LightDecider decider) const;
+  static void useLights(Guide::Data& guide, LightChoice choice, LightDecider decider);
   void decideLights(Guide::Data& guide, const std::vector<CellStatistics>& cells,
                     const LightDecisionInputs& inputs) const;
 

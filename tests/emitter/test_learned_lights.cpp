@@ -147,7 +147,8 @@ TEST_F(LearnedLightsTest, AreDrawnAsStated) {
     }
 }
 
-// So many as there are emitters, or 32, if these have so many parts; and no more than are asked for.
+// There are as many groups as emitters, or 32 if emitters are fewer and have enough parts, and never more
+// than are asked for.
 TEST_F(LearnedLightsTest, AreAsManyAsEmitters) {
   const auto groupsOf = [&](size_t distant, size_t points, uint32_t most = odis::kMaxLightGroups) {
     std::vector<Emitter*> some;

@@ -13,9 +13,10 @@ namespace odis::core {
 
 namespace {
 
-// A finest cell has a map of its own from so many samples on; fewer would hardly change its parent's.
+// The least number of samples with which a cell of the finest level has a map of its own; fewer would hardly
+// change its parent's map.
 constexpr double kLeastForFinestMap = 16;
-// Cells beyond the grid's reach: from so many on. One of fewer samples would not save what it costs.
+// The same for a cell beyond the grid's reach; a map of fewer samples would not save what it costs.
 constexpr double kLeastForFarMap = 64;
 // With so many samples a half of such a map comes from the cell itself (GuideOptions::priorSamples).
 constexpr double kHalfKnown = 250;

@@ -46,10 +46,11 @@ double lightMoment(const LightDecisionInputs& inputs, const LightChoice& choice,
 
 LightDecider decideLights(const LightDecisionInputs& inputs, const LightChoice& formula,
                           const LightChoice& model) {
-  const double ofModel = lightMoment(inputs, model, 0), ofFormula = lightMoment(inputs, formula, 0);
+  const double ofModel = lightMoment(inputs, model, 0);
+  if (!(ofModel > 0)) return LightDecider::model;
   if (inputs.groups <= kFewGroups && lightMoment(inputs, formula, 1) > 1 - kLeastSaved)
     return LightDecider::nothing;
-  return ofModel <= ofFormula ? LightDecider::model : LightDecider::formula;
+  return ofModel <= lightMoment(inputs, formula, 0) ? LightDecider::model : LightDecider::formula;
 }
 
 }  // namespace odis::core

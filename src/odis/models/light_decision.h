@@ -32,7 +32,8 @@ double lightMoment(const LightDecisionInputs& inputs, const LightChoice& choice,
 // vertices that both were made from; in a cell whose lights differ from place to place it is too sure.
 // Nothing is learned where the formula's tables of the next coarser cells, to which a vertex's own sample
 // adds little, save less than 5 %: that would not pay for look-ups and lost stratification over the lights.
-// Many groups of lights are learned in any case, since a pilot tells little of them.
+// Many groups of lights are learned in any case, since a pilot tells little of them. Where no vertex tells
+// the model decides.
 LightDecider decideLights(const LightDecisionInputs& inputs, const LightChoice& formula,
                           const LightChoice& model);
 

@@ -62,7 +62,7 @@ double LightFormula::reliability(const CellChain& chain, uint32_t groups) const 
   // lights knows nothing of transmittance.
   if (cell.inMedium) return 1;
   if (groups <= kFewGroups) return ownWeight(cell.lightCount, kHalfEnough);
-  // Of many groups most is known from the ancestors, and most of that from the coarsest.
+  // Where there are many groups a cell's table comes mostly from its ancestors, and from the coarsest first.
   const CellStatistics* coarsest = chain[0];
   for (const CellStatistics* ancestor : chain)
     if (ancestor) coarsest = ancestor;

@@ -11,7 +11,7 @@ namespace odis::core {
 
 using LightParts = OdisLightParts;
 
-// So many groups of lights are few: each cell learns about them from the samples that maps need, too.
+// The number of light groups up to which each cell learns about them from the samples that its map needs.
 inline constexpr uint32_t kFewGroups = 32;
 // The learned-light fraction where a cell has seen enough.
 inline constexpr double kLearnedFraction = 0.9;

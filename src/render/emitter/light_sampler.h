@@ -30,8 +30,8 @@ inline constexpr uint32_t kFewLightGroups = 32;
 class LightSampler {
  public:
   LightSampler() = default;
-  // The emitters of a scene, in the order of their indices. There are at most so many groups, and at most
-  // kFewLightGroups or one for each emitter, whichever is more.
+  // Takes the emitters of a scene, in the order of their indices. The number of groups is at most
+  // `mostGroups`, and at most the larger of kFewLightGroups and the number of emitters.
   explicit LightSampler(const std::vector<const Emitter*>& emitters, uint32_t mostGroups = kMaxLightGroups);
 
   struct Choice {
